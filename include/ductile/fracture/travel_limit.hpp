@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// Break at a largest accumulated plastic travel: plastic rotation for a hinge, elongation for a bar.
+//
+// Source: Nikula (2017), Handling of plasticity in physics engine, section 2.8.1 (maximum plastic
+// rotation: 1-6 rad for a ductile part, 0.01-0.1 rad for a brittle one). We count the travel that
+// does work at yield, not every change of angle, so load below yield never consumes life.
+#pragma once
+
+#include <concepts>
+#include <limits>
+
+#include "ductile/vocabulary/check.hpp"
+
+namespace ductile {
+
+template <std::floating_point S>
+struct TravelLimitParameters {
+    S limit = std::numeric_limits<S>::quiet_NaN(); ///< p_max [m | rad], > 0; infinity: never breaks
+};
+
+template <std::floating_point S>
+class TravelLimit {
+  public:
+    using Scalar = S;
+
+    /// A limit that is never reached.
+    TravelLimit() noexcept : limit_(std::numeric_limits<S>::infinity()) {}
+
+    /// @throws std::invalid_argument where the limit is NaN or not positive.
+    explicit TravelLimit(const TravelLimitParameters<S>& parameters)
+        : limit_(check::positive_or_infinite("TravelLimit.limit", parameters.limit, "m or rad")) {}
+
+    [[nodiscard]] S limit() const noexcept { return limit_; } ///< p_max [m | rad]
+
+    /// Plastic travel left before the break, never negative. [m | rad]
+    [[nodiscard]] S remaining(S travel) const noexcept {
+        return travel < limit_ ? limit_ - travel : S(0);
+    }
+
+  private:
+    S limit_;
+};
+
+template <std::floating_point S>
+TravelLimit(const TravelLimitParameters<S>&) -> TravelLimit<S>;
+
+} // namespace ductile

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+//
+// Two rigid bodies seen from the point that joins them: the mass one axis of the joint feels while
+// the other five hold, and the impulse that changes the motion along that axis alone.
+//
+// With the relative twist at the joint, t = (v, ω) of body A minus that of body B, an impulse
+// pair λ = (P, L) acting on A at the joint and opposite on B changes t by K λ,
+//
+//   K = K_A + K_B,   K_X = [ 1/m - [r]ₓ I⁻¹ [r]ₓ    -[r]ₓ I⁻¹ ]
+//                          [ I⁻¹ [r]ₓ                 I⁻¹     ]
+//
+// An impulse that changes only the component along the unit axis e by Δu is λ = K⁻¹ e Δu, and the
+// effective mass is m = (eᵀ K⁻¹ e) for a joint whose other five axes are rigid. A body that cannot
+// move has zero inverse mass and inertia.
+//
+// Symbols
+//   r    joint minus centre of mass, world axes          [m], 3-vector
+//   I⁻¹  inverse inertia about the centre of mass, world [1/(kg m²)], 3×3
+//   e    axis: three linear, then three angular entries  [-], 6-vector
+//
+// Source: Featherstone (2008), Rigid Body Dynamics Algorithms, section 2.8 (inverse inertia of a
+// rigid body at a point); written out here.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <concepts>
+
+namespace ductile {
+
+template <std::floating_point S>
+using Vector3 = Eigen::Matrix<S, 3, 1>;
+template <std::floating_point S>
+using Matrix3 = Eigen::Matrix<S, 3, 3>;
+template <std::floating_point S>
+using Vector6 = Eigen::Matrix<S, 6, 1>;
+template <std::floating_point S>
+using Matrix6 = Eigen::Matrix<S, 6, 6>;
+
+/// One body's part in a joint. Default: a body that cannot move.
+template <std::floating_point S>
+struct BodyAtJoint {
+    S inverse_mass = 0;                                    ///< 1/m [1/kg]
+    Matrix3<S> inverse_inertia = Matrix3<S>::Zero();       ///< I⁻¹, world axes [1/(kg m²)]
+    Vector3<S> arm = Vector3<S>::Zero();                   ///< r, world axes [m]
+};
+
+/// Impulse on body A at the joint, world axes; body B takes the opposite.
+template <std::floating_point S>
+struct JointImpulse {
+    Vector3<S> linear = Vector3<S>::Zero();  ///< P [N s]
+    Vector3<S> angular = Vector3<S>::Zero(); ///< L [N m s]
+};
+
+/// Change of a body's velocities by an impulse (P, L) at its joint.
+template <std::floating_point S>
+struct VelocityChange {
+    Vector3<S> linear;  ///< of the centre of mass [m/s]
+    Vector3<S> angular; ///< [rad/s]
+};
+
+template <std::floating_point S>
+[[nodiscard]] VelocityChange<S> velocity_change(const BodyAtJoint<S>& body,
+                                                const JointImpulse<S>& impulse) noexcept {
+    return {body.inverse_mass * impulse.linear,
+            body.inverse_inertia * (body.arm.cross(impulse.linear) + impulse.angular)};
+}
+
+/// K [1/kg and 1/(kg m²)]: what the pair's relative twist at the joint answers to an impulse.
+template <std::floating_point S>
+[[nodiscard]] Matrix6<S> inverse_mass_at_joint(const BodyAtJoint<S>& a,
+                                               const BodyAtJoint<S>& b) noexcept {
+    Matrix6<S> k = Matrix6<S>::Zero();
+    for (const BodyAtJoint<S>* body : {&a, &b}) {
+        Matrix3<S> cross;
+        cross << 0, -body->arm.z(), body->arm.y(), body->arm.z(), 0, -body->arm.x(), -body->arm.y(),
+            body->arm.x(), 0;
+        const Matrix3<S> turned = body->inverse_inertia * cross;
+        k.template topLeftCorner<3, 3>() +=
+            body->inverse_mass * Matrix3<S>::Identity() - cross * turned;
+        k.template topRightCorner<3, 3>() -= cross * body->inverse_inertia;
+        k.template bottomLeftCorner<3, 3>() += turned;
+        k.template bottomRightCorner<3, 3>() += body->inverse_inertia;
+    }
+    return k;
+}
+
+/// Impulse that gives back `energy` >= 0 [J] to the motion along `axis`, whose velocity is `velocity`
+/// [m/s | rad/s], and leaves the other five axes alone: Δu = sign(u)(√(u² + 2 energy/m) - |u|).
+/// Zero where neither body can move along the axis.
+template <std::floating_point S>
+[[nodiscard]] JointImpulse<S> release_impulse(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
+                                              const Vector6<S>& axis, S velocity, S energy) noexcept {
+    const Vector6<S> response = inverse_mass_at_joint(a, b).ldlt().solve(axis);
+    const S mass = axis.dot(response);
+    if (!(mass > 0) || !std::isfinite(mass)) return {};
+    const S gained = 2 * energy / mass;
+    const S faster = std::sqrt(velocity * velocity + gained);
+    if (!(faster > 0)) return {};
+    const S change = std::copysign(gained / (faster + std::abs(velocity)), velocity);
+    const Vector6<S> impulse = response * change;
+    return {impulse.template head<3>(), impulse.template tail<3>()};
+}
+
+} // namespace ductile
