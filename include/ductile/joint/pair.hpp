@@ -24,6 +24,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <concepts>
 
@@ -86,19 +87,25 @@ template <std::floating_point S>
     return k;
 }
 
-/// Impulse that gives back `energy` >= 0 [J] to the motion along `axis`, whose velocity is `velocity`
-/// [m/s | rad/s], and leaves the other five axes alone: Δu = sign(u)(√(u² + 2 energy/m) - |u|).
-/// Zero where neither body can move along the axis.
+/// Impulse that gives `energy` >= 0 [J] to the motion along `axis` and leaves the other five axes
+/// alone. `twist` is the relative twist (v, ω) of A minus B at the joint, world axes. With the response
+/// h = K⁻¹ e, the momentum along it p = h · twist and the mass m = e · h, the change Δu of the velocity
+/// along the axis does the work p Δu + m Δu²/2, so
+///
+///   Δu = sign(p) 2 energy / (|p| + √(p² + 2 m energy)),
+///
+/// which never turns the motion round. Where the other axes are at rest p = m u, and this is
+/// u'² = u² + 2 energy / m. Zero where neither body can move along the axis.
 template <std::floating_point S>
 [[nodiscard]] JointImpulse<S> release_impulse(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
-                                              const Vector6<S>& axis, S velocity, S energy) noexcept {
+                                              const Vector6<S>& axis, const Vector6<S>& twist,
+                                              S energy) noexcept {
     const Vector6<S> response = inverse_mass_at_joint(a, b).ldlt().solve(axis);
     const S mass = axis.dot(response);
-    if (!(mass > 0) || !std::isfinite(mass)) return {};
-    const S gained = 2 * energy / mass;
-    const S faster = std::sqrt(velocity * velocity + gained);
-    if (!(faster > 0)) return {};
-    const S change = std::copysign(gained / (faster + std::abs(velocity)), velocity);
+    const S momentum = twist.dot(response);
+    const S root = std::sqrt(momentum * momentum + 2 * mass * energy);
+    if (!(mass > 0) || !std::isfinite(mass) || !(root > 0)) return {};
+    const S change = std::copysign(2 * energy / (std::abs(momentum) + root), momentum);
     const Vector6<S> impulse = response * change;
     return {impulse.template head<3>(), impulse.template tail<3>()};
 }
