@@ -110,4 +110,22 @@ template <std::floating_point S>
     return {impulse.template head<3>(), impulse.template tail<3>()};
 }
 
+/// What a break handed back to its two bodies, once, at the end of the breaking step.
+template <std::floating_point S>
+struct BreakRelease {
+    S energy = 0; ///< [J]; zero: nothing was handed back
+    VelocityChange<S> a{Vector3<S>::Zero(), Vector3<S>::Zero()};
+    VelocityChange<S> b{Vector3<S>::Zero(), Vector3<S>::Zero()};
+};
+
+/// The velocity changes that give `energy` [J] back along `axis`; see release_impulse.
+template <std::floating_point S>
+[[nodiscard]] BreakRelease<S> break_release(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
+                                            const Vector6<S>& axis, const Vector6<S>& twist,
+                                            S energy) noexcept {
+    const JointImpulse<S> impulse = release_impulse(a, b, axis, twist, energy);
+    return {energy, velocity_change(a, impulse),
+            velocity_change(b, JointImpulse<S>{-impulse.linear, -impulse.angular})};
+}
+
 } // namespace ductile

@@ -185,7 +185,7 @@ class EnergyMeter {
     void undo_release(btTypedConstraint& constraint) {
         auto* plastic = dynamic_cast<PlasticConstraint*>(&constraint);
         if (plastic == nullptr) return;
-        const BreakRelease& release = plastic->release();
+        const BreakRelease<double>& release = plastic->release();
         if (release.energy == plastic_start_.at(plastic).released) return;
         take_back(constraint.getRigidBodyA(), release.a);
         take_back(constraint.getRigidBodyB(), release.b);

@@ -34,20 +34,13 @@
 
 namespace ductile::bullet {
 
-/// What a break handed back to the two bodies, once, at the end of the breaking tick.
-struct BreakRelease {
-    double energy = 0; ///< [J]; zero: nothing was handed back (yet)
-    VelocityChange<double> a{Vector3<double>::Zero(), Vector3<double>::Zero()};
-    VelocityChange<double> b{Vector3<double>::Zero(), Vector3<double>::Zero()};
-};
-
 /// What an energy account needs to know of a plastic constraint of any kind.
 class PlasticConstraint : public btTypedConstraint {
   public:
     using btTypedConstraint::btTypedConstraint;
 
     [[nodiscard]] virtual double absorbed_energy() = 0;      ///< D [J]
-    [[nodiscard]] virtual const BreakRelease& release() = 0; ///< of the break, if there was one
+    [[nodiscard]] virtual const BreakRelease<double>& release() = 0; ///< of the break, if there was one
 };
 
 template <class Joint>
@@ -99,7 +92,7 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] double residual_max() { return settled().state().residual_max; }
 
     [[nodiscard]] const Joint& joint() { return settled(); }
-    [[nodiscard]] const BreakRelease& release() override {
+    [[nodiscard]] const BreakRelease<double>& release() override {
         settle();
         return release_;
     }
@@ -272,9 +265,7 @@ class OneAxisConstraint : public PlasticConstraint {
         axis.segment<3>(turns() ? 3 : 0) = to_core(geometry_.axis);
         const auto a = at_joint(m_rbA, joint);
         const auto b = at_joint(m_rbB, joint);
-        const JointImpulse<double> impulse = release_impulse(a, b, axis, twist(), energy);
-        release_ = {energy, velocity_change(a, impulse),
-                    velocity_change(b, {-impulse.linear, -impulse.angular})};
+        release_ = break_release(a, b, axis, twist(), energy);
         if (a.inverse_mass > 0) apply(m_rbA, release_.a);
         if (b.inverse_mass > 0) apply(m_rbB, release_.b);
     }
@@ -285,7 +276,7 @@ class OneAxisConstraint : public PlasticConstraint {
     CommitAction action_{*this};
     Geometry geometry_;
     Step<double> last_;
-    BreakRelease release_;
+    BreakRelease<double> release_;
     double dt_ = 0;
     double position_ = 0;
     double force_ = 0;
