@@ -33,7 +33,7 @@ struct StepControlParameters {
     S max_step = S(1.0 / 60);       ///< longest step [s], >= min_step
     S plastic_rotation = S(0.005);  ///< per step [rad], > 0; infinity: no limit
     S plastic_elongation = std::numeric_limits<S>::infinity(); ///< per step [m], > 0
-    S closing_fraction = S(0.01);   ///< of the thickness, per step [-], in (0, 1]
+    S closing_fraction = S(0.005);  ///< of the thickness, per step [-], in (0, 1]
     S gap_fraction = S(0.5);        ///< of the gap, per step [-], in (0, 1]
     S steps_per_period = S(20);     ///< for the stiffest elastic part [-], >= 2
     S growth = S(1.5);              ///< largest dt_next / dt [-], > 1

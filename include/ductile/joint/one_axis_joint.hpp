@@ -83,8 +83,10 @@ struct OneAxisState {
 
 template <std::floating_point S>
 struct OneAxisParameters {
-    /// Fraction of the drift from q_p that the row removes per step [-], in [0, 1].
-    S drift_correction = S(0.2);
+    /// Time in which a holding row removes drift from q_p [s], > 0; five steps where that is longer. A
+    /// time, not a share of each step: a share would turn the drift left by a long step into a
+    /// kick in a short one.
+    S drift_time = S(0.02);
     /// A step is unreliable where its residual exceeds this plus `relative_residual` × |velocity|
     /// [m/s | rad/s], > 0.
     S absolute_residual = S(1e-3);
@@ -103,13 +105,11 @@ class OneAxisJoint {
     explicit OneAxisJoint(Law law, TravelLimit<Scalar> limit = {},
                           const OneAxisParameters<Scalar>& parameters = {})
         : law_(std::move(law)), limit_(std::move(limit)), parameters_(parameters) {
-        using check::between;
-        between("OneAxisJoint.drift_correction", parameters.drift_correction, Scalar(0), Scalar(1),
-                "", true);
+        check::positive("OneAxisJoint.drift_time", parameters.drift_time, "s");
         check::positive("OneAxisJoint.absolute_residual", parameters.absolute_residual,
                         "m/s or rad/s");
-        between("OneAxisJoint.relative_residual", parameters.relative_residual, Scalar(0), Scalar(1),
-                "", true);
+        check::between("OneAxisJoint.relative_residual", parameters.relative_residual, Scalar(0),
+                       Scalar(1), "", true);
     }
 
     [[nodiscard]] const Law& law() const noexcept { return law_; }
@@ -129,7 +129,7 @@ class OneAxisJoint {
         if (state_.broken) return {.lower = 0, .upper = 0};
         strength_ = midpoint_strength(motion.velocity, dt);
         bound_ = strength_ * unspent_fraction(motion.velocity, dt);
-        bias_ = parameters_.drift_correction * (state_.plastic_offset - motion.position) / dt;
+        bias_ = (state_.plastic_offset - motion.position) / std::max(parameters_.drift_time, 5 * dt);
         return {.lower = -bound_, .upper = bound_, .bias = bias_, .compliance = 0};
     }
 

@@ -63,6 +63,11 @@ class EnergyMeter {
         last_ = ledger_.held();
     }
     [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
+    /// Energy that all rows of a constraint took from the bodies since the meter was made [J].
+    [[nodiscard]] double taken_by(const btTypedConstraint& constraint) const {
+        const auto entry = taken_.find(&constraint);
+        return entry != taken_.end() ? entry->second : 0;
+    }
 
     void before_step() {
         // what somebody changed between the steps came from outside
@@ -259,6 +264,7 @@ class EnergyMeter {
             named = flow + plastic->release().energy - before.released;
         }
         ledger_.book(Account::joints, taken - named);
+        taken_[&constraint] += taken;
     }
 
     void book_contacts() {
@@ -301,6 +307,7 @@ class EnergyMeter {
     HeldEnergy<double> last_;
     std::unordered_map<const btRigidBody*, BodyStart> start_;
     std::unordered_map<const PlasticConstraint*, PlasticStart> plastic_start_;
+    std::unordered_map<const btTypedConstraint*, double> taken_;
     std::deque<btJointFeedback> feedback_;
     std::unordered_map<const btTypedConstraint*, btJointFeedback*> feedback_of_;
 };

@@ -60,6 +60,11 @@ class EnergyMeter {
         last_ = ledger_.held();
     }
     [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
+    /// Energy that all rows of a joint took from the bodies since the meter was made [J].
+    [[nodiscard]] double taken_by(dJointID joint) const {
+        const auto entry = taken_.find(joint);
+        return entry != taken_.end() ? entry->second : 0;
+    }
 
     void before_step() {
         // what somebody changed between the steps came from outside
@@ -237,6 +242,7 @@ class EnergyMeter {
             named = flow + share.constraint->release().energy - share.released;
         }
         ledger_.book(Account::joints, taken - named);
+        taken_[joint.id] += taken;
     }
 
     /// Sum of the velocities before and after the step at a world point of the body [m/s].
@@ -254,6 +260,7 @@ class EnergyMeter {
     std::unordered_map<dBodyID, BodyStart> start_;
     std::unordered_map<dJointID, PlasticShare> plastic_;
     std::unordered_map<dJointID, Contact> contacts_;
+    std::unordered_map<dJointID, double> taken_;
     std::vector<WatchedJoint> joints_;
     std::deque<dJointFeedback> feedback_;
 };

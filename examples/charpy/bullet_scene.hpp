@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: MIT
+//
+// The Charpy test in Bullet. Contacts are set up so that the engine neither adds nor takes energy with
+// them: the contact points are those of edge_contact.hpp, handed to Bullet as manifolds, and split
+// impulse corrects positions apart from velocities at any depth. Bodies do not collide otherwise.
+//
+// The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of the
+// blow gravity would move it by 0.1 mm.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "ductile/bullet/bullet.hpp"
+#include "edge_contact.hpp"
+#include "simulation.hpp"
+
+namespace charpy {
+
+class BulletScene {
+    using Hinge = ductile::bullet::PlasticHinge<>;
+
+  public:
+    static constexpr std::string_view engine = "bullet";
+#ifdef BT_USE_DOUBLE_PRECISION
+    static constexpr std::string_view precision = "double";
+#else
+    static constexpr std::string_view precision = "float";
+#endif
+
+    BulletScene(const Scenario& scenario, Method method, const std::string& solver)
+        : s_(scenario), method_(method) {
+        make_world(solver);
+        add_anvils();
+        add_hammer();
+        add_specimen();
+        join_specimen();
+        pair_edges();
+        meter_ = std::make_unique<ductile::bullet::EnergyMeter>(*world_);
+    }
+
+    ~BulletScene() {
+        meter_.reset();
+        for (const Pair& pair : pairs_) dispatcher_->releaseManifold(pair.manifold);
+        for (auto& hinge : plastic_) hinge->remove_from(*world_);
+        for (auto& constraint : constraints_) world_->removeConstraint(constraint.get());
+        for (auto& body : bodies_) world_->removeRigidBody(body.get());
+    }
+    BulletScene(const BulletScene&) = delete;
+    BulletScene& operator=(const BulletScene&) = delete;
+
+    double step(double dt) {
+        using clock = std::chrono::steady_clock;
+        for (btHingeConstraint* motor : motors_) set_motor(*motor, dt);
+        for (btTypedConstraint* joint : breakable_) {
+            joint->setBreakingImpulseThreshold(scalar(s_.notched_moment() * dt));
+        }
+        world_->getSolverInfo().m_erp = scalar(drift_correction(dt));
+        meter_->before_step();
+        const auto start = clock::now();
+        collide(dt);
+        world_->stepSimulation(scalar(dt), 0);
+        const std::chrono::duration<double> wall = clock::now() - start;
+        meter_->after_step(dt);
+        return wall.count();
+    }
+
+    [[nodiscard]] ductile::SceneMotion<double> motion() {
+        ductile::SceneMotion<double> m;
+        m.thickness = s_.height;
+        m.plastic_rotation_rate = std::abs(rotation_rate());
+        const double gap = nose_tip().x() - front();
+        if (gap > 0) {
+            m.gap = gap;
+            m.closing_speed = std::max(nose_speed() + middle_speed(), 0.0);
+        }
+        return m;
+    }
+
+    [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
+    [[nodiscard]] double hammer_energy() const {
+        return kinetic(*hammer_) + s_.total_hammer_mass() * s_.gravity *
+                                       double(hammer_->getCenterOfMassPosition().y());
+    }
+    [[nodiscard]] double nose_speed() const {
+        const btVector3 arm = hammer_->getCenterOfMassTransform().getBasis() * nose_local_;
+        return -double(hammer_->getVelocityInLocalPoint(arm).x());
+    }
+    [[nodiscard]] double nose_travel() const { return s_.height - nose_tip().x(); }
+    [[nodiscard]] bool touching() const {
+        return std::any_of(pairs_.begin(), pairs_.end(),
+                           [this](const Pair& p) { return p.made && p.striker == hammer_; });
+    }
+    [[nodiscard]] double specimen_kinetic() const {
+        double sum = 0;
+        for (const btRigidBody* part : parts_) sum += kinetic(*part);
+        return sum;
+    }
+    [[nodiscard]] double joint_work() {
+        double sum = 0;
+        for (auto& hinge : plastic_) sum += hinge->absorbed_energy();
+        for (const btTypedConstraint* joint : engine_joints_) sum += meter_->taken_by(*joint);
+        return sum;
+    }
+    [[nodiscard]] double joint_travel() {
+        double sum = 0;
+        for (auto& hinge : plastic_) sum += hinge->plastic_rotation();
+        return plastic_.empty() ? std::abs(rotation()) : sum;
+    }
+    /// Angle between the outermost parts: the bend of the whole specimen [rad].
+    [[nodiscard]] double rotation() const {
+        const btMatrix3x3 relative = parts_.front()->getCenterOfMassTransform().getBasis().transposeTimes(
+            parts_.back()->getCenterOfMassTransform().getBasis());
+        return std::atan2(double(relative[0][2]), double(relative[0][0]));
+    }
+    [[nodiscard]] bool broken() {
+        for (auto& hinge : plastic_) {
+            if (hinge->broken()) return true;
+        }
+        for (const btTypedConstraint* joint : engine_joints_) {
+            if (!joint->isEnabled()) return true;
+        }
+        return false;
+    }
+    [[nodiscard]] double residual_max() {
+        double worst = 0;
+        for (auto& hinge : plastic_) worst = std::max(worst, hinge->residual_max());
+        return worst;
+    }
+
+  private:
+    /// One edge against one face, with the manifold that carries it.
+    struct Pair {
+        const btRigidBody* striker; ///< carries the edge
+        Edge edge;                  ///< in the striker's frame
+        const btRigidBody* part;
+        double side; ///< of the part's face
+        btPersistentManifold* manifold;
+        bool made = false;
+    };
+
+    static btScalar scalar(double value) { return btScalar(value); }
+    static btVector3 vector(double x, double y, double z) {
+        return {btScalar(x), btScalar(y), btScalar(z)};
+    }
+    static double kinetic(const btRigidBody& body) {
+        const auto v = ductile::bullet::to_core(body.getLinearVelocity());
+        const btVector3 turned = body.getAngularVelocity() * body.getCenterOfMassTransform().getBasis();
+        const auto w = ductile::bullet::to_core(turned);
+        const auto inertia = ductile::bullet::to_core(body.getLocalInertia());
+        return double(body.getMass()) * v.squaredNorm() / 2 + w.cwiseAbs2().dot(inertia) / 2;
+    }
+
+    void make_world(const std::string& solver) {
+        configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
+        dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
+        broadphase_ = std::make_unique<btDbvtBroadphase>();
+        if (solver == "mlcp") {
+            dantzig_ = std::make_unique<btDantzigSolver>();
+            solver_ = std::make_unique<btMLCPSolver>(dantzig_.get());
+        } else if (solver == "si") {
+            solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+        } else {
+            throw std::invalid_argument("--solver = " + solver +
+                                        ": must be mlcp or si with --engine bullet");
+        }
+        world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), broadphase_.get(),
+                                                           solver_.get(), configuration_.get());
+        world_->setGravity(vector(0, -s_.gravity, 0));
+        btContactSolverInfo& info = world_->getSolverInfo();
+        info.m_numIterations = s_.iterations;
+        info.m_splitImpulse = true;
+        info.m_splitImpulsePenetrationThreshold = scalar(1e30); // at any depth
+        info.m_globalCfm = scalar(1e-7); // as the ODE scene's contacts: 10 kN yield at 1 mm/s
+        // manifolds made by hand do not merge islands: one island for all
+        world_->getSimulationIslandManager()->setSplitIslands(false);
+    }
+
+    btRigidBody& add_body(btCollisionShape& shape, double mass, const btVector3& inertia,
+                          const btTransform& transform) {
+        btRigidBody::btRigidBodyConstructionInfo info(scalar(mass), nullptr, &shape, inertia);
+        info.m_startWorldTransform = transform;
+        btRigidBody& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
+        body.setActivationState(DISABLE_DEACTIVATION);
+        world_->addRigidBody(&body, 0, 0); // no collision but by edge_contact.hpp
+        return body;
+    }
+    btBoxShape& box(double x, double y, double z) {
+        shapes_.push_back(std::make_unique<btBoxShape>(vector(x / 2, y / 2, z / 2)));
+        return static_cast<btBoxShape&>(*shapes_.back());
+    }
+
+    void add_anvils() {
+        const double depth = s_.anvil_width;
+        for (const double side : {-1.0, 1.0}) {
+            const double z = side * (s_.anvil_gap + s_.anvil_width) / 2;
+            const btTransform at(btQuaternion::getIdentity(),
+                                 vector(-depth / 2, s_.specimen_bottom + s_.width / 2, z));
+            anvils_.push_back(&add_body(box(depth, 5 * s_.width, s_.anvil_width), 0,
+                                        vector(0, 0, 0), at));
+        }
+    }
+
+    void add_hammer() {
+        const double centre = s_.hammer_centre();
+        const double mass = s_.total_hammer_mass();
+        auto shape = std::make_unique<btCompoundShape>();
+        const auto part = [&](btBoxShape& child, double x, double y) {
+            shape->addChildShape(btTransform(btQuaternion::getIdentity(), vector(x, y + centre, 0)),
+                                 &child);
+        };
+        part(box(s_.hammer_width, s_.hammer_height, s_.hammer_thickness), 0, -s_.swing_radius);
+        part(box(s_.nose_length, s_.hammer_height, s_.nose_width),
+             -(s_.hammer_width + s_.nose_length) / 2, -s_.swing_radius);
+        const double about_centre = s_.hammer_inertia() - mass * centre * centre;
+        nose_local_ = vector(-s_.hammer_width / 2 - s_.nose_length, centre - s_.swing_radius, 0);
+
+        const btVector3 pivot = vector(s_.pivot_x(), s_.pivot_y(), 0);
+        const btQuaternion raised(vector(0, 0, 1), scalar(s_.start_angle));
+        const btTransform at(raised, pivot + quatRotate(raised, vector(0, -centre, 0)));
+        hammer_ = &add_body(*shape, mass, vector(about_centre, about_centre, about_centre), at);
+        shapes_.push_back(std::move(shape));
+        add_constraint(std::make_unique<btHingeConstraint>(*hammer_, vector(0, centre, 0),
+                                                           vector(0, 0, 1)));
+    }
+
+    void add_specimen() {
+        const int count = method_ == Method::rigid ? 1 : s_.parts;
+        const double length = s_.length / count;
+        const double mass = s_.specimen_mass() / count;
+        btBoxShape& shape = box(s_.height, s_.width, length);
+        part_half_ = Vector(s_.height, s_.width, length) / 2;
+        const double xx = s_.height * s_.height, yy = s_.width * s_.width, zz = length * length;
+        const btVector3 inertia = vector(yy + zz, xx + zz, xx + yy) * scalar(mass / 12);
+        for (int i = 0; i < count; ++i) {
+            const double z = -s_.length / 2 + (i + 0.5) * length;
+            const btTransform at(btQuaternion::getIdentity(),
+                                 vector(s_.height / 2, s_.specimen_bottom + s_.width / 2, z));
+            btRigidBody& part = add_body(shape, mass, inertia, at);
+            part.setGravity(vector(0, 0, 0));
+            parts_.push_back(&part);
+        }
+    }
+
+    /// Every edge may touch every part.
+    void pair_edges() {
+        const double reach = s_.hammer_height / 2;
+        for (const btRigidBody* part : parts_) {
+            for (const double side : {-1.0, 1.0}) {
+                const Vector nose = ductile::bullet::to_core(nose_local_) +
+                                    Vector(0, 0, side * s_.nose_width / 2);
+                pair(*hammer_, {nose - Vector(0, reach, 0), nose + Vector(0, reach, 0)}, *part, 1);
+            }
+            for (std::size_t i = 0; i < anvils_.size(); ++i) {
+                const double inner = (i == 0 ? 1 : -1) * s_.anvil_width / 2;
+                const Vector edge(s_.anvil_width / 2, 0, inner);
+                const Vector up(0, 2.5 * s_.width, 0);
+                pair(*anvils_[i], {edge - up, edge + up}, *part, -1);
+            }
+        }
+    }
+    void pair(const btRigidBody& striker, const Edge& edge, const btRigidBody& part, double side) {
+        pairs_.push_back({&striker, edge, &part, side,
+                          dispatcher_->getNewManifold(&striker, &part), false});
+    }
+
+    /// Fills the manifolds with this step's contact points; impulses carry over for warm starting.
+    void collide(double dt) {
+        const double closing = nose_speed() + middle_speed();
+        int count = 0;
+        for (Pair& pair : pairs_) {
+            const btTransform& striker = pair.striker->getCenterOfMassTransform();
+            const auto world = [&striker](const Vector& local) {
+                return Vector(ductile::bullet::to_core(striker * ductile::bullet::to_bullet(local)));
+            };
+            const btTransform& part = pair.part->getCenterOfMassTransform();
+            const EdgeContact contact =
+                touch({world(pair.edge.from), world(pair.edge.to)},
+                      {ductile::bullet::to_core(part.getOrigin()),
+                       ductile::bullet::to_core(part.getBasis()), part_half_, pair.side},
+                      reach(pair.made, s_.height, pair.striker == hammer_ ? closing : 0, dt));
+            pair.made = contact.count > 0;
+            std::array<btScalar, 2> impulse{};
+            for (int i = 0; i < std::min(contact.count, pair.manifold->getNumContacts()); ++i) {
+                impulse[std::size_t(i)] = pair.manifold->getContactPoint(i).m_appliedImpulse;
+            }
+            pair.manifold->clearManifold();
+            for (int i = 0; i < contact.count; ++i) {
+                const ContactPoint& point = contact.points[std::size_t(i)];
+                const btVector3 on_edge = ductile::bullet::to_bullet(point.position);
+                const btVector3 on_face =
+                    ductile::bullet::to_bullet(point.position - point.gap * point.normal);
+                // a direct solver's pivoting stalls where symmetric contacts reach their bound at
+                // once: no two are quite alike
+                const double unlike = 1e-6 * (1 + 0.37 * count++) * dt;
+                btManifoldPoint entry(striker.invXform(on_edge), part.invXform(on_face),
+                                      ductile::bullet::to_bullet(point.normal),
+                                      scalar(point.gap + unlike));
+                entry.m_positionWorldOnA = on_edge;
+                entry.m_positionWorldOnB = on_face;
+                entry.m_combinedFriction = scalar(s_.friction);
+                entry.m_combinedRestitution = scalar(s_.restitution);
+                entry.m_appliedImpulse = impulse[std::size_t(i)];
+                pair.manifold->addManifoldPoint(entry);
+            }
+        }
+    }
+
+    btTypedConstraint& add_constraint(std::unique_ptr<btTypedConstraint> constraint) {
+        world_->addConstraint(constraint.get(), true);
+        return *constraints_.emplace_back(std::move(constraint));
+    }
+
+    void join_specimen() {
+        const double half = s_.length / double(parts_.size()) / 2;
+        // z of the joint's frame along y, the axis of bending
+        const btQuaternion upright(vector(1, 0, 0), scalar(-SIMD_HALF_PI));
+        const btTransform in_a(upright, vector(0, 0, half));
+        const btTransform in_b(upright, vector(0, 0, -half));
+        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
+            const bool notched = i + 1 == parts_.size() / 2;
+            join(*parts_[i], *parts_[i + 1], in_a, in_b,
+                 notched ? s_.notched_moment() : s_.full_moment());
+        }
+    }
+
+    void join(btRigidBody& a, btRigidBody& b, const btTransform& in_a, const btTransform& in_b,
+              double moment) {
+        constexpr int bending = 5; // rotation about the frames' z
+        switch (method_) {
+            case Method::rigid: return;
+            case Method::plastic_hinge: {
+                ductile::OneAxisJoint<ductile::Perfect<double>> law(
+                    ductile::Perfect<double>({.strength = moment}),
+                    ductile::TravelLimit<double>({.limit = s_.max_plastic_rotation}));
+                plastic_.push_back(std::make_unique<Hinge>(a, b, in_a, in_b, std::move(law)));
+                plastic_.back()->add_to(*world_);
+                return;
+            }
+            case Method::zero_limits: {
+                auto joint = std::make_unique<btGeneric6DofConstraint>(a, b, in_a, in_b, true);
+                lock(*joint, -1);
+                breakable_.push_back(joint.get());
+                engine_joints_.push_back(&add_constraint(std::move(joint)));
+                return;
+            }
+            case Method::spring: {
+                auto joint = std::make_unique<btGeneric6DofSpringConstraint>(a, b, in_a, in_b, true);
+                lock(*joint, bending);
+                joint->enableSpring(bending, true);
+                joint->setStiffness(bending, scalar(moment)); // the seed's: M_p per radian
+                joint->setDamping(bending, 1);                // Bullet: 1 is no damping
+                joint->setEquilibriumPoint();
+                engine_joints_.push_back(&add_constraint(std::move(joint)));
+                return;
+            }
+            case Method::spring2: {
+                auto joint = std::make_unique<btGeneric6DofSpring2Constraint>(a, b, in_a, in_b);
+                for (int axis = 0; axis < 6; ++axis) {
+                    joint->setLimit(axis, axis == bending ? 1 : 0, 0); // lower > upper: free
+                }
+                joint->enableSpring(bending, true);
+                joint->setStiffness(bending, scalar(moment), true);
+                joint->setDamping(bending, 0, true);
+                joint->setEquilibriumPoint();
+                engine_joints_.push_back(&add_constraint(std::move(joint)));
+                return;
+            }
+            case Method::hinge_motor: {
+                auto joint = std::make_unique<btHingeConstraint>(a, b, in_a, in_b, true);
+                motors_.push_back(joint.get());
+                motor_moment_.push_back(moment);
+                engine_joints_.push_back(&add_constraint(std::move(joint)));
+                return;
+            }
+        }
+    }
+
+    /// Six axes locked, but for `free` (-1: none).
+    static void lock(btGeneric6DofConstraint& joint, int free) {
+        for (int axis = 0; axis < 6; ++axis) joint.setLimit(axis, axis == free ? 1 : 0, 0);
+    }
+
+    /// btHingeConstraint takes an impulse, so its strength has to follow the step.
+    void set_motor(btHingeConstraint& motor, double dt) {
+        const auto index = std::size_t(std::find(motors_.begin(), motors_.end(), &motor) -
+                                       motors_.begin());
+        motor.enableAngularMotor(true, 0, scalar(motor_moment_[index] * dt));
+    }
+
+    [[nodiscard]] btVector3 nose_tip() const { return hammer_->getCenterOfMassTransform() * nose_local_; }
+    /// x of the struck face at the middle of the specimen [m].
+    [[nodiscard]] double front() const {
+        return double(parts_[parts_.size() / 2]->getCenterOfMassPosition().x()) + s_.height / 2;
+    }
+    [[nodiscard]] double middle_speed() const {
+        return double(parts_[parts_.size() / 2]->getLinearVelocity().x());
+    }
+    /// Fastest relative turning of neighbouring parts [rad/s].
+    [[nodiscard]] double rotation_rate() const {
+        double fastest = 0;
+        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
+            const double rate = double(parts_[i + 1]->getAngularVelocity().y() -
+                                       parts_[i]->getAngularVelocity().y());
+            fastest = std::max(fastest, std::abs(rate));
+        }
+        return fastest;
+    }
+
+    Scenario s_;
+    Method method_;
+    std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
+    std::unique_ptr<btCollisionDispatcher> dispatcher_;
+    std::unique_ptr<btDbvtBroadphase> broadphase_;
+    std::unique_ptr<btMLCPSolverInterface> dantzig_;
+    std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
+    std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
+    std::vector<std::unique_ptr<Hinge>> plastic_;
+    std::unique_ptr<ductile::bullet::EnergyMeter> meter_;
+    std::vector<btHingeConstraint*> motors_;
+    std::vector<double> motor_moment_;
+    std::vector<btTypedConstraint*> breakable_;
+    std::vector<btTypedConstraint*> engine_joints_;
+    btRigidBody* hammer_ = nullptr;
+    std::vector<btRigidBody*> anvils_;
+    std::vector<btRigidBody*> parts_;
+    Vector part_half_{0, 0, 0};
+    std::vector<Pair> pairs_;
+    btVector3 nose_local_;
+};
+
+static_assert(Simulation<BulletScene>);
+
+} // namespace charpy

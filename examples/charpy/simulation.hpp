@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// What an engine's Charpy scene offers to the driver, and what one run leaves behind. One scene per
+// engine: bullet_scene.hpp, ode_scene.hpp.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ductile/detail/step_control.hpp"
+#include "ductile/energy.hpp"
+#include "scenario.hpp"
+
+namespace charpy {
+
+/// One engine's scene, built from (Scenario, Method, solver name). Methods the engine lacks make the
+/// constructor throw std::invalid_argument.
+template <class T>
+concept Simulation = requires(T simulation, const T constant, double dt) {
+    { T::engine } -> std::convertible_to<std::string_view>;
+    { T::precision } -> std::convertible_to<std::string_view>;
+    /// One step; returns the wall time of the engine's step and the joint's commit alone [s].
+    { simulation.step(dt) } -> std::same_as<double>;
+    { simulation.motion() } -> std::same_as<ductile::SceneMotion<double>>;
+    { constant.ledger() } -> std::same_as<const ductile::Ledger<double>&>;
+    { constant.hammer_energy() } -> std::same_as<double>;   ///< kinetic + potential [J]
+    { constant.nose_speed() } -> std::same_as<double>;      ///< towards the specimen [m/s]
+    { constant.nose_travel() } -> std::same_as<double>;     ///< past the front at rest [m]
+    { constant.touching() } -> std::same_as<bool>;           ///< the nose has reached the specimen
+    { constant.specimen_kinetic() } -> std::same_as<double>; ///< [J]
+    { simulation.joint_work() } -> std::same_as<double>; ///< taken by the specimen's joints [J]
+    { simulation.joint_travel() } -> std::same_as<double>; ///< plastic rotation, all joints [rad]
+    { constant.rotation() } -> std::same_as<double>;  ///< bend of the specimen's middle [rad]
+    { simulation.broken() } -> std::same_as<bool>;
+    { simulation.residual_max() } -> std::same_as<double>; ///< certificate [rad/s]
+};
+
+/// Share of a joint's position error that an engine removes in a step [-]: 0.2, the engines' own default,
+/// at steps of 1 ms and more, and in proportion to the step below. A fixed share would turn the drift
+/// left by a long step into a kick in a short one.
+[[nodiscard]] inline double drift_correction(double dt) { return std::min(0.2, dt / 5e-3); }
+
+/// The state once, for the history [s, J, J, J, J, J, m/s, rad].
+struct Sample {
+    double time = 0;
+    double dt = 0;
+    double hammer_energy = 0;
+    double plastic_work = 0;
+    double specimen_kinetic = 0;
+    double unexplained = 0;
+    double nose_speed = 0;
+    double rotation = 0;
+};
+
+struct Result {
+    std::string engine, solver, precision, method;
+    double dt = 0; ///< fixed step or, where adaptive, the longest allowed [s]
+    bool adaptive = false;
+    double friction = 0;
+    long steps = 0;
+    double wall = 0;             ///< of the engine's steps and commits [s]
+    double strike_time = 0;      ///< time of first contact [s]
+    double strike_speed = 0;     ///< of the nose before it [m/s]
+    double hammer_loss = 0;      ///< kinetic + potential, from first contact to the end [J]
+    double plastic_work = 0;     ///< for other methods: what the joint took from the bodies [J]
+    double plastic_rotation = 0; ///< [rad]
+    double rotation = 0;         ///< bend of the middle at the end [rad]
+    double specimen_kinetic = 0; ///< at the end [J]
+    double friction_work = 0;    ///< [J]
+    double contact_work = 0;     ///< normal contact forces [J]
+    double joints_work = 0;      ///< rigid rows and the hammer's pivot, since first contact [J]
+    double integration = 0;      ///< the engine's own drift, since first contact [J]
+    double unexplained = 0;      ///< over the whole run [J]
+    double passed_rotation = std::numeric_limits<double>::quiet_NaN(); ///< when the halves slip through
+    bool broken = false;
+    double residual_max = 0; ///< [rad/s]
+    std::vector<Sample> history;
+};
+
+} // namespace charpy
