@@ -37,8 +37,8 @@ struct BoxFace {
 };
 
 struct ContactPoint {
-    Vector position; ///< on the edge, world [m]
-    Vector normal;   ///< of the face, outwards, world
+    Vector position = Vector::Zero(); ///< on the edge, world [m]
+    Vector normal = Vector::Zero();   ///< of the face, outwards, world
     double gap = 0;  ///< from face to edge along the normal, negative where it penetrates [m]
 };
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+//
+// The command line, shared by the front and by the runner of each engine.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "scenario.hpp"
+
+namespace charpy {
+
+struct Options {
+    Scenario scenario;
+    std::string engine = "all";
+    std::string solver;               ///< empty: the engine's direct solver
+    std::string precision = "double";
+    std::string method = "all";
+    std::string adaptive;             ///< "on", "off" or empty: on unless --dt is given
+    std::string json, csv, plots;     ///< files and a folder; empty: none
+};
+
+inline void declare(CLI::App& app, Options& o) {
+    Scenario& s = o.scenario;
+    std::vector<std::string> methods{"all"};
+    for (const auto& [method, name] : method_names) methods.emplace_back(name);
+
+    const auto run = "What to run";
+    app.add_option("--engine", o.engine, "physics engine; all: every method on every engine")
+        ->check(CLI::IsMember({"all", "bullet", "ode"}))->capture_default_str()->group(run);
+    app.add_option("--solver", o.solver,
+                   "bullet: mlcp (direct) or si (iterative); ode: direct or quick (iterative)")
+        ->check(CLI::IsMember({"mlcp", "si", "direct", "quick"}))->group(run);
+    app.add_option("--precision", o.precision, "scalar of the engine; ode is built for double")
+        ->check(CLI::IsMember({"float", "double"}))->capture_default_str()->group(run);
+    app.add_option("--method", o.method, "joint in the specimen's middle")
+        ->check(CLI::IsMember(methods))->capture_default_str()->group(run);
+    app.add_option("--json", o.json, "write the results to this file")->group(run);
+    app.add_option("--csv", o.csv, "write the histories to this file")->group(run);
+    app.add_option("--plots", o.plots, "draw the plots into this folder")->group(run);
+
+    const auto time = "Time";
+    app.add_option("--dt", s.dt, "fixed step, or the longest one where adaptive [s]")
+        ->capture_default_str()->group(time);
+    app.add_option("--adaptive", o.adaptive, "on or off; default: on, off where --dt is given")
+        ->check(CLI::IsMember({"on", "off"}))->group(time);
+
+    const auto material = "Specimen";
+    app.add_option("--yield-stress", s.yield_stress, "[Pa]")->capture_default_str()->group(material);
+    app.add_option("--max-plastic-rotation", s.max_plastic_rotation,
+                   "the hinge breaks there [rad]; inf: never")->capture_default_str()->group(material);
+    app.add_option("--parts", s.parts, "equal bodies the specimen is made of, even")
+        ->capture_default_str()->group(material);
+    app.add_option("--length", s.length, "[m]")->capture_default_str()->group(material);
+    app.add_option("--width", s.width, "vertical [m]")->capture_default_str()->group(material);
+    app.add_option("--height", s.height, "along the blow [m]")->capture_default_str()->group(material);
+    app.add_option("--notch", s.notch, "depth of the notch [m]")->capture_default_str()->group(material);
+    app.add_option("--density", s.density, "[kg/m^3]")->capture_default_str()->group(material);
+    app.add_option("--youngs-modulus", s.youngs_modulus, "[Pa]")
+        ->capture_default_str()->group(material);
+
+    const auto machine = "Anvils and hammer";
+    app.add_option("--anvil-gap", s.anvil_gap, "open space between the anvils [m]")
+        ->capture_default_str()->group(machine);
+    app.add_option("--anvil-width", s.anvil_width, "[m]")->capture_default_str()->group(machine);
+    app.add_option("--hammer-mass", s.hammer_mass, "[kg]")->capture_default_str()->group(machine);
+    app.add_option("--hammer-width", s.hammer_width, "along the blow [m]")
+        ->capture_default_str()->group(machine);
+    app.add_option("--hammer-height", s.hammer_height, "[m]")->capture_default_str()->group(machine);
+    app.add_option("--hammer-thickness", s.hammer_thickness, "along the specimen [m]")
+        ->capture_default_str()->group(machine);
+    app.add_option("--nose-length", s.nose_length, "draft in front of the hammer [m]")
+        ->capture_default_str()->group(machine);
+    app.add_option("--nose-width", s.nose_width, "flat of the nose, along the specimen [m]")
+        ->capture_default_str()->group(machine);
+    app.add_option("--arm-mass", s.arm_mass, "[kg]")->capture_default_str()->group(machine);
+    app.add_option("--arm-length", s.arm_length, "[m]")->capture_default_str()->group(machine);
+    app.add_option("--arm-width", s.arm_width, "[m]")->capture_default_str()->group(machine);
+    app.add_option("--start-angle", s.start_angle, "of the pendulum from its lowest position [rad]")
+        ->capture_default_str()->group(machine);
+
+    const auto world = "World";
+    app.add_option("--friction", s.friction, "Coulomb coefficient of every contact [-]")
+        ->capture_default_str()->group(world);
+    app.add_option("--restitution", s.restitution, "of every contact [-]")
+        ->capture_default_str()->group(world);
+    app.add_option("--gravity", s.gravity, "[m/s^2]")->capture_default_str()->group(world);
+    app.add_option("--iterations", s.iterations, "of the iterative solvers")
+        ->capture_default_str()->group(world);
+}
+
+/// To be called after parsing. @throws std::invalid_argument where an option does not make sense.
+inline void finish(const CLI::App& app, Options& o) {
+    o.scenario.adaptive = o.adaptive.empty() ? app.count("--dt") == 0 : o.adaptive == "on";
+    if (o.engine == "ode" && o.precision == "float") {
+        throw std::invalid_argument("--precision = float: must be double with --engine ode");
+    }
+    o.scenario.check();
+}
+
+/// What went wrong as one line.
+inline std::string one_line(const CLI::ParseError& error) {
+    std::string text = error.what();
+    for (char& c : text) {
+        if (c == '\n') c = ' ';
+    }
+    return text;
+}
+
+} // namespace charpy

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+//
+// A run's result as JSON, as a line of the history file and as a row of the printed table.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "reference.hpp"
+#include "simulation.hpp"
+
+namespace charpy {
+
+/// Units are in the keys; residual_max is in rad/s.
+[[nodiscard]] inline nlohmann::ordered_json to_json(const Result& r) {
+    return {{"engine", r.engine},
+            {"solver", r.solver},
+            {"precision", r.precision},
+            {"method", r.method},
+            {"dt_s", r.dt},
+            {"adaptive", r.adaptive},
+            {"friction", r.friction},
+            {"steps", r.steps},
+            {"wall_s", r.wall},
+            {"strike_time_s", r.strike_time},
+            {"strike_speed_m_per_s", r.strike_speed},
+            {"hammer_loss_J", r.hammer_loss},
+            {"plastic_work_J", r.plastic_work},
+            {"plastic_rotation_rad", r.plastic_rotation},
+            {"rotation_rad", r.rotation},
+            {"specimen_kinetic_J", r.specimen_kinetic},
+            {"friction_work_J", r.friction_work},
+            {"contact_work_J", r.contact_work},
+            {"joints_work_J", r.joints_work},
+            {"integration_J", r.integration},
+            {"unexplained_J", r.unexplained},
+            {"broken", r.broken},
+            {"residual_max", r.residual_max}};
+}
+
+/// History columns: time, step, hammer energy, plastic work, specimen energy, unexplained, nose
+/// speed, rotation.
+[[nodiscard]] inline nlohmann::json history_to_json(const Result& r) {
+    auto rows = nlohmann::json::array();
+    for (const Sample& s : r.history) {
+        rows.push_back({s.time - r.strike_time, s.dt, s.hammer_energy, s.plastic_work,
+                        s.specimen_kinetic, s.unexplained, s.nose_speed, s.rotation});
+    }
+    return rows;
+}
+inline constexpr std::string_view history_header =
+    "engine,solver,precision,method,dt_s,adaptive,friction,time_after_strike_s,step_s,"
+    "hammer_energy_J,plastic_work_J,specimen_kinetic_J,unexplained_J,nose_speed_m_per_s,rotation_rad";
+
+/// One or two words on what a run shows, measured against the mechanics.
+[[nodiscard]] inline std::string verdict(const nlohmann::ordered_json& r, const Reference& expected) {
+    const auto number = [&r](const char* key) {
+        return r.at(key).is_number() ? r.at(key).get<double>() : NAN;
+    };
+    const double loss = number("hammer_loss_J");
+    const double work = number("plastic_work_J");
+    const double kinetic = number("specimen_kinetic_J");
+    if (!std::isfinite(loss) || std::abs(number("unexplained_J")) > 1 ||
+        kinetic > 0.1 * expected.plastic_work) {
+        return "unstable";
+    }
+    if (r.at("method") == "rigid") return "stops the hammer, as it must";
+    if (work < -0.01 * expected.plastic_work) return "joint adds energy";
+    if (r.at("broken").get<bool>() && work < 0.05 * expected.plastic_work) return "breaks brittle";
+    const double error = work / expected.plastic_work - 1;
+    std::string text = std::abs(error) <= 0.01 ? fmt::format("right ({:+.2f} %)", 100 * error)
+                                               : fmt::format("off ({:+.1f} %)", 100 * error);
+    if (number("residual_max") > 1) text += ", solver not converged";
+    return text;
+}
+
+inline constexpr std::string_view table_rule =
+    "------------------------------------------------------------------------------------------------"
+    "-----------------------------------------------";
+
+[[nodiscard]] inline std::string table_header() {
+    return fmt::format("{:<7}{:<8}{:<8}{:<14}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}  {}\n{}\n",
+                       "engine", "solver", "scalar", "method", "hammer", "plastic", "rotation",
+                       "halves", "friction", "contact", "unexplained", "steps", "time", "verdict",
+                       table_rule) +
+           fmt::format("{:<37}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}\n", "", "loss J",
+                       "work J", "rad", "J", "J", "J", "J", "", "ms");
+}
+
+[[nodiscard]] inline std::string table_row(const nlohmann::ordered_json& r,
+                                           const Reference& expected) {
+    const auto number = [&r](const char* key) {
+        return r.at(key).is_number() ? r.at(key).get<double>() : NAN;
+    };
+    return fmt::format(
+        "{:<7}{:<8}{:<8}{:<14}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.3f}{:>9.2f}{:>9.2f}{:>12.1e}{:>7}{:>9.1f}  "
+        "{}\n",
+        r.at("engine").get<std::string>(), r.at("solver").get<std::string>(),
+        r.at("precision").get<std::string>(), r.at("method").get<std::string>(),
+        number("hammer_loss_J"), number("plastic_work_J"), number("plastic_rotation_rad"),
+        number("specimen_kinetic_J"), number("friction_work_J"), number("contact_work_J"),
+        number("unexplained_J"), r.at("steps").get<long>(), 1e3 * number("wall_s"),
+        verdict(r, expected));
+}
+
+} // namespace charpy
