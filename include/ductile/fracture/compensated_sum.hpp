@@ -4,8 +4,9 @@
 // long time: in float, 10⁶ cycles of damage 10⁻⁶ each would otherwise be a few percent off, and
 // increments below half a unit in the last place would vanish, so that a part would never break.
 //
-// Source: Neumaier (1974), Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen,
-// ZAMM 54, 39-51, doi:10.1002/zamm.19740540106. Error ~2ε|Σx| instead of nε Σ|x|.
+// Source: Kahan (1965), Further remarks on reducing truncation errors, Commun. ACM 8, 40,
+// doi:10.1145/363707.363723, with Knuth's two-sum, so that an increment may exceed the sum. Relative
+// error of a sum of positive terms: about 2ε, whatever their number (naively: that number × ε).
 #pragma once
 
 #include <cmath>
@@ -18,20 +19,16 @@ namespace ductile {
 template <std::floating_point S>
 struct CompensatedSum {
     S sum = 0;
-    S carry = 0; ///< what round-off dropped from `sum`
+    S carry = 0; ///< what round-off dropped from `sum`, below half a unit in its last place
 
     void add(S x) noexcept {
-        const S total = sum + x;
-        if (!std::isfinite(total)) {
-            carry = 0;
-        } else if (std::abs(sum) >= std::abs(x)) {
-            carry += (sum - total) + x;
-        } else {
-            carry += (x - total) + sum;
-        }
+        const S step = x + carry;
+        const S total = sum + step;
+        const S taken = total - sum;
+        carry = std::isfinite(total) ? (sum - (total - taken)) + (step - taken) : S(0);
         sum = total;
     }
-    [[nodiscard]] S value() const noexcept { return sum + carry; }
+    [[nodiscard]] S value() const noexcept { return sum; }
 
     bool operator==(const CompensatedSum&) const = default;
 };

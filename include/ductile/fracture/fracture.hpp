@@ -57,7 +57,7 @@ struct PlasticIncrement {
 /// Says before a step what a row may still do. None of these change the state.
 ///   remaining        plastic travel that may still do work at this strength [N | N m], flowing towards
 ///                    the sign of `direction` (0: not known, the smaller answer); infinity: no limit
-///                    in sight; 0: broken [m | rad]
+///                    in sight; 0 where broken, and only there [m | rad]
 ///   force_cap        largest magnitude of a force of this sign (0: the smaller); infinity: none
 ///   strength_factor  what the strength is multiplied by after `ahead` more travel, in [0, 1]
 template <class T>

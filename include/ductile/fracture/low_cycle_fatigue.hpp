@@ -99,24 +99,29 @@ class LowCycleFatigue : public WithoutForceCap<typename Life::Scalar>,
         if (state.rainflow.turns(increment.plastic)) turn(state);
         state.broken = step >= onward(state) * (1 - exhausted_share<S>);
         if (state.broken) return;
-        const bool closes = step >= state.rainflow.to_closure();
-        if (closes) state.floor = damage(state);
+        const std::size_t depth = state.rainflow.depth();
+        const S range = state.rainflow.running();
         state.rainflow.add(increment.plastic, settle_into(state));
-        if (closes) refresh(state);
+        if (state.rainflow.depth() == depth) return;
+        state.floor = damage_at(state, range);
+        refresh(state);
     }
 
     [[nodiscard]] bool broken(const State& state) const noexcept { return state.broken; }
     /// D, below 1 until the break.
     [[nodiscard]] S damage(const State& state) const noexcept {
-        if (state.broken) return 1;
-        const S now = state.base + half_cycle_damage(state.rainflow.running());
-        return std::min(std::max(now, state.floor), 1 - std::numeric_limits<S>::epsilon());
+        return state.broken ? S(1) : damage_at(state, state.rainflow.running());
     }
     [[nodiscard]] CriterionKind governing(const State&) const noexcept {
         return CriterionKind::low_cycle_fatigue;
     }
 
   private:
+    S damage_at(const State& state, S running) const noexcept {
+        const S damage = std::max(state.base + half_cycle_damage(running), state.floor);
+        return std::min(damage, 1 - std::numeric_limits<S>::epsilon());
+    }
+
     auto settle_into(State& state) const noexcept {
         return [this, &state](S range, S cycles) noexcept {
             state.settled.add(2 * cycles * half_cycle_damage(range));
@@ -139,9 +144,11 @@ class LowCycleFatigue : public WithoutForceCap<typename Life::Scalar>,
         state.reach = 2 * life_.amplitude(1 / left) / strain_per_travel_ / first_range_;
     }
 
-    /// Travel left before D = 1 within the running half cycle, were no loop to close.
+    /// Travel left before D = 1 within the running half cycle, were no loop to close. Never quite zero: a
+    /// turn at a full stack may use up what was left, and a row must flow to break.
     S within(const State& state) const noexcept {
-        return std::max(state.reach * first_range_ - state.rainflow.running(), S(0));
+        return std::max(state.reach * first_range_ - state.rainflow.running(),
+                        exhausted_share<S> * first_range_);
     }
 
     /// Travel left before D = 1 in the present direction.

@@ -19,11 +19,16 @@
 //
 // Only ranges are kept, not positions, so a ratcheting mean costs no digits.
 //
-// Full stack. A turn that finds no room is counted as if x had gone on to the level of b and back before
-// it turned: y is settled as a whole cycle and the new running range starts at y - r. The count is then
-// that of a history with this excursion added, so for every function that increases with the range
-// it never falls below the true count; the excess is at most one cycle of y less one of r, and y, r
-// are the two smallest open ranges. 16 open ranges are more than a random history of 10⁵ turns needs.
+// Full stack. A turn that finds no room first takes two neighbouring open ranges y > r that differ least,
+// and counts as if the history had gone on from the end of r to the level where y began, and back:
+//
+//   y, r, s  ->  one whole cycle of y is settled, and y - r + s stays open
+//
+// This is the exact count of a history with that excursion added, so for every function that increases
+// with the range it never falls below the true count. Where the history later closes the loop of r, the
+// excess stays at one cycle of y less one of r; before that it is smaller. 16 open ranges hold a random
+// walk of 10⁵ turns; white noise of that length asks for about 2 ln 10⁵ = 23, and 16 count the sum of
+// range^1.67 about 0.05 % too high.
 //
 // Source: ASTM E1049-85, section 5.4.4 (rainflow) — same ranges and counts, the stack is the form of
 // Downing & Socie (1982), Simple rainflow counting algorithms, Int. J. Fatigue 4, 31-40,
@@ -44,7 +49,8 @@
 namespace ductile {
 
 /// Plain value. `Settle` is called as settle(range, cycles) for what will not change any more.
-/// Amortised O(1) per increment, no allocation.
+/// Amortised O(1) per
+/// increment, O(Capacity) for a turn at a full stack; no allocation.
 template <std::floating_point S, std::size_t Capacity = 16>
 class Rainflow {
     static_assert(Capacity >= 2);
@@ -73,15 +79,9 @@ class Rainflow {
     void turn(Settle&& settle) noexcept {
         if (direction_ == 0) return;
         direction_ = std::int8_t(-direction_);
-        if (depth_ == Capacity) {
-            const S back = top() - running();
-            settle(top(), S(1));
-            clear(1);
-            running_ = {.sum = back};
-        } else {
-            range_[depth_++] = running();
-            running_ = {};
-        }
+        if (depth_ == Capacity && make_room(settle)) return;
+        range_[depth_++] = running();
+        running_ = {};
     }
 
     /// Increment in the present direction that closes the next loop; infinity where none is open.
@@ -124,6 +124,38 @@ class Rainflow {
             clear(1);
         }
     }
+    /// Merges three half cycles of a full stack into one. True where the last of the three is the one
+    /// that now begins, so that the turn needs no room any more.
+    template <class Settle>
+    bool make_room(Settle& settle) noexcept {
+        std::size_t k = 1;
+        S least = std::numeric_limits<S>::infinity();
+        for (std::size_t i = 1; i < depth_; ++i) {
+            const S difference = range_[i] - half_cycle(i + 1);
+            if (difference < least) {
+                least = difference;
+                k = i;
+            }
+        }
+        settle(range_[k], S(1));
+        if (k + 1 == depth_) {
+            running_ = {.sum = least};
+            clear(1);
+            return true;
+        }
+        const S merged = range_[k] - (range_[k + 1] - half_cycle(k + 2));
+        if (k + 2 == depth_) {
+            running_ = {.sum = merged};
+        } else {
+            range_[k] = merged;
+            for (std::size_t i = k + 3; i < depth_; ++i) range_[i - 2] = range_[i];
+        }
+        clear(2);
+        return false;
+    }
+    /// The open ranges from the oldest, and the running one as the last.
+    S half_cycle(std::size_t i) const noexcept { return i < depth_ ? range_[i] : running(); }
+
     /// Popped entries are zeroed so that equal histories are equal values.
     void clear(std::uint8_t count) noexcept {
         for (; count > 0; --count) range_[--depth_] = 0;

@@ -88,7 +88,7 @@ TEMPLATE_TEST_CASE("damage lies in [0, 1], never decreases and is never NaN over
             const S left = criterion.remaining(row.state, S(40), S(i % 3 - 1));
             sane = sane && damage >= 0 && damage <= 1 && left >= 0 &&
                    criterion.broken(row.state) == (damage == 1) &&
-                   (left == 0 || !criterion.broken(row.state));
+                   (left == 0) == criterion.broken(row.state);
             monotone = monotone && damage >= before;
             stays_broken = stays_broken && (!was_broken || criterion.broken(row.state));
             before = damage;

@@ -24,8 +24,8 @@ TEMPLATE_TEST_CASE("a travel limit leaves what has not been used", "[fracture]",
     CHECK(limit.remaining(TestType(2)) == 0);
     CHECK(limit.remaining({.travel = TestType(0.6)}, 40) == limit.remaining(TestType(0.6)));
     CHECK(limit.damage({.travel = TestType(0.4)}) == Approx(0.25));
-    CHECK(limit.force_cap({}) == infinity<TestType>);
-    CHECK(limit.strength_factor({}) == 1);
+    CHECK(limit.force_cap(typename TravelLimit<TestType>::State{}) == infinity<TestType>);
+    CHECK(limit.strength_factor(typename TravelLimit<TestType>::State{}) == 1);
     const TravelLimit<TestType> none;
     CHECK(none.remaining(TestType(1e30)) == infinity<TestType>);
     CHECK(none.damage({.travel = TestType(1e30)}) == 0);
@@ -123,7 +123,7 @@ TEST_CASE("softening runs straight between given pairs", "[fracture]") {
 }
 
 TEST_CASE("limits name the parameter that is missing or out of range", "[fracture]") {
-    CHECK(message_of([] { TravelLimit<double>({}); }) ==
+    CHECK(message_of([] { TravelLimit<double>(TravelLimitParameters<double>{}); }) ==
           "TravelLimit.limit = nan m or rad: must be > 0 (infinity: no limit)");
     CHECK(message_of([] { EnergyLimit<double>({}); }) ==
           "EnergyLimit.limit = nan J: must be > 0 (infinity: no limit)");
