@@ -7,9 +7,9 @@
 //   strength_factor  the smallest: the weakest governs, damages do not multiply
 //   damage           the largest
 //
-// A step that overshoots several limits at once is the fault of the member with the least travel left
-// before it; among equals, of the one named first. A member that limits no flow broke by its force, and
-// comes before those.
+// A step that overshoots several limits at once is the fault of the member with the least travel
+// left before it; among equals, of the one named first. A member that limits no flow broke by its
+// force, and comes before those.
 #pragma once
 
 #include <algorithm>
@@ -53,8 +53,8 @@ template <std::size_t I, class Pack>
 
 } // namespace detail
 
-/// Immutable value; after construction all members are noexcept and allocate nothing. Itself a criterion,
-/// so it nests.
+/// Immutable value; after construction all members are noexcept and allocate nothing. Itself a
+/// criterion, so it nests.
 template <FractureCriterion First, FractureCriterion... Rest>
     requires(std::same_as<typename First::Scalar, typename Rest::Scalar> && ...)
 class AnyOf {

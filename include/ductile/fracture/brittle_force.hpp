@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// Break without plastic flow: a weld, a bond line or a brittle material snaps when its force or moment
-// reaches a limit. The limit is a cap on the force, so the row is asked for no more than it, at any
-// step; a joint whose strength lies below the cap flows first and never gets there.
+// Break without plastic flow: a weld, a bond line or a brittle material snaps when its force or
+// moment reaches a limit. The limit is a cap on the force, so the row is asked for no more than it,
+// at any step; a joint whose strength lies below the cap flows first and never gets there.
 //
 // Limit cases: cap → ∞ never breaks; cap → 0 breaks at the first force of the right sign.
 //
-// The force of a rigid row under impact is impulse / dt, so where the load is a blow and not a force,
-// the break of a rigid brittle joint depends on dt; a stiffness or an energy limit cures that.
+// The force of a rigid row under impact is impulse / dt, so where the load is a blow and not a
+// force, the break of a rigid brittle joint depends on dt; a stiffness or an energy limit cures
+// that.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +21,9 @@
 
 namespace ductile {
 
-/// Sign of the row's force that can break it. The force is that on the row: a bar in tension pulls its
-/// ends together, which is a negative force where the row's velocity is positive for separation.
+/// Sign of the row's force that can break it. The force is that on the row: a bar in tension pulls
+/// its ends together, which is a negative force where the row's velocity is positive for
+/// separation.
 enum class BreakingSign : signed char { negative = -1, either = 0, positive = 1 };
 
 template <std::floating_point S>

@@ -10,8 +10,9 @@
 //   c     fatigue ductility exponent, about -0.5 … -0.7  [-]
 //   2N_f  reversals to failure, two per cycle            [-]
 //
-// Source: Coffin (1954), A study of the effects of cyclic thermal stresses on a ductile metal, Trans. ASME
-// 76, 931-950; Manson (1953), Behavior of materials under conditions of thermal stress, NACA TN 2933.
+// Source: Coffin (1954), A study of the effects of cyclic thermal stresses on a ductile metal,
+// Trans. ASME 76, 931-950; Manson (1953), Behavior of materials under conditions of thermal stress,
+// NACA TN 2933.
 #pragma once
 
 #include <cmath>

@@ -5,8 +5,9 @@
 // increments below half a unit in the last place would vanish, so that a part would never break.
 //
 // Source: Kahan (1965), Further remarks on reducing truncation errors, Commun. ACM 8, 40,
-// doi:10.1145/363707.363723, with Knuth's two-sum, so that an increment may exceed the sum. Relative
-// error of a sum of positive terms: about 2ε, whatever their number (naively: that number × ε).
+// doi:10.1145/363707.363723, with Knuth's two-sum, so that an increment may exceed the sum.
+// Relative error of a sum of positive terms: about 2ε, whatever their number (naively: that number
+// × ε).
 #pragma once
 
 #include <cmath>

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// What every fracture criterion offers: when a joint breaks. A criterion is an immutable value with the
-// limits; what it remembers of the past is its State, a plain value that the joint owns, so that it can
-// be copied, compared, saved and restored. Criteria know nothing of joints.
+// What every fracture criterion offers: when a joint breaks. A criterion is an immutable value with
+// the limits; what it remembers is its State, a plain value that the joint owns, so that it can be
+// copied, compared, saved and restored. Criteria know nothing of joints.
 //
 // How a joint uses one, per step:
 //
 //   before   R = law(p + |u| dt/2) × strength_factor(state, |u| dt/2)
 //            bounds: min(R, force_cap(state, ±1)) on the side of that sign
 //            left = remaining(state, R, sign of u): where the step would flow further, only `left`
-//            may do work, so the joint takes R × left and breaks at the right energy inside the step
+//            may do work, so the joint absorbs R × left and breaks inside the step
 //   after    update(state, increment), the increment clipped to `left`; an increment that uses up
 //            what `remaining` said breaks the criterion; then broken(state) and governing(state)
 //
-// Load below yield never consumes life: an increment without plastic flow leaves the state as it was,
-// bit for bit, except that a brittle criterion breaks where the force reaches its cap.
+// Load below yield never consumes life: an increment without plastic flow leaves the state as it
+// was, bit for bit, except that a brittle criterion breaks where the force reaches its cap.
 #pragma once
 
 #include <array>
@@ -55,9 +55,9 @@ struct PlasticIncrement {
 };
 
 /// Says before a step what a row may still do. None of these change the state.
-///   remaining        plastic travel that may still do work at this strength [N | N m], flowing towards
-///                    the sign of `direction` (0: not known, the smaller answer); infinity: no limit
-///                    in sight; 0 where broken, and only there [m | rad]
+///   remaining        plastic travel that may still do work at this strength [N | N m], flowing
+///                    towards the sign of `direction` (0: not known, the smaller answer); infinity:
+///                    no limit in sight; 0 where broken, and only there [m | rad]
 ///   force_cap        largest magnitude of a force of this sign (0: the smaller); infinity: none
 ///   strength_factor  what the strength is multiplied by after `ahead` more travel, in [0, 1]
 template <class T>
@@ -105,8 +105,8 @@ struct WithoutSoftening {
     }
 };
 
-/// Less life than this share of what was left counts as used up; covers the round-off of a joint that
-/// turns `remaining` into work and back.
+/// Less life than this share counts as used up; covers the round-off of a joint that turns
+/// `remaining` into work and back.
 template <std::floating_point S>
 inline constexpr S exhausted_share = 16 * std::numeric_limits<S>::epsilon();
 

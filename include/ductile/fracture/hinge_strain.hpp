@@ -11,9 +11,9 @@
 //   L_p  length over which the rotation is spread, about h/2 to h          [m]
 //   l    length that elongates plastically                                 [m]
 //
-// Source: hinge length as in Priestley, Seible & Calvi (1996), Seismic Design and Retrofit of Bridges,
-// section 5.3.2; strain by Bernoulli's hypothesis (plane sections). L_p is an assumption, and the fatigue
-// life goes with its power 1/|c|, about 1.67: state it with every life.
+// Source: equivalent hinge length as in Priestley, Seible & Calvi (1996), Seismic Design and
+// Retrofit of Bridges; strain by Bernoulli's hypothesis (plane sections). L_p is an assumption, and
+// the fatigue life goes with its power 1/|c|, about 1.67: state it with every life.
 #pragma once
 
 #include <concepts>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What every strain-life curve offers: the number of reversals to failure at a constant strain amplitude,
-// and its inverse.
+// What every strain-life curve offers: the number of reversals to failure at a constant strain
+// amplitude, and its inverse.
 #pragma once
 
 #include <concepts>

@@ -5,11 +5,11 @@
 //
 //   D = Σ settled + Σ open + running,   each half cycle adding h(range) = 1 / 2N_f(k range / 2)
 //
-// The half cycle that is running counts with the range it has so far, so D is a continuous function of the
-// path, a monotonic overload consumes life too (from rest it breaks at the range 2ε_f'/k, that is
-// amplitude ε_f' with a life of one reversal), and the break falls inside a step: the range at which D
-// reaches 1 is h⁻¹(1 - Σ settled - Σ open), closed form, and one such equation per loop that closes on
-// the way there.
+// The half cycle that is running counts with the range it has so far, so D is a continuous function
+// of the path, a monotonic overload consumes life too (from rest it breaks at the range 2ε_f'/k,
+// that is amplitude ε_f' with a life of one reversal), and the break falls inside a step: the range
+// at which D reaches 1 is h⁻¹(1 - Σ settled - Σ open), closed form, and one such equation per loop
+// that closes on the way there.
 //
 // Load below yield gives no plastic increment and consumes nothing. Constant amplitude: breaks in
 // reversal ⌈2N_f⌉.
@@ -20,8 +20,8 @@
 //   range   between two turning points                       [rad | m]
 //   D       damage, 1 at the break                           [-]
 //
-// Source: Miner (1945), Cumulative damage in fatigue, J. Appl. Mech. 12, A159-A164; counting: rainflow.hpp;
-// the running half cycle and its `remaining` derived here.
+// Source: Miner (1945), Cumulative damage in fatigue, J. Appl. Mech. 12, A159-A164; counting:
+// rainflow.hpp; the running half cycle and its `remaining` derived here.
 #pragma once
 
 #include <algorithm>
@@ -144,8 +144,8 @@ class LowCycleFatigue : public WithoutForceCap<typename Life::Scalar>,
         state.reach = 2 * life_.amplitude(1 / left) / strain_per_travel_ / first_range_;
     }
 
-    /// Travel left before D = 1 within the running half cycle, were no loop to close. Never quite zero: a
-    /// turn at a full stack may use up what was left, and a row must flow to break.
+    /// Travel left before D = 1 within the running half cycle, were no loop to close. Never quite
+    /// zero: a turn at a full stack may use up what was left, and a row must flow to break.
     S within(const State& state) const noexcept {
         return std::max(state.reach * first_range_ - state.rainflow.running(),
                         exhausted_share<S> * first_range_);

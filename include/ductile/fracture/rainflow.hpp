@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Rainflow counting as a stream: finds the closed hysteresis loops in a history of increments, with a
-// stack of fixed size and no look at the past.
+// Rainflow counting as a stream: finds the closed hysteresis loops in a history of increments, with
+// a stack of fixed size and no look at the past.
 //
 // A half cycle is the range between two neighbouring turning points. The history lies before us as
 // settled cycles, a stack of open half cycles with strictly decreasing ranges, and the running one:
@@ -9,28 +9,29 @@
 //   a ──z── b ──y── c ──r── x        z > y on the stack, r running from c to the present x
 //
 // When r reaches y,
-//   - the loop b-c closes: y is settled as one cycle, and the running half cycle goes on from a, its
-//     range being z - y + r, as if the small loop had never been (memory);
-//   - with no z below, y holds the start of the history: it is settled as half a cycle, and the stack is
-//     empty.
-// The rest, half a cycle per open range and one for the running range, is the residue. Since it is carried
-// along, any sum of an increasing function of range over all of them is continuous in the path and
-// never decreases, and depends neither on how the increments are split nor on their sign as a whole.
+//   - the loop b-c closes: y is settled as one cycle, and the running half cycle goes on from a,
+//     its range being z - y + r, as if the small loop had never been (memory);
+//   - with no z below, y holds the start of the history: it is settled as half a cycle, and the
+//     stack is empty.
+// The rest, half a cycle per open range and one for the running range, is the residue. Since it is
+// carried along, any sum of an increasing function of range over all of them is continuous in the
+// path and never decreases, and depends neither on how the increments are split nor on their sign
+// as a whole.
 //
 // Only ranges are kept, not positions, so a ratcheting mean costs no digits.
 //
-// Full stack. A turn that finds no room first takes two neighbouring open ranges y > r that differ least,
-// and counts as if the history had gone on from the end of r to the level where y began, and back:
+// Full stack. A turn that finds no room first takes two neighbouring open ranges y > r that differ
+// least, and counts as if the history had gone on from the end of r to the level where y began, and
+// back, before the half cycle s that follows:
 //
 //   y, r, s  ->  one whole cycle of y is settled, and y - r + s stays open
 //
-// This is the exact count of a history with that excursion added, so for every function that increases
-// with the range it never falls below the true count. Where the history later closes the loop of r, the
-// excess stays at one cycle of y less one of r; before that it is smaller. 16 open ranges hold a random
-// walk of 10⁵ turns; white noise of that length asks for about 2 ln 10⁵ = 23, and 16 count the sum of
-// range^1.67 about 0.05 % too high.
+// This is the exact count of a history with that excursion added, so for every function that
+// increases with the range it never falls below the true count. Where that function is convex, the
+// excess of one such turn is at most one cycle of y less one of r. 16 open ranges hold a random walk of 10⁵ turns; white noise of that
+// length asks for about 2 ln 10⁵ = 23, and 16 count the sum of range^1.67 about 0.05 % too high.
 //
-// Source: ASTM E1049-85, section 5.4.4 (rainflow) — same ranges and counts, the stack is the form of
+// Source: ASTM E1049-85, section 5.4.4 (rainflow): same ranges and counts; as a stack after
 // Downing & Socie (1982), Simple rainflow counting algorithms, Int. J. Fatigue 4, 31-40,
 // doi:10.1016/0142-1123(82)90018-4. Full stack derived here.
 //
@@ -70,11 +71,10 @@ class Rainflow {
     }
 
     /// True where this increment runs against the present direction.
-    [[nodiscard]] bool turns(S increment) const noexcept {
-        return S(direction_) * increment < 0;
-    }
+    [[nodiscard]] bool turns(S increment) const noexcept { return S(direction_) * increment < 0; }
 
-    /// Ends the running half cycle; what follows runs the other way. Nothing before the first increment.
+    /// Ends the running half cycle; what follows runs the other way. Nothing before the first
+    /// increment.
     template <class Settle>
     void turn(Settle&& settle) noexcept {
         if (direction_ == 0) return;
@@ -124,8 +124,8 @@ class Rainflow {
             clear(1);
         }
     }
-    /// Merges three half cycles of a full stack into one. True where the last of the three is the one
-    /// that now begins, so that the turn needs no room any more.
+    /// Merges three half cycles of a full stack into one. True where the last of the three is the
+    /// one that now begins, so that the turn needs no room any more.
     template <class Settle>
     bool make_room(Settle& settle) noexcept {
         std::size_t k = 1;

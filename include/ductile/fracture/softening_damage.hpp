@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Ductile damage: from an onset travel on, the strength is multiplied by 1 - D(p) and falls to nothing at
-// the failure travel, linearly or along given pairs.
+// Ductile damage: from an onset travel on, the strength is multiplied by 1 - D(p) and falls to
+// nothing at the failure travel, linearly or along given pairs.
 //
 //   D(p) = 0                                p <= p_onset
 //        = (p - p_onset)/(p_f - p_onset)    linear form
@@ -14,8 +14,9 @@
 // Limit case: p_onset → p_f is the abrupt break of a travel limit.
 //
 // Symbols: p accumulated plastic travel [m | rad], D damage [-].
-// Source: Lemaitre (1985), A continuous damage mechanics model for ductile fracture, J. Eng. Mater. Technol.
-// 107, 83-89, doi:10.1115/1.3225775 (effective strength 1 - D, linear in plastic strain from a threshold).
+// Source: Lemaitre (1985), A continuous damage mechanics model for ductile fracture, J. Eng. Mater.
+// Technol. 107, 83-89, doi:10.1115/1.3225775 (effective strength 1 - D, linear in plastic strain
+// from a threshold).
 #pragma once
 
 #include <algorithm>
@@ -72,8 +73,8 @@ class SofteningDamage : public WithoutForceCap<S> {
     }
 
     /// Pairs from (p_onset, 0) to (p_failure, 1), copied.
-    /// @throws std::invalid_argument where there are fewer than two or more than Capacity pairs, a travel
-    /// does not increase, a damage decreases, or the damage does not run from 0 to 1.
+    /// @throws std::invalid_argument where there are fewer than two or more than Capacity pairs, a
+    /// travel does not increase, a damage decreases, or the damage does not run from 0 to 1.
     explicit SofteningDamage(std::span<const DamagePoint<S>> points) {
         if (points.size() < 2 || points.size() > Capacity) {
             check::fail("SofteningDamage.points", S(points.size()), "pairs",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Break at a largest accumulated plastic travel: plastic rotation for a hinge, elongation for a bar.
+// Break at a largest accumulated plastic travel: plastic rotation for a hinge, elongation for a
+// bar.
 //
 // Source: Nikula (2017), Handling of plasticity in physics engine, section 2.8.1 (maximum plastic
 // rotation: 1-6 rad for a ductile part, 0.01-0.1 rad for a brittle one). We count the travel that

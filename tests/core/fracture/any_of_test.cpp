@@ -19,45 +19,52 @@ const CoffinManson<double> steel({.ductility_coefficient = 1, .ductility_exponen
 } // namespace
 
 TEST_CASE("any-of breaks with the earliest of its members and names it", "[fracture]") {
-    rc::prop("any limits, any history, clipped or overshooting", [](const std::vector<signed char>& raw) {
-        const auto real = [](int low, int high) { return *rc::gen::inRange(low, high) / 100.0; };
-        const TravelLimit<double> travel({.limit = real(50, 400)});
-        const EnergyLimit<double> energy({.limit = 40 * real(50, 400)});
-        const LowCycleFatigue fatigue(steel, {.strain_per_travel = real(50, 200)});
-        const AnyOf any(travel, energy, fatigue);
-        const bool clip = *rc::gen::arbitrary<bool>();
+    rc::prop("any limits, any history, clipped or overshooting",
+             [](const std::vector<signed char>& raw) {
+                 const auto real = [](int low, int high) {
+                     return *rc::gen::inRange(low, high) / 100.0;
+                 };
+                 const TravelLimit<double> travel({.limit = real(50, 400)});
+                 const EnergyLimit<double> energy({.limit = 40 * real(50, 400)});
+                 const LowCycleFatigue fatigue(steel, {.strain_per_travel = real(50, 200)});
+                 const AnyOf any(travel, energy, fatigue);
+                 const bool clip = *rc::gen::arbitrary<bool>();
 
-        Row together(any);
-        Row alone_travel(travel);
-        Row alone_energy(energy);
-        Row alone_fatigue(fatigue);
-        for (const signed char r : raw) {
-            const double step = r / 100.0;
-            const double least = std::min({travel.remaining(alone_travel.state, 40, step),
-                                           energy.remaining(alone_energy.state, 40, step),
-                                           fatigue.remaining(alone_fatigue.state, 40, step)});
-            RC_ASSERT(any.remaining(together.state, 40, step) == least);
-            const double before[] = {travel.remaining(alone_travel.state, 40, step),
-                                     energy.remaining(alone_energy.state, 40, step),
-                                     fatigue.remaining(alone_fatigue.state, 40, step)};
-            const double fed = clip ? std::copysign(std::min(std::abs(step), least), step) : step;
-            const bool lives = together.flow(fed, 40, false);
-            const bool all_live = int(alone_travel.flow(fed, 40, false)) +
-                                      int(alone_energy.flow(fed, 40, false)) +
-                                      int(alone_fatigue.flow(fed, 40, false)) == 3;
-            RC_ASSERT(lives == all_live);
-            RC_ASSERT(any.damage(together.state) ==
-                      std::max({travel.damage(alone_travel.state), energy.damage(alone_energy.state),
-                                fatigue.damage(alone_fatigue.state)}));
-            if (!lives) {
-                const auto index = any.governing_index(together.state);
-                // equal up to round-off where two limits fall together
-                RC_ASSERT(before[index] <= least * (1 + 1e-12));
-                RC_ASSERT(any.remaining(together.state, 40, step) == 0.0);
-                return;
-            }
-        }
-    });
+                 Row together(any);
+                 Row alone_travel(travel);
+                 Row alone_energy(energy);
+                 Row alone_fatigue(fatigue);
+                 for (const signed char r : raw) {
+                     const double step = r / 100.0;
+                     const double least =
+                         std::min({travel.remaining(alone_travel.state, 40, step),
+                                   energy.remaining(alone_energy.state, 40, step),
+                                   fatigue.remaining(alone_fatigue.state, 40, step)});
+                     RC_ASSERT(any.remaining(together.state, 40, step) == least);
+                     const double before[] = {travel.remaining(alone_travel.state, 40, step),
+                                              energy.remaining(alone_energy.state, 40, step),
+                                              fatigue.remaining(alone_fatigue.state, 40, step)};
+                     const double fed =
+                         clip ? std::copysign(std::min(std::abs(step), least), step) : step;
+                     const bool lives = together.flow(fed, 40, false);
+                     const bool all_live = int(alone_travel.flow(fed, 40, false)) +
+                                               int(alone_energy.flow(fed, 40, false)) +
+                                               int(alone_fatigue.flow(fed, 40, false)) ==
+                                           3;
+                     RC_ASSERT(lives == all_live);
+                     RC_ASSERT(any.damage(together.state) ==
+                               std::max({travel.damage(alone_travel.state),
+                                         energy.damage(alone_energy.state),
+                                         fatigue.damage(alone_fatigue.state)}));
+                     if (!lives) {
+                         const auto index = any.governing_index(together.state);
+                         // equal up to round-off where two limits fall together
+                         RC_ASSERT(before[index] <= least * (1 + 1e-12));
+                         RC_ASSERT(any.remaining(together.state, 40, step) == 0.0);
+                         return;
+                     }
+                 }
+             });
 }
 
 TEST_CASE("any-of says which member governs", "[fracture]") {
@@ -67,7 +74,8 @@ TEST_CASE("any-of says which member governs", "[fracture]") {
     // weak: 2 rad at 20 N m is 40 J; strong: 60 J at 50 N m is 1.2 rad
     const auto broken_by = [&](double strength) {
         Row row(any);
-        while (row.flow(0.07, strength)) {}
+        while (row.flow(0.07, strength)) {
+        }
         return std::tuple(any.governing(row.state), row.travel, row.work);
     };
     {
@@ -128,7 +136,8 @@ TEST_CASE("combinations nest", "[fracture]") {
     const AnyOf inner(TravelLimit<double>({.limit = 1}), EnergyLimit<double>({.limit = 1e3}));
     const AnyOf outer(EnergyLimit<double>({.limit = 1e3}), inner);
     Row row(outer);
-    while (row.flow(0.3, 40)) {}
+    while (row.flow(0.3, 40)) {
+    }
     CHECK(outer.governing_index(row.state) == 1);
     CHECK(outer.governing(row.state) == CriterionKind::plastic_travel);
     CHECK(row.travel == Approx(1).epsilon(1e-13));

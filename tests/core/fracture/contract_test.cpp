@@ -42,12 +42,12 @@ void feed_random(Row<C>& row, std::mt19937& random, double largest) {
 
 } // namespace
 
-#define EVERY_CRITERION                                                                             \
-    TravelLimit<double>, TravelLimit<float>, EnergyLimit<double>, EnergyLimit<float>,               \
-        BrittleForce<double>, BrittleForce<float>, SofteningDamage<double>, SofteningDamage<float>, \
-        LowCycleFatigue<CoffinManson<double>>, LowCycleFatigue<CoffinManson<float>>,                \
-        LowCycleFatigue<TotalStrainLife<double>>, LowCycleFatigue<TotalStrainLife<float>>,          \
-        AnyOfAll<double>, AnyOfAll<float>
+#define EVERY_CRITERION                                                                 \
+    TravelLimit<double>, TravelLimit<float>, EnergyLimit<double>, EnergyLimit<float>,   \
+        BrittleForce<double>, BrittleForce<float>, SofteningDamage<double>,             \
+        SofteningDamage<float>, LowCycleFatigue<CoffinManson<double>>,                  \
+        LowCycleFatigue<CoffinManson<float>>, LowCycleFatigue<TotalStrainLife<double>>, \
+        LowCycleFatigue<TotalStrainLife<float>>, AnyOfAll<double>, AnyOfAll<float>
 
 TEMPLATE_TEST_CASE("a load below yield leaves the state of a criterion as it was, bit for bit",
                    "[fracture]", EVERY_CRITERION) {
@@ -199,11 +199,12 @@ TEMPLATE_TEST_CASE("the break takes the same energy whatever the steps", "[fract
     }
 }
 
-TEMPLATE_TEST_CASE("criteria give the same answer in metres and newtons as in millimetres and "
-                   "kilonewtons",
-                   "[fracture]", TravelLimit<double>, EnergyLimit<double>, BrittleForce<double>,
-                   SofteningDamage<double>, LowCycleFatigue<CoffinManson<double>>,
-                   LowCycleFatigue<TotalStrainLife<double>>, AnyOfAll<double>) {
+TEMPLATE_TEST_CASE(
+    "criteria give the same answer in metres and newtons as in millimetres and "
+    "kilonewtons",
+    "[fracture]", TravelLimit<double>, EnergyLimit<double>, BrittleForce<double>,
+    SofteningDamage<double>, LowCycleFatigue<CoffinManson<double>>,
+    LowCycleFatigue<TotalStrainLife<double>>, AnyOfAll<double>) {
     constexpr Units mm_kn{.length = 1e3, .force = 1e-3};
     const auto in_si = Specimen<TestType>::make();
     const auto in_mm = Specimen<TestType>::make(mm_kn);

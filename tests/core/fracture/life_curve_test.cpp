@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Reference: P21 of the reference problems (Coffin-Manson with ε_f' = 1, c = -0.6; total strain with
-// σ_f' = 900 MPa, b = -0.09, E = 200 GPa).
+// Reference: P21 of the reference problems (Coffin-Manson with ε_f' = 1, c = -0.6; total strain
+// with σ_f' = 900 MPa, b = -0.09, E = 200 GPa).
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -47,7 +47,8 @@ TEST_CASE("Coffin-Manson gives the tabulated lives", "[fracture][P21]") {
     CHECK(plastic.reversals(1) == 1);
 }
 
-TEST_CASE("a paperclip bent by 90 degrees lasts the tabulated number of cycles", "[fracture][P21]") {
+TEST_CASE("a paperclip bent by 90 degrees lasts the tabulated number of cycles",
+          "[fracture][P21]") {
     const double k = hinge_strain<double>({.height = 1e-3, .hinge_length = 3e-3});
     const double one_side = k * (pi / 2) / 2; // 0 <-> 90 deg
     const double both = k * (pi / 2);         // +-90 deg

@@ -109,7 +109,7 @@ TEST_CASE("softening runs straight between given pairs", "[fracture]") {
     const SofteningDamage<double> damage{std::span<const DamagePoint<double>>(pairs)};
     CHECK(damage.onset() == 1);
     CHECK(damage.failure() == 5);
-    const double expected[][2] = {{0, 0},   {1, 0},     {1.5, 0.25}, {2, 0.5}, {3, 0.5},
+    const double expected[][2] = {{0, 0},   {1, 0},      {1.5, 0.25}, {2, 0.5}, {3, 0.5},
                                   {4, 0.5}, {4.5, 0.75}, {5, 1},      {9, 1}};
     for (const auto& [travel, d] : expected) {
         CHECK(damage.damage_at(travel) == d);
@@ -139,14 +139,16 @@ TEST_CASE("limits name the parameter that is missing or out of range", "[fractur
           "SofteningDamage.failure = 1 m or rad: must be greater than onset");
     using Points = std::vector<DamagePoint<double>>;
     const auto message = [](const Points& points) {
-        return message_of([&] { SofteningDamage<double>{std::span<const DamagePoint<double>>(points)}; });
+        return message_of(
+            [&] { SofteningDamage<double>{std::span<const DamagePoint<double>>(points)}; });
     };
     CHECK(message({{1, 0}}) == "SofteningDamage.points = 1 pairs: must be in [2, 8] pairs");
     CHECK(message(Points(9)) == "SofteningDamage.points = 9 pairs: must be in [2, 8] pairs");
     CHECK(message({{-1, 0}, {2, 1}}) ==
           "SofteningDamage.points[0].travel = -1 m or rad: must be finite and >= 0");
-    CHECK(message({{1, 0}, {1, 1}}) ==
-          "SofteningDamage.points[1].travel = 1 m or rad: must be greater than the travel before it");
+    CHECK(
+        message({{1, 0}, {1, 1}}) ==
+        "SofteningDamage.points[1].travel = 1 m or rad: must be greater than the travel before it");
     CHECK(message({{1, 0.1}, {2, 1}}) ==
           "SofteningDamage.points[0].damage = 0.1: must be 0 at the onset");
     CHECK(message({{1, 0}, {2, 0.9}}) ==

@@ -46,7 +46,8 @@ TEMPLATE_TEST_CASE("constant amplitude fails in the tabulated reversal, however 
         CHECK(failing_reversal(criterion, 0.05, n) == 148);
     }
     // the paperclip of P21b: 2N_f = 29.63 and 9.33
-    const auto k = hinge_strain<TestType>({.height = TestType(1e-3), .hinge_length = TestType(3e-3)});
+    const auto k =
+        hinge_strain<TestType>({.height = TestType(1e-3), .hinge_length = TestType(3e-3)});
     const LowCycleFatigue paperclip(steel<TestType>, {.strain_per_travel = k});
     CHECK(failing_reversal(paperclip, std::acos(0.0) / 2, 5) == 30);
     CHECK(failing_reversal(paperclip, std::acos(0.0), 5) == 10);
@@ -106,7 +107,8 @@ TEST_CASE("damage of a nested history is the sum over its loops", "[fracture]") 
 }
 
 TEST_CASE("a float joint counts a million small cycles", "[fracture]") {
-    // amplitude 2.5e-4 lasts about a million reversals, each less than one ulp of the sum at its end
+    // amplitude 2.5e-4 lasts about a million reversals, each less than one ulp of the sum at its
+    // end
     const LowCycleFatigue criterion(steel<float>, {.strain_per_travel = 1});
     const double life = steel<double>.reversals(2.5e-4);
     CHECK(life > 0.99e6);
@@ -131,23 +133,26 @@ TEST_CASE("damage does not depend on how an increment is split", "[fracture]") {
 }
 
 TEST_CASE("a full stack of open ranges is on the safe side", "[fracture]") {
-    rc::prop("a criterion with a small stack breaks no later", [](const std::vector<signed char>& raw) {
-        const LowCycleFatigue<CoffinManson<double>, 2> shallow(steel<double>,
-                                                               {.strain_per_travel = 1});
-        const LowCycleFatigue<CoffinManson<double>, 200> deep(steel<double>,
-                                                              {.strain_per_travel = 1});
-        Row a(shallow);
-        Row b(deep);
-        for (const signed char step : raw) {
-            a.flow(step / 500.0, 40);
-            b.flow(step / 500.0, 40);
-            RC_ASSERT(shallow.damage(a.state) >= deep.damage(b.state) - 1e-12);
-        }
-    });
+    rc::prop("a criterion with a small stack breaks no later",
+             [](const std::vector<signed char>& raw) {
+                 const LowCycleFatigue<CoffinManson<double>, 2> shallow(steel<double>,
+                                                                        {.strain_per_travel = 1});
+                 const LowCycleFatigue<CoffinManson<double>, 200> deep(steel<double>,
+                                                                       {.strain_per_travel = 1});
+                 Row a(shallow);
+                 Row b(deep);
+                 for (const signed char step : raw) {
+                     a.flow(step / 500.0, 40);
+                     b.flow(step / 500.0, 40);
+                     RC_ASSERT(shallow.damage(a.state) >= deep.damage(b.state) - 1e-12);
+                 }
+             });
 }
 
-TEST_CASE("a turn that a full stack cannot afford breaks with the first flow after it", "[fracture]") {
-    const LowCycleFatigue<CoffinManson<double>, 2> criterion(steel<double>, {.strain_per_travel = 1});
+TEST_CASE("a turn that a full stack cannot afford breaks with the first flow after it",
+          "[fracture]") {
+    const LowCycleFatigue<CoffinManson<double>, 2> criterion(steel<double>,
+                                                             {.strain_per_travel = 1});
     Row row(criterion);
     for (const double step : {1.0, -0.95, 0.1}) REQUIRE(row.flow(step, 40));
     // one more turn settles the range of 0.95 as a whole cycle

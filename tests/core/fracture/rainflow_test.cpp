@@ -94,21 +94,24 @@ TEST_CASE("small cycles nested in a big one are counted, and the big one as if t
     CHECK(stream({0, 5, 2, 4, 3, 6, 3, 10, 0}) == Counts{{1, 1}, {3, 2}, {10, 1}});
 }
 
-TEST_CASE("rainflow remembers turning points through a whole tree of loops", "[fracture][rainflow]") {
+TEST_CASE("rainflow remembers turning points through a whole tree of loops",
+          "[fracture][rainflow]") {
     // converging, then one sweep that closes all
-    CHECK(stream({0, 10, 1, 9, 2, 8, 3, 7, 4, 20}) == Counts{{3, 1}, {5, 1}, {7, 1}, {9, 1}, {20, 0.5}});
+    CHECK(stream({0, 10, 1, 9, 2, 8, 3, 7, 4, 20}) ==
+          Counts{{3, 1}, {5, 1}, {7, 1}, {9, 1}, {20, 0.5}});
 }
 
 TEST_CASE("rainflow equals the ASTM procedure on any history of integers", "[fracture][rainflow]") {
-    rc::prop("same ranges, same counts, after every point", [](const std::vector<signed char>& raw) {
-        std::vector<double> history{0};
-        Counter<double, 200> counter;
-        for (const signed char p : raw) {
-            counter.add(p - history.back());
-            history.push_back(p);
-            RC_ASSERT(counter.counts() == astm(history));
-        }
-    });
+    rc::prop("same ranges, same counts, after every point",
+             [](const std::vector<signed char>& raw) {
+                 std::vector<double> history{0};
+                 Counter<double, 200> counter;
+                 for (const signed char p : raw) {
+                     counter.add(p - history.back());
+                     history.push_back(p);
+                     RC_ASSERT(counter.counts() == astm(history));
+                 }
+             });
     // long ones, and in float
     std::mt19937 random(1);
     std::uniform_int_distribution<int> level(-1000, 1000);
@@ -185,7 +188,8 @@ TEST_CASE("a full stack never counts less than a deep one", "[fracture][rainflow
              });
 }
 
-TEST_CASE("a full stack overestimates a slowly converging history by little", "[fracture][rainflow]") {
+TEST_CASE("a full stack overestimates a slowly converging history by little",
+          "[fracture][rainflow]") {
     // ranges 1000, 999, ... 801: none closes, so 200 stay open; 16 of them are kept
     Counter<double, 16> shallow;
     Counter<double, 255> deep;

@@ -49,8 +49,8 @@ struct Specimen<BrittleForce<S>> {
 template <class S>
 struct Specimen<SofteningDamage<S>> {
     static auto make(Units u = {}) {
-        return SofteningDamage<S>({.onset = S(0.5 * u.length * u.toughness),
-                                   .failure = S(1.9 * u.length * u.toughness)});
+        return SofteningDamage<S>(
+            {.onset = S(0.5 * u.length * u.toughness), .failure = S(1.9 * u.length * u.toughness)});
     }
 };
 template <class S>
