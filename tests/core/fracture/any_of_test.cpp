@@ -98,9 +98,11 @@ TEST_CASE("any-of says which member governs", "[fracture]") {
     CHECK(to_string(any.governing(state)) == "brittle force");
     CHECK(any.member_state<2>(state).broken);
     CHECK(any.criterion<1>().limit() == 60);
-    // nothing that comes later changes the verdict
+    // nothing that comes later changes the verdict, or anything else
+    const State as_broken = state;
     any.update(state, {.plastic = 5, .travel = 5, .force = 100, .work = 500});
     CHECK(any.governing_index(state) == 2);
+    CHECK(state == as_broken);
 }
 
 TEST_CASE("the force breaks before the flow of the same step", "[fracture]") {

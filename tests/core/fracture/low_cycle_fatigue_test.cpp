@@ -106,6 +106,25 @@ TEST_CASE("damage of a nested history is the sum over its loops", "[fracture]") 
     CHECK(2 * h(1) < criterion.damage(row.state) * 0.8);
 }
 
+TEMPLATE_TEST_CASE("damage does not fall by an ulp where a loop closes", "[fracture]", float, double) {
+    const LowCycleFatigue criterion(steel<TestType>, {.strain_per_travel = 1});
+    Row row(criterion);
+    row.flow(TestType(0.5), 40);
+    TestType range = TestType(0.02);
+    bool monotone = true;
+    for (int i = 0; i < 3000; ++i) {
+        range *= TestType(0.998);
+        row.flow(-range, 40);
+        row.flow(std::nextafter(range, TestType(0)), 40);
+        const TestType before = criterion.damage(row.state);
+        row.flow(range - std::nextafter(range, TestType(0)), 40);
+        monotone = monotone && criterion.damage(row.state) >= before;
+    }
+    REQUIRE_FALSE(criterion.broken(row.state));
+    CHECK(row.state.rainflow.depth() == 0); // every loop has closed
+    CHECK(monotone);
+}
+
 TEST_CASE("a float joint counts a million small cycles", "[fracture]") {
     // amplitude 2.5e-4 lasts about a million reversals, each less than one ulp of the sum at its
     // end
