@@ -28,8 +28,9 @@
 //
 // This is the exact count of a history with that excursion added, so for every function that
 // increases with the range it never falls below the true count. Where that function is convex, the
-// excess of one such turn is at most one cycle of y less one of r. 16 open ranges hold a random walk of 10⁵ turns; white noise of that
-// length asks for about 2 ln 10⁵ = 23, and 16 count the sum of range^1.67 about 0.05 % too high.
+// excess of one such turn is at most one cycle of y less one of r. 16 open ranges hold a random
+// walk of 10⁵ turns; white noise of that length asks for about 2 ln 10⁵ = 23, and 16 count the sum
+// of range^1.67 about 0.05 % too high.
 //
 // Source: ASTM E1049-85, section 5.4.4 (rainflow): same ranges and counts; as a stack after
 // Downing & Socie (1982), Simple rainflow counting algorithms, Int. J. Fatigue 4, 31-40,

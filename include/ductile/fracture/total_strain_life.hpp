@@ -10,8 +10,8 @@
 //   g(x) = ln(exp(b (x - x_e)) + exp(c (x - x_p))) = 0
 //
 // g decreases and is convex (log-sum-exp), and at max(x_e, x_p) it lies in [0, ln 2], left of the
-// root: Newton's iteration from there rises to the root monotonically and quadratically and needs no
-// safeguard.
+// root: Newton's iteration from there rises to the root monotonically and quadratically, and
+// needs no safeguard.
 //
 // Use it where the amplitude is that of the *total* strain, as for a rigid-plastic row whose travel
 // stands for all the deformation of the part. Where the amplitude is plastic, take CoffinManson.

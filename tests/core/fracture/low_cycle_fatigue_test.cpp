@@ -106,7 +106,8 @@ TEST_CASE("damage of a nested history is the sum over its loops", "[fracture]") 
     CHECK(2 * h(1) < criterion.damage(row.state) * 0.8);
 }
 
-TEMPLATE_TEST_CASE("damage does not fall by an ulp where a loop closes", "[fracture]", float, double) {
+TEMPLATE_TEST_CASE("damage does not fall by an ulp where a loop closes", "[fracture]", float,
+                   double) {
     const LowCycleFatigue criterion(steel<TestType>, {.strain_per_travel = 1});
     Row row(criterion);
     row.flow(TestType(0.5), 40);
