@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// Break at a largest accumulated plastic travel: plastic rotation for a hinge, elongation for a bar.
+// Break at a largest accumulated plastic travel: plastic rotation for a hinge, elongation for a
+// bar.
 //
 // Source: Nikula (2017), Handling of plasticity in physics engine, section 2.8.1 (maximum plastic
 // rotation: 1-6 rad for a ductile part, 0.01-0.1 rad for a brittle one). We count the travel that
 // does work at yield, not every change of angle, so load below yield never consumes life.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 
+#include "ductile/fracture/fracture.hpp"
 #include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
@@ -20,9 +24,15 @@ struct TravelLimitParameters {
 };
 
 template <std::floating_point S>
-class TravelLimit {
+class TravelLimit : public WithoutForceCap<S>, public WithoutSoftening<S> {
   public:
     using Scalar = S;
+
+    struct State {
+        S travel = 0; ///< accumulated plastic travel p [m | rad]
+
+        bool operator==(const State&) const = default;
+    };
 
     /// A limit that is never reached.
     TravelLimit() noexcept : limit_(std::numeric_limits<S>::infinity()) {}
@@ -37,6 +47,25 @@ class TravelLimit {
     [[nodiscard]] S remaining(S travel) const noexcept {
         return travel < limit_ ? limit_ - travel : S(0);
     }
+    [[nodiscard]] S remaining(const State& state, S /*strength*/,
+                              S /*direction*/ = 0) const noexcept {
+        return broken(state) ? S(0) : remaining(state.travel);
+    }
+
+    void update(State& state, const PlasticIncrement<S>& increment) const noexcept {
+        if (!(std::abs(increment.plastic) > 0)) return;
+        state.travel = std::max(state.travel, increment.travel);
+    }
+    [[nodiscard]] bool broken(const State& state) const noexcept {
+        return state.travel >= limit_ * (1 - exhausted_share<S>);
+    }
+    /// p / p_max
+    [[nodiscard]] S damage(const State& state) const noexcept {
+        return broken(state) ? S(1) : state.travel / limit_;
+    }
+    [[nodiscard]] CriterionKind governing(const State&) const noexcept {
+        return CriterionKind::plastic_travel;
+    }
 
   private:
     S limit_;
@@ -44,5 +73,7 @@ class TravelLimit {
 
 template <std::floating_point S>
 TravelLimit(const TravelLimitParameters<S>&) -> TravelLimit<S>;
+
+static_assert(FractureCriterion<TravelLimit<double>> && FractureCriterion<TravelLimit<float>>);
 
 } // namespace ductile
