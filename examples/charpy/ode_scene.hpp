@@ -47,6 +47,7 @@ class OdeScene {
         }
         stepper_ = std::make_unique<ductile::ode::World>(
             world_, solver == "direct" ? ductile::ode::Solver::direct : ductile::ode::Solver::quick);
+        dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetGravity(world_, 0, dReal(-s_.gravity), 0);
         dWorldSetQuickStepNumIterations(world_, s_.iterations);
         meter_ = std::make_unique<ductile::ode::EnergyMeter>(world_);
@@ -244,8 +245,8 @@ class OdeScene {
         }
     }
 
-    /// ODE's spring: a stop with lo = hi and ERP = 1, CFM = 1/(k dt²) in the manual's formulas
-    /// ERP = dt k/(dt k + c), CFM = 1/(dt k + c) for c = 0.
+    /// ODE's spring: a stop with lo = hi and, by its manual, ERP = dt k/(dt k + c) and CFM = 1/(dt k + c)
+    /// with no damping, c = 0.
     static void set_spring(const Spring& spring, double dt) {
         dJointSetHingeParam(spring.joint, dParamStopERP, 1);
         dJointSetHingeParam(spring.joint, dParamStopCFM, dReal(1 / (dt * spring.stiffness)));

@@ -26,6 +26,9 @@ inline void declare(CLI::App& app, Options& o) {
     std::vector<std::string> methods{"all"};
     for (const auto& [method, name] : method_names) methods.emplace_back(name);
 
+    // the front passes on what the user gave and then fixes what it runs
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+
     const auto run = "What to run";
     app.add_option("--engine", o.engine, "physics engine; all: every method on every engine")
         ->check(CLI::IsMember({"all", "bullet", "ode"}))->capture_default_str()->group(run);

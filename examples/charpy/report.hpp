@@ -64,13 +64,15 @@ inline constexpr std::string_view history_header =
     const double loss = number("hammer_loss_J");
     const double work = number("plastic_work_J");
     const double kinetic = number("specimen_kinetic_J");
-    if (!std::isfinite(loss) || std::abs(number("unexplained_J")) > 1 ||
-        kinetic > 0.1 * expected.plastic_work) {
-        return "unstable";
-    }
-    if (r.at("method") == "rigid") return "stops the hammer, as it must";
-    if (work < -0.01 * expected.plastic_work) return "joint adds energy";
+    const std::string method = r.at("method");
+    if (!std::isfinite(loss) || std::abs(number("unexplained_J")) > 1) return "unstable";
+    if (method == "rigid") return "stops the hammer, as it must";
     if (r.at("broken").get<bool>() && work < 0.05 * expected.plastic_work) return "breaks brittle";
+    if (method.starts_with("spring")) {
+        const char* gives = work < -0.01 * expected.plastic_work ? "; joint adds energy" : "";
+        return fmt::format("springs back, halves fly off{}", gives);
+    }
+    if (kinetic > 0.1 * expected.plastic_work) return "unstable";
     const double error = work / expected.plastic_work - 1;
     std::string text = std::abs(error) <= 0.01 ? fmt::format("right ({:+.2f} %)", 100 * error)
                                                : fmt::format("off ({:+.1f} %)", 100 * error);

@@ -157,8 +157,9 @@ class OneAxisJoint {
             step.outcome = Outcome::broken;
         } else if (step.residual > tolerance(reaction.velocity)) {
             step.outcome = Outcome::unreliable;
-        } else if (step.plastic_work > 0) {
-            step.outcome = Outcome::yielding;
+        } else if (step.plastic_work > 0 &&
+                   (at_bound || std::abs(start_) > parameters_.absolute_residual)) {
+            step.outcome = Outcome::yielding; // and not the round-off of a flow that has stopped
         }
         return step;
     }

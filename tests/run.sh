@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# Installs what is missing, builds, runs every test.
+#   tests/run.sh [PRESET ...]     presets of CMakePresets.json; default: release
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+cmake/install-packages.sh
+for preset in "${@:-release}"; do
+    echo "== $preset"
+    cmake --preset "$preset" -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=ON >/dev/null
+    cmake --build --preset "$preset"
+    ctest --preset "$preset"
+done
