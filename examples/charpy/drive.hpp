@@ -17,7 +17,8 @@ struct DriveLimits {
     double swing_time = 5.0;      ///< give up where nothing was struck by then [s]
     double after_strike = 0.020;  ///< [s]
     double nose_travel = 0.040;   ///< the nose is this far past the specimen's front [m]
-    double sample_interval = 2e-5; ///< during the blow [s]
+    double swing_interval = 1e-2;  ///< between samples of the history, before the strike [s]
+    double sample_interval = 2e-5; ///< and after it [s]
 };
 
 [[nodiscard]] inline ductile::StepControl<double> step_control(const Scenario& s) {
@@ -44,8 +45,13 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
     double time = 0;
     double next_sample = 0;
     bool struck = false;
-    double before_strike = scene.hammer_energy();
+    r.strike_energy = scene.hammer_energy();
     ductile::Ledger<double> at_strike = scene.ledger();
+    const auto sample = [&](double dt) {
+        r.history.push_back({time, dt, scene.hammer_energy(), scene.joint_work(),
+                             scene.specimen_kinetic(), scene.ledger().unexplained(),
+                             scene.nose_speed(), scene.rotation()});
+    };
     while (true) {
         const double dt = scenario.adaptive ? control.next(scene.motion()) : scenario.dt;
         const double energy = scene.hammer_energy();
@@ -58,14 +64,13 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
             struck = true;
             r.strike_time = time;
             r.strike_speed = speed;
-            before_strike = energy;
+            r.strike_energy = energy;
             at_strike = ledger;
+            next_sample = time;
         }
         if (time >= next_sample) {
-            next_sample = time + (struck ? limits.sample_interval : 1e-2);
-            r.history.push_back({time, dt, scene.hammer_energy(), scene.joint_work(),
-                                 scene.specimen_kinetic(), scene.ledger().unexplained(),
-                                 scene.nose_speed(), scene.rotation()});
+            next_sample = time + (struck ? limits.sample_interval : limits.swing_interval);
+            sample(dt);
         }
         if (!std::isfinite(scene.hammer_energy())) break;
         if (struck ? time > r.strike_time + limits.after_strike ||
@@ -79,7 +84,7 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
     const auto since = [&](Account account) {
         return scene.ledger().booked(account) - at_strike.booked(account);
     };
-    r.hammer_loss = before_strike - scene.hammer_energy();
+    r.hammer_loss = r.strike_energy - scene.hammer_energy();
     r.plastic_work = scene.joint_work();
     r.plastic_rotation = scene.joint_travel();
     r.rotation = std::abs(scene.rotation());

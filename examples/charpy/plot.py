@@ -16,7 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-WINDOW_MS = (-0.5, 8.0)
+WINDOW_MS = (0.0, 8.0)
 
 
 def read(path):
@@ -25,7 +25,7 @@ def read(path):
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
             key = (row["engine"], row["precision"], row["solver"], row["method"])
-            for name in ("time_after_strike_s", "hammer_energy_J", "plastic_work_J",
+            for name in ("time_after_strike_s", "hammer_loss_J", "plastic_work_J",
                          "nose_speed_m_per_s", "rotation_rad"):
                 text = row[name]
                 runs[key][name].append(float("nan") if text == "null" else float(text))
@@ -55,7 +55,7 @@ def draw(runs, panels, title, unit, path):
                     continue
                 ours = key[3] == "plastic-hinge"
                 axis.plot([1e3 * run["time_after_strike_s"][i] for i in inside],
-                          [value(run, i, inside[0]) for i in inside],
+                          [value(run, i) for i in inside],
                           label=f"{key[3]} ({key[2]}, {key[1]})", color=colour[key[3]],
                           linewidth=2.2 if ours else 1.0, zorder=3 if ours else 2,
                           linestyle="-" if key[2] in ("mlcp", "direct") else ":")
@@ -80,12 +80,11 @@ def main():
     runs = read(sys.argv[1])
     folder = Path(sys.argv[2])
     folder.mkdir(parents=True, exist_ok=True)
-    lost = lambda run, i, first: run["hammer_energy_J"][first] - run["hammer_energy_J"][i]
-    column = lambda name: lambda run, i, first: run[name][i]
-    draw(runs, [("lost by the hammer", lost, (-10, 320)),
+    column = lambda name: lambda run, i: run[name][i]
+    draw(runs, [("lost by the hammer", column("hammer_loss_J"), (-10, 320)),
                 ("taken by the joint", column("plastic_work_J"), (-60, 160))],
          "Charpy: energy", "J", folder / "energy.png")
-    draw(runs, [("hinge angle", lambda run, i, first: abs(run["rotation_rad"][i]), (0, 3.2))],
+    draw(runs, [("hinge angle", lambda run, i: abs(run["rotation_rad"][i]), (0, 3.2))],
          "Charpy: bend of the specimen", "rad", folder / "rotation.png")
     draw(runs, [("nose speed", column("nose_speed_m_per_s"), (-1, 6))],
          "Charpy: hammer speed", "m/s", folder / "speed.png")

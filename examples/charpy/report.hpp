@@ -42,19 +42,19 @@ namespace charpy {
             {"residual_max", r.residual_max}};
 }
 
-/// History columns: time, step, hammer energy, plastic work, specimen energy, unexplained, nose
-/// speed, rotation.
+/// History columns: time after the strike, step, energy lost by the hammer since, plastic work,
+/// specimen energy, unexplained, nose speed, rotation.
 [[nodiscard]] inline nlohmann::json history_to_json(const Result& r) {
     auto rows = nlohmann::json::array();
     for (const Sample& s : r.history) {
-        rows.push_back({s.time - r.strike_time, s.dt, s.hammer_energy, s.plastic_work,
+        rows.push_back({s.time - r.strike_time, s.dt, r.strike_energy - s.hammer_energy, s.plastic_work,
                         s.specimen_kinetic, s.unexplained, s.nose_speed, s.rotation});
     }
     return rows;
 }
 inline constexpr std::string_view history_header =
     "engine,solver,precision,method,dt_s,adaptive,friction,time_after_strike_s,step_s,"
-    "hammer_energy_J,plastic_work_J,specimen_kinetic_J,unexplained_J,nose_speed_m_per_s,rotation_rad";
+    "hammer_loss_J,plastic_work_J,specimen_kinetic_J,unexplained_J,nose_speed_m_per_s,rotation_rad";
 
 /// One or two words on what a run shows, measured against the mechanics.
 [[nodiscard]] inline std::string verdict(const nlohmann::ordered_json& r, const Reference& expected) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,6 +64,7 @@ struct Result {
     double wall = 0;             ///< of the engine's steps and commits [s]
     double strike_time = 0;      ///< time of first contact [s]
     double strike_speed = 0;     ///< of the nose before it [m/s]
+    double strike_energy = 0;    ///< of the hammer before it, kinetic + potential [J]
     double hammer_loss = 0;      ///< kinetic + potential, from first contact to the end [J]
     double plastic_work = 0;     ///< for other methods: what the joint took from the bodies [J]
     double plastic_rotation = 0; ///< [rad]
@@ -75,7 +75,6 @@ struct Result {
     double joints_work = 0;      ///< rigid rows and the hammer's pivot, since first contact [J]
     double integration = 0;      ///< the engine's own drift, since first contact [J]
     double unexplained = 0;      ///< over the whole run [J]
-    double passed_rotation = std::numeric_limits<double>::quiet_NaN(); ///< when the halves slip through
     bool broken = false;
     double residual_max = 0; ///< [rad/s]
     std::vector<Sample> history;
