@@ -5,7 +5,8 @@
 //
 //   none                 x = 0
 //   Prager               dx = H du_p                       stored  x²/(2H)
-//   Armstrong-Frederick  dx = C du_p - γ x |du_p|          stored  x²/(2C), dissipates γ x²/C per travel
+//   Armstrong-Frederick  dx = C du_p - γ x |du_p|          stored  x²/(2C), dissipates γ x²/C per
+//   travel
 //
 // Symbols ("x | y": translational row | rotational row)
 //   x    back force                         [N | N m]
@@ -13,13 +14,13 @@
 //   H,C  kinematic modulus                  [N/m | N m/rad]
 //   γ    recall: x saturates at ±C/γ        [1/m | 1/rad]
 //
-// Along flow in one direction s = ±1 Armstrong-Frederick has the closed form used here, so that cutting a
-// step changes nothing: with y = s x and a = C/γ,  y(δ) = a + (y0 - a) exp(-γ δ).
-// Limit cases: γ → 0 is Prager; C = γ a with γ → ∞ is a jump of the range by a.
+// Along flow in one direction s = ±1 Armstrong-Frederick has the closed form used here, so that
+// cutting a step changes nothing: with y = s x and a = C/γ,  y(δ) = a + (y0 - a) exp(-γ δ). Limit
+// cases: γ → 0 is Prager; C = γ a with γ → ∞ is a jump of the range by a.
 //
-// Source: Prager (1956), J. Appl. Mech. 23, 493-496; Frederick and Armstrong (2007), Materials at High
-// Temperatures 24, 1-26 (reprint of the CEGB report of 1966); free energy after Lemaitre and Chaboche
-// (1990), Mechanics of Solid Materials, section 5.4.
+// Source: Prager (1956), J. Appl. Mech. 23, 493-496; Frederick and Armstrong (2007), Materials at
+// High Temperatures 24, 1-26 (reprint of the CEGB report of 1966); free energy after Lemaitre and
+// Chaboche (1990), Mechanics of Solid Materials, section 5.4.
 #pragma once
 
 #include <algorithm>
@@ -32,15 +33,19 @@
 namespace ductile {
 
 /// `shifted(x, increment)` is the back force after a signed increment of flow in one direction
-/// [N | N m]; `slope(x, direction)` is dx/du_p for flow in `direction` = ±1 [N/m | N m/rad], never such that
-/// x moves against the flow; `stored(x)` is what it holds [J]; `dissipated(x, increment)` >= 0 is what
-/// it loses on the way from x [J].
+/// [N | N m]; `slope(x, direction)` is dx/du_p for flow in `direction` = ±1 [N/m | N m/rad], never
+/// such that x moves against the flow; `stored(x)` is what it holds [J]; `dissipated(x, increment)`
+/// >= 0 is what it loses on the way from x [J].
 template <class T>
 concept BackForceLaw = requires(const T law, typename T::Scalar x) {
-    { law.shifted(x, x) } noexcept -> std::same_as<typename T::Scalar>;
-    { law.slope(x, x) } noexcept -> std::same_as<typename T::Scalar>;
-    { law.stored(x) } noexcept -> std::same_as<typename T::Scalar>;
-    { law.dissipated(x, x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.shifted(x, x) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.slope(x, x) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.stored(x) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.dissipated(x, x) }
+    noexcept->std::same_as<typename T::Scalar>;
 };
 
 /// The elastic range stays centred on zero.
@@ -94,9 +99,10 @@ class ArmstrongFrederick {
 
     /// @throws std::invalid_argument where a parameter is missing (NaN), infinite or not positive.
     explicit ArmstrongFrederick(const ArmstrongFrederickParameters<S>& parameters)
-        : modulus_(check::positive("ArmstrongFrederick.modulus", parameters.modulus,
-                                   "N/m or N m/rad")),
-          recall_(check::positive("ArmstrongFrederick.recall", parameters.recall, "1/m or 1/rad")) {}
+        : modulus_(
+              check::positive("ArmstrongFrederick.modulus", parameters.modulus, "N/m or N m/rad")),
+          recall_(check::positive("ArmstrongFrederick.recall", parameters.recall, "1/m or 1/rad")) {
+    }
 
     [[nodiscard]] S shifted(S x, S increment) const noexcept {
         const S end = std::copysign(modulus_ / recall_, increment);

@@ -17,10 +17,10 @@
 //   ∫ force dΔ = dissipated + stored          dissipated >= 0, stored of either sign
 //
 // where `stored` is held by the law (locked in by kinematic hardening) and may come back. Δ is the
-// work-conjugate increment, (u + u')/2 dt while the force is at a bound. The work W = force × Δ that
-// the row really did differs from dissipated + stored by the error of the predicted midpoint, third
-// order per step; it belongs in the ledger as an entry of its own. W must not be divided by the force
-// to find Δ: under kinematic hardening the force at a bound can be zero.
+// work-conjugate increment, (u + u')/2 dt while the force is at a bound. The work W = force × Δ
+// that the row really did differs from dissipated + stored by the error of the predicted midpoint,
+// third order per step; it belongs in the ledger as an entry of its own. W must not be divided by
+// the force to find Δ: under kinematic hardening the force at a bound can be zero.
 #pragma once
 
 #include <concepts>
@@ -44,22 +44,26 @@ struct FlowWork {
 };
 
 /// `prepare(state, predicted)` gives the range for a step whose plastic increment is predicted as
-/// `predicted`, signed [m | rad]: at its midpoint in the direction of flow, as it stands in the other.
-/// `commit(state, increment)` flows by the signed increment [m | rad].
-/// `resistance(state, travel, direction)` is the signed force [N | N m] after flow by `travel` >= 0 in
-/// `direction` = ±1, and `tangent` its derivative by signed flow [N/m | N m/rad].
-/// `stored(state)` is what the law holds [J].
+/// `predicted`, signed [m | rad]: at its midpoint in the direction of flow, as it stands in the
+/// other. `commit(state, increment)` flows by the signed increment [m | rad]. `resistance(state,
+/// travel, direction)` is the signed force [N | N m] after flow by `travel` >= 0 in `direction` =
+/// ±1, and `tangent` its derivative by signed flow [N/m | N m/rad]. `stored(state)` is what the law
+/// holds [J].
 template <class T>
-concept CyclicLaw =
-    std::regular<typename T::State> &&
+concept CyclicLaw = std::regular<typename T::State> &&
     requires(const T law, typename T::State state, typename T::Scalar x) {
-        requires std::floating_point<typename T::Scalar>;
-        { law.prepare(state, x) } noexcept -> std::same_as<ForceRange<typename T::Scalar>>;
-        { law.commit(state, x) } noexcept -> std::same_as<FlowWork<typename T::Scalar>>;
-        { law.resistance(state, x, x) } noexcept -> std::same_as<typename T::Scalar>;
-        { law.tangent(state, x, x) } noexcept -> std::same_as<typename T::Scalar>;
-        { law.stored(state) } noexcept -> std::same_as<typename T::Scalar>;
-    };
+    requires std::floating_point<typename T::Scalar>;
+    { law.prepare(state, x) }
+    noexcept->std::same_as<ForceRange<typename T::Scalar>>;
+    { law.commit(state, x) }
+    noexcept->std::same_as<FlowWork<typename T::Scalar>>;
+    { law.resistance(state, x, x) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.tangent(state, x, x) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.stored(state) }
+    noexcept->std::same_as<typename T::Scalar>;
+};
 
 /// What one move of a HysteresisLaw did. The work done on it is dissipated + the change of `held`.
 template <std::floating_point S>
@@ -69,20 +73,23 @@ struct HysteresisStep {
     S dissipated = 0;        ///< >= 0 [J]
 };
 
-/// `project(state, position)` moves the law to `position` along a straight path and returns the force
-/// to the admissible set; a path without reversals may be cut into any number of moves.
+/// `project(state, position)` moves the law to `position` along a straight path and returns the
+/// force to the admissible set; a path without reversals may be cut into any number of moves.
 /// `force(state, position)` is the force of a state that was projected to `position`.
 /// `held(state, position)` is what the law holds there: elastic and stored [J].
 /// `stiffness()` is the elastic stiffness [N/m | N m/rad], the steepest the law can be.
 template <class T>
-concept HysteresisLaw =
-    std::regular<typename T::State> &&
+concept HysteresisLaw = std::regular<typename T::State> &&
     requires(const T law, typename T::State state, typename T::Scalar position) {
-        requires std::floating_point<typename T::Scalar>;
-        { law.project(state, position) } noexcept -> std::same_as<HysteresisStep<typename T::Scalar>>;
-        { law.force(state, position) } noexcept -> std::same_as<typename T::Scalar>;
-        { law.held(state, position) } noexcept -> std::same_as<typename T::Scalar>;
-        { law.stiffness() } noexcept -> std::same_as<typename T::Scalar>;
-    };
+    requires std::floating_point<typename T::Scalar>;
+    { law.project(state, position) }
+    noexcept->std::same_as<HysteresisStep<typename T::Scalar>>;
+    { law.force(state, position) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.held(state, position) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.stiffness() }
+    noexcept->std::same_as<typename T::Scalar>;
+};
 
 } // namespace ductile

@@ -3,12 +3,13 @@
 // Rules that integrate over the height of a section.
 //
 //   MidpointFibres  n strips of equal height, each with the stress and the width at its middle: the
-//                   fibre model of frame programs. Error of order 2 in 1/n where the width is continuous,
-//                   also across the kink at first yield; 1.5 at the rounded ends of a circle, 1 where the
-//                   width jumps inside a strip.
-//   AdaptiveFibres  Simpson's rule that halves its panels until the answer holds to a tolerance: order 4
-//                   between kinks, and kinks and jumps of stress or width are closed in upon, so that they
-//                   do not limit the result. The effort follows the section by itself.
+//                   fibre model of frame programs. Error of order 2 in 1/n where the width is
+//                   continuous, also across the kink at first yield; 1.5 at the rounded ends of a
+//                   circle, 1 where the width jumps inside a strip.
+//   AdaptiveFibres  Simpson's rule that halves its panels until the answer holds to a tolerance:
+//   order 4
+//                   between kinks, and kinks and jumps of stress or width are closed in upon, so
+//                   that they do not limit the result. The effort follows the section by itself.
 //
 // Source: Lyness (1969), J. ACM 16, 483-495 (adaptive Simpson with extrapolation).
 #pragma once
@@ -83,7 +84,7 @@ class AdaptiveFibres {
 
   private:
     static constexpr int first_panels = 16; ///< so that nothing as thick as h/32 is overlooked
-    static constexpr int deepest = 40;      ///< halvings: a jump is closed in to 1e-13 of the height
+    static constexpr int deepest = 40; ///< halvings: a jump is closed in to 1e-13 of the height
 
     struct Panel {
         S low, high;

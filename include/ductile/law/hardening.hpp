@@ -15,9 +15,9 @@
 //   R    strength, half width            [N | N m]
 //   u_p  signed plastic displacement     [m | rad]
 //
-// Work of an increment: ∫ R dp and what the back force loses are dissipated, the change of what the back
-// force holds is stored. With x > R the range does not hold zero: a row left alone then flows back
-// and returns part of what is stored, as a Bauschinger loop must.
+// Work of an increment: ∫ R dp and what the back force loses are dissipated, the change of what the
+// back force holds is stored. With x > R the range does not hold zero: a row left alone then flows
+// back and returns part of what is stored, as a Bauschinger loop must.
 //
 // Limit cases: no back force, the joint's isotropic law; R constant and no back force, perfect
 // plasticity; R → 0 with Prager, an elastic spring of stiffness H.
@@ -47,7 +47,7 @@ struct HardeningState {
 
 /// Immutable value; O(1) and noexcept after construction.
 template <StrengthLaw Law, BackForceLaw Back = NoBackForce<typename Law::Scalar>>
-    requires std::same_as<typename Law::Scalar, typename Back::Scalar>
+requires std::same_as<typename Law::Scalar, typename Back::Scalar>
 class Hardening {
   public:
     using Scalar = typename Law::Scalar;
@@ -71,7 +71,7 @@ class Hardening {
         const Scalar travel = state.plastic_travel + std::abs(increment);
         const Scalar before = stored(state);
         FlowWork<Scalar> work;
-        work.dissipated = law_.work(state.plastic_travel, travel) +
+        work.dissipated = mean_strength(state.plastic_travel, travel) * std::abs(increment) +
                           back_.dissipated(state.back_force, increment);
         state.plastic_travel = travel;
         state.back_force = back_.shifted(state.back_force, increment);
@@ -98,6 +98,12 @@ class Hardening {
     }
 
   private:
+    /// After much travel `to - from` has lost digits that the increment still has; the mean has
+    /// not.
+    Scalar mean_strength(Scalar from, Scalar to) const noexcept {
+        return to > from ? law_.work(from, to) / (to - from) : law_.value(from);
+    }
+
     Law law_;
     [[no_unique_address]] Back back_;
 };

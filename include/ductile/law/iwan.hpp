@@ -14,7 +14,8 @@
 //   F_i  slip force of element i                     [N | N m]
 //   k_f  final stiffness, that of a spring beside the elements, which does not slip [N/m | N m/rad]
 //
-// From a backbone (u_1, F_1) ... (u_n, F_n), concave, with secants c_i over its pieces and c_{n+1} = k_f:
+// From a backbone (u_1, F_1) ... (u_n, F_n), concave, with secants c_i over its pieces and c_{n+1}
+// = k_f:
 //
 //   k_i = c_i - c_{i+1},   slip force k_i u_i
 //
@@ -22,8 +23,8 @@
 // changes nothing. Loop energy between ±u_a: Σ 4 F_i (u_a - F_i/k_i)₊ (plus nothing for k_f).
 // Limit cases: one element is elastic-perfectly plastic; one element and k_f is Prager's law.
 //
-// Source: Masing (1926), Proc. 2nd Int. Congr. Appl. Mech., 332-335; Iwan (1966), J. Appl. Mech. 33,
-// 893-900, doi:10.1115/1.3625199.
+// Source: Masing (1926), Proc. 2nd Int. Congr. Appl. Mech., 332-335; Iwan (1966), J. Appl. Mech.
+// 33, 893-900, doi:10.1115/1.3625199.
 #pragma once
 
 #include <algorithm>
@@ -70,8 +71,8 @@ class Iwan {
     using State = IwanState<S, N>;
 
     /// `final_stiffness` k_f >= 0 [N/m | N m/rad].
-    /// @throws std::invalid_argument where an element is not positive and finite, or where there are
-    /// none or more than N.
+    /// @throws std::invalid_argument where an element is not positive and finite, or where there
+    /// are none or more than N.
     explicit Iwan(std::span<const IwanElement<S>> elements, S final_stiffness = 0)
         : final_(check::non_negative("Iwan.final_stiffness", final_stiffness, "N/m or N m/rad")),
           total_(final_) {
@@ -85,8 +86,8 @@ class Iwan {
 
     /// Takes a backbone apart: positions and forces as pairs after (0, 0), which is not given. The
     /// secant must fall from piece to piece; a piece that goes on straight needs no element.
-    /// @throws std::invalid_argument where it rises, a pair is out of order, or there are none or more
-    /// than N.
+    /// @throws std::invalid_argument where it rises, a pair is out of order, or there are none or
+    /// more than N.
     [[nodiscard]] static Iwan from_backbone(std::span<const BackbonePoint<S>> points,
                                             S final_stiffness = 0) {
         Iwan iwan(check::non_negative("Iwan.final_stiffness", final_stiffness, "N/m or N m/rad"));
@@ -98,15 +99,16 @@ class Iwan {
             if (stiffness > straight * first) {
                 iwan.add({stiffness, stiffness * points[i].position});
             } else if (!(stiffness >= -straight * first)) {
-                check::fail("Iwan.backbone[" + std::to_string(i) + "]: secant of the next piece", next,
-                            "N/m or N m/rad", "at most that of this piece");
+                check::fail("Iwan.backbone[" + std::to_string(i) + "]: secant of the next piece",
+                            next, "N/m or N m/rad", "at most that of this piece");
             }
         }
         check_size(iwan.size_, 1);
         return iwan;
     }
 
-    /// A law over plastic travel with an elastic stiffness k [N/m | N m/rad] in series, as hysteresis.
+    /// A law over plastic travel with an elastic stiffness k [N/m | N m/rad] in series, as
+    /// hysteresis.
     /// @throws std::invalid_argument as above; the law must harden ever less.
     template <std::size_t Capacity>
     [[nodiscard]] static Iwan from_law(const Multilinear<S, Capacity>& law, S stiffness) {
@@ -121,7 +123,9 @@ class Iwan {
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
     /// Element `i` < size().
-    [[nodiscard]] const IwanElement<S>& element(std::size_t i) const noexcept { return elements_[i]; }
+    [[nodiscard]] const IwanElement<S>& element(std::size_t i) const noexcept {
+        return elements_[i];
+    }
     [[nodiscard]] S stiffness() const noexcept { return total_; }
 
     HysteresisStep<S> project(State& state, S position) const noexcept {

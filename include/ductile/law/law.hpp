@@ -11,9 +11,10 @@
 // A law may soften to zero at a finite p_f and stay there. It then offers `exhaustion()`, and the
 // break follows from it: the joint breaks where p reaches p_f, having dissipated exactly
 // work(0, p_f), the area under the law; no force jumps, because R has faded to zero. A step that
-// takes the work W from the bodies leaves p at travel_after(law, p, W), travel_after.hpp; what W holds
-// beyond work(p, p_f) was taken in excess and is handed back. Counting p as W / R instead divides
-// by zero there. Laws that never reach zero have p_f = ∞ and break by a criterion of their own.
+// takes the work W from the bodies leaves p at travel_after(law, p, W), travel_after.hpp; what W
+// holds beyond work(p, p_f) was taken in excess and is handed back. Counting p as W / R instead
+// divides by zero there. Laws that never reach zero have p_f = ∞ and break by a criterion of their
+// own.
 #pragma once
 
 #include <concepts>
@@ -27,16 +28,20 @@ namespace ductile {
 template <class T>
 concept StrengthLaw = requires(const T law, typename T::Scalar travel) {
     requires std::floating_point<typename T::Scalar>;
-    { law.value(travel) } noexcept -> std::same_as<typename T::Scalar>;
-    { law.slope(travel) } noexcept -> std::same_as<typename T::Scalar>;
-    { law.work(travel, travel) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.value(travel) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.slope(travel) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { law.work(travel, travel) }
+    noexcept->std::same_as<typename T::Scalar>;
 };
 
-/// A law that can fade to nothing: `exhaustion()` is the smallest p with R(p) = 0 [m | rad], infinity
-/// where there is none.
+/// A law that can fade to nothing: `exhaustion()` is the smallest p with R(p) = 0 [m | rad],
+/// infinity where there is none.
 template <class T>
 concept ExhaustibleLaw = StrengthLaw<T> && requires(const T law) {
-    { law.exhaustion() } noexcept -> std::same_as<typename T::Scalar>;
+    { law.exhaustion() }
+    noexcept->std::same_as<typename T::Scalar>;
 };
 
 /// p_f of any law [m | rad]; infinity for one that cannot fade.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Moment against curvature of a section, by integrating the stress of its fibres. Plane sections stay
-// plane: a fibre at the height y has the strain ε0 + κ y, and ε0 is such that the axial force is the
-// given one.
+// Moment against curvature of a section, by integrating the stress of its fibres. Plane sections
+// stay plane: a fibre at the height y has the strain ε0 + κ y, and ε0 is such that the axial force
+// is the given one.
 //
 //   ∫ σ(ε0 + κ y) w(y) dy = N,    M(κ) = ∫ σ(ε0 + κ y) y w(y) dy
 //
@@ -14,8 +14,8 @@
 //   N    axial force, positive: tension                     [N]
 //   EI   bending stiffness E (∫ w y² - (∫ w y)²/∫ w)         [N m²]
 //
-// Residual curvature after unloading from κ: κ - M(κ)/EI, as long as no fibre yields in reverse (true of
-// every section with a shape factor up to 2).
+// Residual curvature after unloading from κ: κ - M(κ)/EI, as long as no fibre yields in reverse
+// (true of every section with a shape factor up to 2).
 //
 // Limit cases: κ → 0 is M = EI κ; an elastic-perfectly plastic curve and κ → ∞ is M_p.
 //
@@ -56,8 +56,8 @@ struct MomentCurvaturePoint {
 /// not for their steps. Allocates nothing.
 template <FibreSection Section, StressStrainCurve Curve,
           class Rule = AdaptiveFibres<typename Section::Scalar>>
-    requires std::same_as<typename Section::Scalar, typename Curve::Scalar> &&
-             FibreRule<Rule, typename Section::Scalar>
+requires std::same_as<typename Section::Scalar, typename Curve::Scalar> &&
+    FibreRule<Rule, typename Section::Scalar>
 class MomentCurvature {
   public:
     using Scalar = typename Section::Scalar;
@@ -90,9 +90,8 @@ class MomentCurvature {
     /// The point at a curvature of either sign [1/m].
     [[nodiscard]] Point at(Scalar curvature) const {
         const Scalar strain = axial_strain(curvature);
-        const Scalar moment = over_height([&](Scalar y) {
-            return curve_.stress(strain + curvature * y) * y;
-        });
+        const Scalar moment =
+            over_height([&](Scalar y) { return curve_.stress(strain + curvature * y) * y; });
         return {curvature, moment, strain};
     }
     [[nodiscard]] Scalar moment(Scalar curvature) const { return at(curvature).moment; } ///< [N m]
@@ -102,8 +101,8 @@ class MomentCurvature {
         return curvature - moment(curvature) / bending_stiffness_;
     }
 
-    /// Smallest curvature with the sign of `moment` [N m] that carries it, for a curve that does not
-    /// soften [1/m]; infinity where none up to a million times the elastic one does.
+    /// Smallest curvature with the sign of `moment` [N m] that carries it, for a curve that does
+    /// not soften [1/m]; infinity where none up to a million times the elastic one does.
     [[nodiscard]] Scalar curvature_at(Scalar moment) const {
         const Scalar sign = std::copysign(Scalar(1), moment);
         const Scalar target = std::abs(moment);
@@ -132,12 +131,14 @@ class MomentCurvature {
     /// ε0. The axial force grows with it, and is bracketed by the strains that put every fibre into
     /// tension or compression, moved on in the direction of N.
     Scalar axial_strain(Scalar curvature) const {
-        const auto excess = [&](Scalar strain) { return force_at(curvature, strain) - axial_force_; };
+        const auto excess = [&](Scalar strain) {
+            return force_at(curvature, strain) - axial_force_;
+        };
         const Scalar a = -curvature * section_.lowest();
         const Scalar b = -curvature * section_.highest();
         const Scalar guess = axial_force_ / axial_stiffness_;
-        const Scalar scale = axial_stiffness_ * std::max(std::abs(a), std::abs(b)) +
-                             std::abs(axial_force_);
+        const Scalar scale =
+            axial_stiffness_ * std::max(std::abs(a), std::abs(b)) + std::abs(axial_force_);
         constexpr Scalar balanced = 8 * std::numeric_limits<Scalar>::epsilon();
         if (std::abs(excess(guess)) <= balanced * scale) return guess;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// From the moment-curvature curve of a section to the law of a hinge: the curvature is taken as constant
-// over a hinge length, the elastic part becomes the hinge's spring, the rest its backbone.
+// From the moment-curvature curve of a section to the law of a hinge: the curvature is taken as
+// constant over a hinge length, the elastic part becomes the hinge's spring, the rest its backbone.
 //
 //   θ = κ L_p,   k = EI/L_p,   θ_p = θ - M/k,   R(θ_p) = M
 //
@@ -11,17 +11,17 @@
 //   k     elastic stiffness of the hinge [N m/rad]
 //   θ_p   plastic rotation               [rad]
 //
-// Knots. The first is the proof moment, where the plastic share of the rotation reaches `proof`; there
-// plastic rotation is taken to start, which a rigid-plastic row needs and which costs that share of
-// accuracy at the knee. The others lie in geometric progression up to `curvature_max`, close together
-// where the backbone bends. The error between knots is of order 2 in their number. Beyond the last knot the
-// moment stays constant.
+// Knots. The first is the proof moment, where the plastic share of the rotation reaches `proof`;
+// there plastic rotation is taken to start, which a rigid-plastic row needs and which costs that
+// share of accuracy at the knee. The others lie in geometric progression up to `curvature_max`,
+// close together where the backbone bends. The error between knots is of order 2 in their number.
+// Beyond the last knot the moment stays constant.
 //
-// A hinge length is an assumption, not a property of the section: half the depth of the section up to
-// its depth is usual for steel. Energy and rotation capacity scale with it.
+// A hinge length is an assumption, not a property of the section: half the depth of the section up
+// to its depth is usual for steel. Energy and rotation capacity scale with it.
 //
-// Source: plastic hinge length after Baker (1956), The Steel Skeleton II; proof stress as in tensile tests,
-// here on the curvature.
+// Source: plastic hinge length after Baker (1956), The Steel Skeleton II; proof stress as in
+// tensile tests, here on the curvature.
 #pragma once
 
 #include <algorithm>
@@ -42,8 +42,9 @@ namespace ductile {
 
 template <std::floating_point S>
 struct HingeParameters {
-    S length = std::numeric_limits<S>::quiet_NaN();        ///< L_p [m], > 0
-    S curvature_max = std::numeric_limits<S>::quiet_NaN(); ///< of the last knot [1/m], > the proof one
+    S length = std::numeric_limits<S>::quiet_NaN(); ///< L_p [m], > 0
+    S curvature_max =
+        std::numeric_limits<S>::quiet_NaN(); ///< of the last knot [1/m], > the proof one
     S proof = S(1e-3);      ///< plastic share of the curvature at the first knot [-], in (0, 0.5)
     std::size_t knots = 16; ///< in [2, Capacity]
 };
@@ -76,12 +77,15 @@ template <std::size_t Capacity = 32, class Section, class Curve, class Rule>
         return bending.residual_curvature(curvature) - proof * curvature;
     };
     if (!(plastic_excess(last) > 0)) {
-        check::fail("Hinge.curvature_max", last, "1/m", "beyond the proof curvature of the section");
+        check::fail("Hinge.curvature_max", last, "1/m",
+                    "beyond the proof curvature of the section");
     }
     // walk down by halves: the excess has a second root at zero
     S below = last;
-    while (plastic_excess(below) > 0 && below > last * std::numeric_limits<S>::epsilon()) below /= 2;
-    const S first = bracketed_root(below, std::min(2 * below, last), S(1e-6) * below, plastic_excess);
+    while (plastic_excess(below) > 0 && below > last * std::numeric_limits<S>::epsilon())
+        below /= 2;
+    const S first =
+        bracketed_root(below, std::min(2 * below, last), S(1e-6) * below, plastic_excess);
 
     std::array<StrengthPoint<S>, Capacity> points;
     for (std::size_t i = 0; i < knots; ++i) {
@@ -92,7 +96,8 @@ template <std::size_t Capacity = 32, class Section, class Curve, class Rule>
         points[i] = {i == 0 ? S(0) : plastic, moment};
     }
     return {.stiffness = stiffness / length,
-            .backbone = Multilinear<S, Capacity>(std::span<const StrengthPoint<S>>(points.data(), knots))};
+            .backbone =
+                Multilinear<S, Capacity>(std::span<const StrengthPoint<S>>(points.data(), knots))};
 }
 
 } // namespace ductile

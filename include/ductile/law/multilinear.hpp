@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // A law of strength as pairs (plastic travel, strength), linear between them and constant after the
-// last: what a test, a code's backbone or a fibre integration gives. It may harden, soften and end at
-// zero.
+// last: what a test, a code's backbone or a fibre integration gives. It may harden, soften and end
+// at zero.
 //
 //   R(p) = R_i + (R_{i+1} - R_i) (p - p_i) / (p_{i+1} - p_i)     p_i <= p < p_{i+1}
 //   R(p) = R_n                                                  p >= p_n
@@ -67,7 +67,8 @@ class Multilinear {
         const std::size_t first = piece(from);
         const std::size_t last = piece(to);
         if (first == last) return (value_on(first, from) + value_on(last, to)) / 2 * (to - from);
-        const S head = (value_on(first, from) + strength_[first + 1]) / 2 * (travel_[first + 1] - from);
+        const S head =
+            (value_on(first, from) + strength_[first + 1]) / 2 * (travel_[first + 1] - from);
         const S tail = (strength_[last] + value_on(last, to)) / 2 * (to - travel_[last]);
         return head + (area_[last] - area_[first + 1]) + tail;
     }
@@ -92,7 +93,9 @@ class Multilinear {
         const S share = (travel - travel_[i]) / (travel_[i + 1] - travel_[i]);
         return (1 - share) * strength_[i] + share * strength_[i + 1];
     }
-    S mean(std::size_t i, std::size_t j) const noexcept { return (strength_[i] + strength_[j]) / 2; }
+    S mean(std::size_t i, std::size_t j) const noexcept {
+        return (strength_[i] + strength_[j]) / 2;
+    }
 
     static std::size_t checked_size(std::span<const StrengthPoint<S>> points) {
         if (points.empty() || points.size() > Capacity) {

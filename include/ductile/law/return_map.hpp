@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The elastic-plastic form of any CyclicLaw: a spring of stiffness k in series with the flow. Driven by
-// the position, it returns the force to the admissible range by the exact flow along the way.
+// The elastic-plastic form of any CyclicLaw: a spring of stiffness k in series with the flow.
+// Driven by the position, it returns the force to the admissible range by the exact flow along the
+// way.
 //
 //   F = k (q - q_p);   if F leaves [x - R, x + R]:  find δ with  s F_trial - k δ = s resistance(δ)
 //
@@ -10,12 +11,13 @@
 //   k        elastic stiffness                   [N/m | N m/rad]
 //   δ, s     travel and direction of the flow    [m | rad], ±1
 //
-// The equation has one unknown and a known bracket; Newton inside it is exact in one step for linear
-// hardening and ends always. A path without reversals may be cut into any moves with the same result.
+// The equation has one unknown and a known bracket; Newton inside it is exact in one step for
+// linear hardening and ends always. A path without reversals may be cut into any moves with the
+// same result.
 //
 // Softening steeper than k has several roots (snap-back): one is taken, the force never leaves the
-// admissible range, and the work the spring gives back beyond what is dissipated must be looked for in
-// dissipated + change of held against the work of the bodies.
+// admissible range, and the work the spring gives back beyond what is dissipated must be looked for
+// in dissipated + change of held against the work of the bodies.
 //
 // Limit cases: k → ∞ the rigid-plastic law; R → ∞ an elastic spring.
 //
@@ -88,9 +90,10 @@ class ReturnMap {
     }
 
   private:
-    /// δ: the excess over the resistance is positive at 0 and not positive at the end of the bracket,
-    /// where the spring alone would have come down to the centre of the range.
-    Scalar travel(const State& state, Scalar trial, Scalar centre, Scalar direction) const noexcept {
+    /// δ: the excess over the resistance is positive at 0 and not positive at the end of the
+    /// bracket, where the spring alone would have come down to the centre of the range.
+    Scalar travel(const State& state, Scalar trial, Scalar centre,
+                  Scalar direction) const noexcept {
         const auto excess = [&](Scalar distance) noexcept {
             const Scalar held_by_law = law_.resistance(state.flow, distance, direction);
             return ValueAndSlope<Scalar>{
@@ -99,7 +102,8 @@ class ReturnMap {
         };
         const Scalar most = direction * (trial - centre) / stiffness_;
         const ValueAndSlope<Scalar> now = excess(Scalar(0));
-        return newton_root(Scalar(0), most, std::clamp(-now.value / now.slope, Scalar(0), most), excess);
+        return newton_root(Scalar(0), most, std::clamp(-now.value / now.slope, Scalar(0), most),
+                           excess);
     }
 
     Scalar stiffness_;

@@ -55,7 +55,8 @@ template <std::floating_point S, class F>
     if (fa == 0) return a;
     for (int i = 0; i < most && fb != 0; ++i) {
         const S width = std::abs(b - a);
-        const S round_off = 2 * std::numeric_limits<S>::epsilon() * std::max(std::abs(a), std::abs(b));
+        const S round_off =
+            2 * std::numeric_limits<S>::epsilon() * std::max(std::abs(a), std::abs(b));
         if (width <= std::max(resolution, round_off)) break;
         S x = i % 3 == 2 ? a + (b - a) / 2 : b - fb * (b - a) / (fb - fa);
         if (!(x > std::min(a, b) && x < std::max(a, b))) x = a + (b - a) / 2;

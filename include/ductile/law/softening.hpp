@@ -15,8 +15,8 @@
 // A brittle break is p_s = p_max with p_f just beyond it. Softening by any other curve: Multilinear
 // pairs that end at zero. How a break follows from p_f: law.hpp.
 //
-// Limit of use: a softening slope steeper than the stiffness of what loads it, R0/(p_f - p_s) > k, snaps
-// back: it is real and dynamic, the excess becomes motion.
+// Limit of use: a softening slope steeper than the stiffness of what loads it, R0/(p_f - p_s) > k,
+// snaps back: it is real and dynamic, the excess becomes motion.
 //
 // Source: linear softening of the fictitious crack, Hillerborg, Modéer and Petersson (1976), Cement
 // and Concrete Research 6, 773-781, here for a force over its plastic travel, with a plateau added.

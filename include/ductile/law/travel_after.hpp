@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The inverse of a law's work: how far a law flows for a given energy. It lets a joint count plastic
-// travel by the work done on it, so that energy and travel agree whatever the step, also where the
-// strength fades to zero.
+// The inverse of a law's work: how far a law flows for a given energy. It lets a joint count
+// plastic travel by the work done on it, so that energy and travel agree whatever the step, also
+// where the strength fades to zero.
 //
 //   work(p0, travel_after(law, p0, W)) = W     0 <= W <= work(p0, p_f)
 #pragma once
@@ -15,9 +15,9 @@
 
 namespace ductile {
 
-/// Travel after the law has taken the work `energy` [J] from the travel `from` >= 0 [m | rad]. Never
-/// below `from`, never beyond the exhaustion: what does not fit is not taken. One division for a law
-/// that is perfect there, else a few Newton steps. [m | rad]
+/// Travel after the law has taken the work `energy` [J] from the travel `from` >= 0 [m | rad].
+/// Never below `from`, never beyond the exhaustion: what does not fit is not taken. One division
+/// for a law that is perfect there, else a few Newton steps. [m | rad]
 template <StrengthLaw Law>
 [[nodiscard]] typename Law::Scalar travel_after(const Law& law, typename Law::Scalar from,
                                                 typename Law::Scalar energy) noexcept {

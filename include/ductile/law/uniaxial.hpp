@@ -14,12 +14,12 @@
 //   K, n  strength coefficient, strain-hardening exponent        [Pa], [-]
 //   w     plastic work of a Masing loop, per volume              [J/m³]
 //
-// Ramberg-Osgood has no closed inverse. The function to be zeroed is convex and grows with σ, so Newton
-// from above, min(E ε, K ε^n), comes down to the root without overshoot.
+// Ramberg-Osgood has no closed inverse. The function to be zeroed is convex and grows with σ, so
+// Newton from above, min(E ε, K ε^n), comes down to the root without overshoot.
 //
-// Source: Ramberg and Osgood (1943), NACA TN 902, in the form of Dowling (2013), Mechanical Behavior of
-// Materials, section 12.2; loop energy w = 4 σ_a ε_pa (1 - n)/(1 + n) for a loop that follows
-// Masing's rule, Halford (1966), J. Materials 1, 3-18.
+// Source: Ramberg and Osgood (1943), NACA TN 902, in the form of Dowling (2013), Mechanical
+// Behavior of Materials, section 12.2; loop energy w = 4 σ_a ε_pa (1 - n)/(1 + n) for a loop that
+// follows Masing's rule, Halford (1966), J. Materials 1, 3-18.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,8 @@
 
 namespace ductile {
 
-/// `stress(strain)` [Pa], odd in the strain [-] and finite. Where the curve also has `youngs_modulus()`
-/// [Pa], that is its slope at zero.
+/// `stress(strain)` [Pa], odd in the strain [-] and finite. Where the curve also has
+/// `youngs_modulus()` [Pa], that is its slope at zero.
 template <class T>
 concept StressStrainCurve = requires(const T curve, typename T::Scalar strain) {
     requires std::floating_point<typename T::Scalar>;
@@ -71,9 +71,10 @@ class BilinearCurve {
     explicit BilinearCurve(const BilinearCurveParameters<S>& parameters)
         : youngs_modulus_(
               check::positive("BilinearCurve.youngs_modulus", parameters.youngs_modulus, "Pa")),
-          yield_stress_(check::positive("BilinearCurve.yield_stress", parameters.yield_stress, "Pa")),
-          slope_ratio_(check::between("BilinearCurve.slope_ratio", parameters.slope_ratio, S(0), S(1),
-                                      "", true)) {}
+          yield_stress_(
+              check::positive("BilinearCurve.yield_stress", parameters.yield_stress, "Pa")),
+          slope_ratio_(check::between("BilinearCurve.slope_ratio", parameters.slope_ratio, S(0),
+                                      S(1), "", true)) {}
 
     [[nodiscard]] S youngs_modulus() const noexcept { return youngs_modulus_; } ///< E [Pa]
     [[nodiscard]] S yield_stress() const noexcept { return yield_stress_; }     ///< f_y [Pa]
@@ -111,7 +112,8 @@ class RambergOsgood {
         : youngs_modulus_(
               check::positive("RambergOsgood.youngs_modulus", parameters.youngs_modulus, "Pa")),
           coefficient_(check::positive("RambergOsgood.coefficient", parameters.coefficient, "Pa")),
-          exponent_(check::between("RambergOsgood.exponent", parameters.exponent, S(0), S(1), "")) {}
+          exponent_(check::between("RambergOsgood.exponent", parameters.exponent, S(0), S(1), "")) {
+    }
 
     [[nodiscard]] S youngs_modulus() const noexcept { return youngs_modulus_; } ///< E [Pa]
 

@@ -47,7 +47,8 @@ class Voce {
           saturation_(check::between("Voce.saturation", parameters.saturation, -strength_,
                                      std::numeric_limits<S>::infinity(), "N or N m")),
           rate_(check::positive("Voce.rate", parameters.rate, "1/m or 1/rad")),
-          hardening_(check::non_negative("Voce.hardening", parameters.hardening, "N/m or N m/rad")) {}
+          hardening_(
+              check::non_negative("Voce.hardening", parameters.hardening, "N/m or N m/rad")) {}
 
     [[nodiscard]] S value(S travel) const noexcept {
         return strength_ - saturation_ * std::expm1(-rate_ * travel) + hardening_ * travel;

@@ -35,7 +35,8 @@ const Kinematic kinematic(Perfect(PerfectParameters{.strength = 4.0}),
                           Prager(PragerParameters{.modulus = 20.0}));
 const Isotropic isotropic(Linear(LinearParameters{.strength = 4.0, .hardening = 20.0}));
 const Mixed mixed(Voce(VoceParameters{.strength = 4.0, .saturation = 2.0, .rate = 5.0}),
-                  ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 60.0, .recall = 12.0}));
+                  ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 60.0,
+                                                                  .recall = 12.0}));
 
 struct Flown {
     double displacement = 0; ///< u_p, work-conjugate
@@ -44,7 +45,8 @@ struct Flown {
     double row_work = 0; ///< impulse × mean velocity: exactly the loss of kinetic energy
 };
 
-/// A mass 2 kg with 1 m/s is stopped by a rigid-plastic row; it may flow back where the range has left zero.
+/// A mass 2 kg with 1 m/s is stopped by a rigid-plastic row; it may flow back where the range has
+/// left zero.
 template <CyclicLaw Law>
 Flown stop(const Law& law, double dt) {
     constexpr double mass = 2;
@@ -59,14 +61,16 @@ Flown stop(const Law& law, double dt) {
         const bool flows = force == lower || force == upper;
         const double mean = (velocity + next) / 2;
         // the step to rest does what the bound would have done until rest
-        const double increment = flows ? mean * dt : force * mean * dt / (velocity > 0 ? upper : lower);
+        const double increment =
+            flows ? mean * dt : force * mean * dt / (velocity > 0 ? upper : lower);
         const FlowWork<double> work = law.commit(state, increment);
         flown.displacement += increment;
         flown.dissipated += work.dissipated;
         flown.stored += work.stored;
         flown.row_work += force * mean * dt;
         velocity = next;
-        if (velocity == 0 && law.prepare(state, 0).lower <= 0 && law.prepare(state, 0).upper >= 0) break;
+        if (velocity == 0 && law.prepare(state, 0).lower <= 0 && law.prepare(state, 0).upper >= 0)
+            break;
     }
     return flown;
 }
@@ -75,7 +79,8 @@ double order(double coarse, double fine) { return std::log2(std::abs(coarse / fi
 
 } // namespace
 
-TEST_CASE("isotropic hardening widens the range, kinematic hardening moves it", "[law][hardening]") {
+TEST_CASE("isotropic hardening widens the range, kinematic hardening moves it",
+          "[law][hardening]") {
     HardeningState<double> state;
     CHECK(isotropic.prepare(state, 0) == ForceRange<double>{-4, 4});
     isotropic.commit(state, 0.1);
@@ -180,8 +185,7 @@ TEST_CASE("the tangent is the finite difference of the resistance", "[law][harde
     });
 }
 
-TEST_CASE("Armstrong-Frederick saturates, and tends to Prager without recall",
-          "[law][hardening]") {
+TEST_CASE("Armstrong-Frederick saturates, and tends to Prager without recall", "[law][hardening]") {
     const ArmstrongFrederick law(ArmstrongFrederickParameters{.modulus = 60.0, .recall = 12.0});
     CHECK(law.shifted(0, 10) == Approx(5).epsilon(1e-14));
     CHECK(law.shifted(0, -10) == Approx(-5).epsilon(1e-14));
@@ -216,16 +220,16 @@ TEST_CASE("a rigid-plastic row with hardening stops where energy says, to second
 
 TEST_CASE("kinematic hardening gives stored work back until zero force is inside the range",
           "[law][hardening][order]") {
-    // First stop at x = H u > R: flows back from rest, and overshoots the spring's centre line; every
-    // excursion by energy: H u²/2 + R |u - u0| = H u0²/2
+    // First stop at x = H u > R: flows back from rest; every excursion by energy,
+    // H u²/2 + R |u - u0| = H u0²/2
     const Kinematic law(Perfect(PerfectParameters{.strength = 1.0}),
                         Prager(PragerParameters{.modulus = 20.0}));
     double u = (-1 + std::sqrt(1 + 40.0)) / 20;
     double travel = u;
     while (20 * std::abs(u) > 1) {
-        const double next = std::abs(u) - 0.1; // H (u0 + u1)/2 = R, u1 measured the other way
-        travel += std::abs(u) + next;
-        u = -std::copysign(next, u);
+        const double next = std::copysign(0.1, u) - u; // H (u + next)/2 = ±R
+        travel += std::abs(u - next);
+        u = next;
     }
     std::array<double, 4> error{};
     double dt = 1.0 / 240;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The elastic-plastic form: loops and peaks with known answers (P06, P07 of the reference problems).
+// The elastic-plastic form: loops and peaks with known answers (P06, P07 of the reference
+// problems).
 #include <rapidcheck/catch.h>
 
 #include <array>
@@ -32,8 +33,8 @@ constexpr double mass = 2;
 constexpr double energy = 1; // m v0²/2 with v0 = 1 m/s
 const Kinematic kinematic(k, KinematicHardening<double>(Perfect(PerfectParameters{.strength = R}),
                                                         Prager(PragerParameters{.modulus = H})));
-const Isotropic isotropic(k, IsotropicHardening<Linear<double>>(
-                                 Linear(LinearParameters{.strength = R, .hardening = H})));
+const Isotropic isotropic(k, IsotropicHardening<Linear<double>>(Linear(LinearParameters{
+                                 .strength = R, .hardening = H})));
 constexpr double printed = 1e-6; // the reference figures have 7 digits
 
 /// Drives to each position in turn, in `parts` moves; sums the dissipation.
@@ -50,7 +51,8 @@ double drive(const Law& law, typename Law::State& state, double from,
     return dissipated;
 }
 
-/// Where a mass that passes `from` in `direction` comes to rest: all its energy is dissipated or held.
+/// Where a mass that passes `from` in `direction` comes to rest: all its energy is dissipated or
+/// held.
 template <HysteresisLaw Law>
 double peak(const Law& law, const typename Law::State& state, double from, double direction,
             double kinetic_and_held) {
@@ -97,11 +99,11 @@ Oscillation swing(const Kinematic& law, double dt) {
 TEMPLATE_TEST_CASE("a perfectly plastic loop takes 4R(ua - R/k) at any number of moves (P06a)",
                    "[law][return_map]", float, double) {
     using S = TestType;
-    const ReturnMap law(S(200), IsotropicHardening<Perfect<S>>(
-                                    Perfect(PerfectParameters<S>{.strength = 10})));
+    const ReturnMap law(
+        S(200), IsotropicHardening<Perfect<S>>(Perfect(PerfectParameters<S>{.strength = 10})));
     // round-off of the summed increments
     const double round_off = std::is_same_v<S, float> ? 2e-4 : 1e-12;
-    for (const auto [amplitude, loop] : {std::pair{0.1, 2.0}, std::pair{0.2, 6.0}}) {
+    for (const auto& [amplitude, loop] : {std::pair{0.1, 2.0}, std::pair{0.2, 6.0}}) {
         for (const int parts : {1, 2, 7, 100}) {
             typename decltype(law)::State state;
             const S ua = S(amplitude);
@@ -182,9 +184,10 @@ TEST_CASE("an explicit spring finds peak and set of the oscillator to second ord
 TEST_CASE("mixed and non-linear hardening return to the range along the exact flow",
           "[law][return_map][property]") {
     using Law = ReturnMap<Hardening<Voce<double>, ArmstrongFrederick<double>>>;
-    const Law law(k, Hardening(Voce(VoceParameters{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
-                               ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 30.0,
-                                                                               .recall = 8.0})));
+    const Law law(
+        k, Hardening(
+               Voce(VoceParameters{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
+               ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 30.0, .recall = 8.0})));
     rc::prop("on the bound, and the same in one move or in several", [&] {
         Law::State one;
         Law::State many;
@@ -210,7 +213,8 @@ TEST_CASE("mixed and non-linear hardening return to the range along the exact fl
 
 TEST_CASE("a softening spring fades to zero and stays there, having taken its area",
           "[law][return_map]") {
-    const Softening fading(SofteningParameters{.strength = 10.0, .plateau = 0.1, .exhaustion = 0.5});
+    const Softening fading(
+        SofteningParameters{.strength = 10.0, .plateau = 0.1, .exhaustion = 0.5});
     const ReturnMap law(100.0, IsotropicHardening<Softening<double>>(fading));
     for (const int parts : {10, 1000}) {
         decltype(law)::State state;

@@ -26,14 +26,11 @@ TEST_CASE("Newton in a bracket finds the root of a line at once and of steep and
     };
     CHECK(newton_root(0.0, 1.0, 0.0, kinked) == Approx(0.9 + 0.9991 / 50).epsilon(1e-14));
     // a slope of zero must not lead to NaN
-    const auto flat = [](double x) {
-        return ValueAndSlope<double>{x < 0.3 ? 1.0 : -1.0, 0.0};
-    };
+    const auto flat = [](double x) { return ValueAndSlope<double>{x < 0.3 ? 1.0 : -1.0, 0.0}; };
     CHECK(newton_root(0.0, 1.0, 0.1, flat) == Approx(0.3).epsilon(1e-14));
 }
 
-TEST_CASE("the bracketed search finds roots of smooth, flat and jumping functions",
-          "[law][root]") {
+TEST_CASE("the bracketed search finds roots of smooth, flat and jumping functions", "[law][root]") {
     CHECK(bracketed_root(0.0, 2.0, 0.0, [](double x) { return x * x - 2; }) ==
           Approx(std::sqrt(2.0)).epsilon(1e-14));
     CHECK(bracketed_root(2.0, 0.0, 0.0, [](double x) { return 2 - x * x; }) ==

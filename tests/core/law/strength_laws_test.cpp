@@ -147,7 +147,8 @@ TEST_CASE("the work of every law is the integral of its value", "[law][property]
         const double b = share(*rc::gen::inRange(0, 1200));
         const double c = share(*rc::gen::inRange(0, 1200));
         for_each_law<double>([&](const auto& law) {
-            // a kink inside one of 2000 panels costs at most slope × panel²: 27 × (1.2/2000)² = 1e-5
+            // a kink inside one of 2000 panels costs at most slope × panel²: 27 × (1.2/2000)² =
+            // 1e-5
             RC_ASSERT(std::abs(law.work(a, b) - numerical_work(law, a, b)) < 1e-5);
             RC_ASSERT(std::abs(law.work(a, b) + law.work(b, c) - law.work(a, c)) < 1e-12);
             RC_ASSERT(law.work(a, a) == 0);
@@ -223,7 +224,8 @@ TEST_CASE("a law that fades takes exactly its area, and the break hands back the
 
 TEST_CASE("laws give the same answer in mm-t-s as in m-kg-s", "[law][units]") {
     // forces stay in N (t mm/s² = N), lengths × 1000, slopes and 1/length ÷ 1000, work in mJ × 1000
-    const Voce m(VoceParameters{.strength = 9e3, .saturation = 4e3, .rate = 30.0, .hardening = 2e4});
+    const Voce m(
+        VoceParameters{.strength = 9e3, .saturation = 4e3, .rate = 30.0, .hardening = 2e4});
     const Voce mm(
         VoceParameters{.strength = 9e3, .saturation = 4e3, .rate = 30e-3, .hardening = 20.0});
     const Softening soft_m(
@@ -282,18 +284,25 @@ TEST_CASE("laws refuse bad parameters by name, value, unit and range", "[law][in
     using Pairs = Multilinear<double, 3>;
     CHECK(message_of([] { Pairs(std::span<const StrengthPoint<double>>{}); }) ==
           "Multilinear.size = 0: must be in [1, 3]");
-    CHECK(message_of([] { Pairs({{0, 1}, {1, 1}, {2, 1}, {3, 1}}); }) ==
-          "Multilinear.size = 4: must be in [1, 3]");
-    CHECK(message_of([] { Pairs({{0.5, 1}}); }) ==
-          "Multilinear.points[0].travel = 0.5 m or rad: must be 0");
-    CHECK(message_of([] { Pairs({{0, 1}, {0.2, 2}, {0.2, 3}}); }) ==
-          "Multilinear.points[2].travel = 0.2 m or rad: must be in (0.2, inf) m or rad");
-    CHECK(message_of([] { Pairs({{0, 1}, {0.2, 0}, {0.3, 3}}); }) ==
-          "Multilinear.points[1].strength = 0 N or N m: must be finite and > 0");
-    CHECK(message_of([] { Pairs({{0, 1}, {0.2, -1}}); }) ==
-          "Multilinear.points[1].strength = -1 N or N m: must be finite and >= 0");
-    CHECK(message_of([] { Pairs({{0, 0}}); }) ==
-          "Multilinear.points[0].strength = 0 N or N m: must be finite and > 0");
-    CHECK(message_of([] { Pairs({{0, 1}, {1, std::nan("")}}); }) ==
-          "Multilinear.points[1].strength = nan N or N m: must be finite and >= 0");
+    CHECK(message_of([] {
+              Pairs({{0, 1}, {1, 1}, {2, 1}, {3, 1}});
+          }) == "Multilinear.size = 4: must be in [1, 3]");
+    CHECK(message_of([] {
+              Pairs({{0.5, 1}});
+          }) == "Multilinear.points[0].travel = 0.5 m or rad: must be 0");
+    CHECK(message_of([] {
+              Pairs({{0, 1}, {0.2, 2}, {0.2, 3}});
+          }) == "Multilinear.points[2].travel = 0.2 m or rad: must be in (0.2, inf) m or rad");
+    CHECK(message_of([] {
+              Pairs({{0, 1}, {0.2, 0}, {0.3, 3}});
+          }) == "Multilinear.points[1].strength = 0 N or N m: must be finite and > 0");
+    CHECK(message_of([] {
+              Pairs({{0, 1}, {0.2, -1}});
+          }) == "Multilinear.points[1].strength = -1 N or N m: must be finite and >= 0");
+    CHECK(message_of([] {
+              Pairs({{0, 0}});
+          }) == "Multilinear.points[0].strength = 0 N or N m: must be finite and > 0");
+    CHECK(message_of([] {
+              Pairs({{0, 1}, {1, std::nan("")}});
+          }) == "Multilinear.points[1].strength = nan N or N m: must be finite and >= 0");
 }
