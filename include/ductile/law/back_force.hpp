@@ -4,9 +4,8 @@
 // Bauschinger effect). They depend on the signed flow, while a StrengthLaw depends on its total.
 //
 //   none                 x = 0
-//   Prager               dx = H du_p                       stored  x²/(2H)
-//   Armstrong-Frederick  dx = C du_p - γ x |du_p|          stored  x²/(2C), dissipates γ x²/C per
-//   travel
+//   Prager               dx = H du_p                       stores x²/(2H)
+//   Armstrong-Frederick  dx = C du_p - γ x |du_p|          stores x²/(2C), loses γ x²/C per travel
 //
 // Symbols ("x | y": translational row | rotational row)
 //   x    back force                         [N | N m]
@@ -15,8 +14,9 @@
 //   γ    recall: x saturates at ±C/γ        [1/m | 1/rad]
 //
 // Along flow in one direction s = ±1 Armstrong-Frederick has the closed form used here, so that
-// cutting a step changes nothing: with y = s x and a = C/γ,  y(δ) = a + (y0 - a) exp(-γ δ). Limit
-// cases: γ → 0 is Prager; C = γ a with γ → ∞ is a jump of the range by a.
+// cutting a step changes nothing: with y = s x and a = C/γ,  y(δ) = a + (y0 - a) exp(-γ δ).
+//
+// Limit cases: γ → 0 is Prager; C = γ a with γ → ∞ is a jump of the range by a.
 //
 // Source: Prager (1956), J. Appl. Mech. 23, 493-496; Frederick and Armstrong (2007), Materials at
 // High Temperatures 24, 1-26 (reprint of the CEGB report of 1966); free energy after Lemaitre and
@@ -32,20 +32,16 @@
 
 namespace ductile {
 
-/// `shifted(x, increment)` is the back force after a signed increment of flow in one direction
-/// [N | N m]; `slope(x, direction)` is dx/du_p for flow in `direction` = ±1 [N/m | N m/rad], never
-/// such that x moves against the flow; `stored(x)` is what it holds [J]; `dissipated(x, increment)`
-/// >= 0 is what it loses on the way from x [J].
+/// - `shifted(x, increment)`: back force after a signed increment of flow [N | N m]
+/// - `slope(x, direction)`: dx/du_p for flow in `direction` = ±1, never negative [N/m | N m/rad]
+/// - `stored(x)`: what it holds [J]
+/// - `dissipated(x, increment)`: what it loses on the way from x, >= 0 [J]
 template <class T>
 concept BackForceLaw = requires(const T law, typename T::Scalar x) {
-    { law.shifted(x, x) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.slope(x, x) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.stored(x) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.dissipated(x, x) }
-    noexcept->std::same_as<typename T::Scalar>;
+    { law.shifted(x, x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.slope(x, x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.stored(x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.dissipated(x, x) } noexcept -> std::same_as<typename T::Scalar>;
 };
 
 /// The elastic range stays centred on zero.

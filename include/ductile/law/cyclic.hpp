@@ -43,26 +43,24 @@ struct FlowWork {
     S stored = 0;     ///< change of what the law holds, either sign [J]
 };
 
-/// `prepare(state, predicted)` gives the range for a step whose plastic increment is predicted as
-/// `predicted`, signed [m | rad]: at its midpoint in the direction of flow, as it stands in the
-/// other. `commit(state, increment)` flows by the signed increment [m | rad]. `resistance(state,
-/// travel, direction)` is the signed force [N | N m] after flow by `travel` >= 0 in `direction` =
-/// ±1, and `tangent` its derivative by signed flow [N/m | N m/rad]. `stored(state)` is what the law
-/// holds [J].
+/// - `prepare(state, predicted)`: range for a step with this predicted signed increment [m | rad],
+/// at
+///   the midpoint of the flow on its side, as it stands on the other
+/// - `commit(state, increment)`: flows by the signed increment [m | rad]
+/// - `resistance(state, travel, direction)`: signed force after flow by `travel` >= 0 in
+/// `direction`
+///   = ±1 [N | N m]
+/// - `tangent(state, travel, direction)`: its derivative by signed flow [N/m | N m/rad]
+/// - `stored(state)`: what the law holds [J]
 template <class T>
 concept CyclicLaw = std::regular<typename T::State> &&
     requires(const T law, typename T::State state, typename T::Scalar x) {
     requires std::floating_point<typename T::Scalar>;
-    { law.prepare(state, x) }
-    noexcept->std::same_as<ForceRange<typename T::Scalar>>;
-    { law.commit(state, x) }
-    noexcept->std::same_as<FlowWork<typename T::Scalar>>;
-    { law.resistance(state, x, x) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.tangent(state, x, x) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.stored(state) }
-    noexcept->std::same_as<typename T::Scalar>;
+    { law.prepare(state, x) } noexcept -> std::same_as<ForceRange<typename T::Scalar>>;
+    { law.commit(state, x) } noexcept -> std::same_as<FlowWork<typename T::Scalar>>;
+    { law.resistance(state, x, x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.tangent(state, x, x) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.stored(state) } noexcept -> std::same_as<typename T::Scalar>;
 };
 
 /// What one move of a HysteresisLaw did. The work done on it is dissipated + the change of `held`.
@@ -73,23 +71,20 @@ struct HysteresisStep {
     S dissipated = 0;        ///< >= 0 [J]
 };
 
-/// `project(state, position)` moves the law to `position` along a straight path and returns the
-/// force to the admissible set; a path without reversals may be cut into any number of moves.
-/// `force(state, position)` is the force of a state that was projected to `position`.
-/// `held(state, position)` is what the law holds there: elastic and stored [J].
-/// `stiffness()` is the elastic stiffness [N/m | N m/rad], the steepest the law can be.
+/// - `project(state, position)`: moves to `position` [m | rad] along a straight path and returns
+/// the
+///   force to the admissible set; a path without reversals may be cut into any number of moves
+/// - `force(state, position)`: force of a state that was projected to `position` [N | N m]
+/// - `held(state, position)`: what the law holds there, elastic and stored [J]
+/// - `stiffness()`: elastic, the steepest the law can be [N/m | N m/rad]
 template <class T>
 concept HysteresisLaw = std::regular<typename T::State> &&
     requires(const T law, typename T::State state, typename T::Scalar position) {
     requires std::floating_point<typename T::Scalar>;
-    { law.project(state, position) }
-    noexcept->std::same_as<HysteresisStep<typename T::Scalar>>;
-    { law.force(state, position) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.held(state, position) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.stiffness() }
-    noexcept->std::same_as<typename T::Scalar>;
+    { law.project(state, position) } noexcept -> std::same_as<HysteresisStep<typename T::Scalar>>;
+    { law.force(state, position) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.held(state, position) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.stiffness() } noexcept -> std::same_as<typename T::Scalar>;
 };
 
 } // namespace ductile

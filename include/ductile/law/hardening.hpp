@@ -47,7 +47,7 @@ struct HardeningState {
 
 /// Immutable value; O(1) and noexcept after construction.
 template <StrengthLaw Law, BackForceLaw Back = NoBackForce<typename Law::Scalar>>
-requires std::same_as<typename Law::Scalar, typename Back::Scalar>
+    requires std::same_as<typename Law::Scalar, typename Back::Scalar>
 class Hardening {
   public:
     using Scalar = typename Law::Scalar;

@@ -14,13 +14,13 @@
 //   F_i  slip force of element i                     [N | N m]
 //   k_f  final stiffness, that of a spring beside the elements, which does not slip [N/m | N m/rad]
 //
-// From a backbone (u_1, F_1) ... (u_n, F_n), concave, with secants c_i over its pieces and c_{n+1}
-// = k_f:
+// From a concave backbone (u_i, F_i), c_i the secant of the piece that ends there, c_{n+1} = k_f:
 //
 //   k_i = c_i - c_{i+1},   slip force k_i u_i
 //
 // Each element is solved exactly along a straight path, so cutting a path without reversals
 // changes nothing. Loop energy between ±u_a: Σ 4 F_i (u_a - F_i/k_i)₊ (plus nothing for k_f).
+//
 // Limit cases: one element is elastic-perfectly plastic; one element and k_f is Prager's law.
 //
 // Source: Masing (1926), Proc. 2nd Int. Congr. Appl. Mech., 332-335; Iwan (1966), J. Appl. Mech.

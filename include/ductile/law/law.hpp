@@ -28,20 +28,16 @@ namespace ductile {
 template <class T>
 concept StrengthLaw = requires(const T law, typename T::Scalar travel) {
     requires std::floating_point<typename T::Scalar>;
-    { law.value(travel) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.slope(travel) }
-    noexcept->std::same_as<typename T::Scalar>;
-    { law.work(travel, travel) }
-    noexcept->std::same_as<typename T::Scalar>;
+    { law.value(travel) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.slope(travel) } noexcept -> std::same_as<typename T::Scalar>;
+    { law.work(travel, travel) } noexcept -> std::same_as<typename T::Scalar>;
 };
 
 /// A law that can fade to nothing: `exhaustion()` is the smallest p with R(p) = 0 [m | rad],
 /// infinity where there is none.
 template <class T>
 concept ExhaustibleLaw = StrengthLaw<T> && requires(const T law) {
-    { law.exhaustion() }
-    noexcept->std::same_as<typename T::Scalar>;
+    { law.exhaustion() } noexcept -> std::same_as<typename T::Scalar>;
 };
 
 /// p_f of any law [m | rad]; infinity for one that cannot fade.

@@ -56,8 +56,8 @@ struct MomentCurvaturePoint {
 /// not for their steps. Allocates nothing.
 template <FibreSection Section, StressStrainCurve Curve,
           class Rule = AdaptiveFibres<typename Section::Scalar>>
-requires std::same_as<typename Section::Scalar, typename Curve::Scalar> &&
-    FibreRule<Rule, typename Section::Scalar>
+    requires std::same_as<typename Section::Scalar, typename Curve::Scalar> &&
+             FibreRule<Rule, typename Section::Scalar>
 class MomentCurvature {
   public:
     using Scalar = typename Section::Scalar;

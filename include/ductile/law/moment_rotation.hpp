@@ -58,7 +58,7 @@ struct MomentRotation {
 
 /// Law of a hinge that bends in the direction of positive curvature.
 /// @throws std::invalid_argument where a parameter is missing (NaN) or out of range, or where the
-/// section stays elastic up to the largest curvature.
+/// section stays elastic up to the largest curvature, or flows under its axial force alone.
 template <std::size_t Capacity = 32, class Section, class Curve, class Rule>
 [[nodiscard]] MomentRotation<typename Section::Scalar, Capacity> moment_rotation(
     const MomentCurvature<Section, Curve, Rule>& bending,
@@ -82,8 +82,11 @@ template <std::size_t Capacity = 32, class Section, class Curve, class Rule>
     }
     // walk down by halves: the excess has a second root at zero
     S below = last;
-    while (plastic_excess(below) > 0 && below > last * std::numeric_limits<S>::epsilon())
-        below /= 2;
+    while (plastic_excess(below) > 0 && below > S(1e-6) * last) below /= 2;
+    if (plastic_excess(below) > 0) {
+        check::fail("Hinge.proof", proof, "",
+                    "more than the plastic share under axial force and no curvature");
+    }
     const S first =
         bracketed_root(below, std::min(2 * below, last), S(1e-6) * below, plastic_excess);
 

@@ -15,9 +15,9 @@
 // linear hardening and ends always. A path without reversals may be cut into any moves with the
 // same result.
 //
-// Softening steeper than k has several roots (snap-back): one is taken, the force never leaves the
-// admissible range, and the work the spring gives back beyond what is dissipated must be looked for
-// in dissipated + change of held against the work of the bodies.
+// Softening steeper than k has several roots (snap-back): one is taken and the force never leaves
+// the admissible range. What the spring then sets free, work done - dissipated - change of held, is
+// lost to the law; a joint hands it to the bodies.
 //
 // Limit cases: k → ∞ the rigid-plastic law; R → ∞ an elastic spring.
 //

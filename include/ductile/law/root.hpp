@@ -5,8 +5,8 @@
 // the function is monotone.
 //
 // Source: Press et al. (2007), Numerical Recipes, 3rd ed., section 9.4 (Newton with bisection);
-// Dowell and Jarratt (1971), BIT 11, 168-174 (the Illinois rule), with a bisection every third step
-// so that the bracket shrinks at a known rate.
+// Chandrupatla (1997), Advances in Engineering Software 28, 145-149 (inverse quadratic
+// interpolation with bisection).
 #pragma once
 
 #include <algorithm>
@@ -46,31 +46,47 @@ template <std::floating_point S, class F>
 }
 
 /// Root of f between `a` and `b`, where f(a) and f(b) do not have the same sign, to within
-/// `resolution` >= 0 or round-off.
+/// `resolution` >= 0 or round-off. Inverse quadratic steps where the last three points say that
+/// they are safe, else bisection.
 template <std::floating_point S, class F>
-[[nodiscard]] S bracketed_root(S a, S b, S resolution, F&& f) noexcept {
+[[nodiscard]] S bracketed_root(S a, S b, S resolution, F&& f) noexcept(noexcept(f(a))) {
     constexpr int most = 300;
     S fa = f(a);
     S fb = f(b);
     if (fa == 0) return a;
-    for (int i = 0; i < most && fb != 0; ++i) {
-        const S width = std::abs(b - a);
-        const S round_off =
-            2 * std::numeric_limits<S>::epsilon() * std::max(std::abs(a), std::abs(b));
-        if (width <= std::max(resolution, round_off)) break;
-        S x = i % 3 == 2 ? a + (b - a) / 2 : b - fb * (b - a) / (fb - fa);
-        if (!(x > std::min(a, b) && x < std::max(a, b))) x = a + (b - a) / 2;
+    if (fb == 0) return b;
+    S share = S(0.5);
+    for (int i = 0; i < most; ++i) {
+        const S x = a + share * (b - a);
         const S fx = f(x);
-        if ((fx > 0) == (fb > 0)) {
-            fa /= 2; // the end that stays weighs half, or it would stay for good
+        // c: the end that is given up
+        S c = b;
+        S fc = fb;
+        if ((fx > 0) == (fa > 0)) {
+            c = a;
+            fc = fa;
         } else {
-            a = b;
-            fa = fb;
+            b = a;
+            fb = fa;
         }
-        b = x;
-        fb = fx;
+        a = x;
+        fa = fx;
+        const bool a_is_best = std::abs(fa) < std::abs(fb);
+        const S best = a_is_best ? a : b;
+        if ((a_is_best ? fa : fb) == 0) return best;
+        const S round_off = 2 * std::numeric_limits<S>::epsilon() * std::abs(best);
+        const S least = std::max(resolution, round_off) / std::abs(b - a);
+        if (!(least < S(0.5))) return best;
+        const S xi = (a - b) / (c - b);
+        const S phi = (fa - fb) / (fc - fb);
+        share = S(0.5);
+        if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+            share = fa / (fb - fa) * (fc / (fb - fc)) +
+                    (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb));
+        }
+        share = std::clamp(share, least, 1 - least);
     }
-    return b;
+    return a;
 }
 
 } // namespace ductile

@@ -12,7 +12,7 @@
 //   p_s  travel at which softening starts [m | rad]
 //   p_f  exhaustion, where R is zero      [m | rad]
 //
-// A brittle break is p_s = p_max with p_f just beyond it. Softening by any other curve: Multilinear
+// An abrupt break is p_f just beyond p_s. Softening by any other curve: Multilinear
 // pairs that end at zero. How a break follows from p_f: law.hpp.
 //
 // Limit of use: a softening slope steeper than the stiffness of what loads it, R0/(p_f - p_s) > k,

@@ -125,6 +125,47 @@ TEST_CASE("midpoint fibres reach the closed form to second order (P10)", "[law][
     }
 }
 
+TEST_CASE("the rules integrate polynomials as their order says", "[law][fibres]") {
+    const auto square = [](double y) { return y * y; };
+    // midpoint: exact for lines, short by h² × width/12 for the square
+    CHECK(MidpointFibres<double>(10).integrate(0.0, 1.0, square) ==
+          Approx(1.0 / 3 - 1e-2 / 12).epsilon(1e-13));
+    CHECK(MidpointFibres<double>(3).integrate(1.0, 3.0, [](double y) { return y; }) ==
+          Approx(4).epsilon(1e-14));
+    // Simpson with its extrapolation: exact to the fifth power however loose the tolerance
+    CHECK(AdaptiveFibres<double>(0.09).integrate(0.0, 2.0, [](double y) {
+        return std::pow(y, 5);
+    }) == Approx(64.0 / 6).epsilon(1e-13));
+    // a jump anywhere is closed in upon
+    CHECK(AdaptiveFibres<double>().integrate(0.0, 1.0, [](double y) {
+        return y < 0.3217 ? 1.0 : 5.0;
+    }) == Approx(0.3217 + 5 * (1 - 0.3217)).epsilon(1e-9));
+}
+
+TEST_CASE("coarse fibres of an unsymmetric section are elastic with the stiffness they claim",
+          "[law][fibres]") {
+    const MomentCurvature tee(Tee{}, steel(), MidpointFibres<double>(17));
+    CHECK(tee.moment(1e-3) == Approx(tee.bending_stiffness() * 1e-3).epsilon(1e-12));
+    CHECK(tee.residual_curvature(1e-3) == Approx(0).margin(1e-14));
+}
+
+TEST_CASE("a section beyond yield under axial force bends on its second slope", "[law][fibres]") {
+    const double Np = fy * 0.005;
+    for (const double n : {-1.2, 1.2}) {
+        const MomentCurvature plate(Plate<double>{}, steel(0.02), AdaptiveFibres<double>(), n * Np);
+        const auto point = plate.at(0.1 * ky); // strains of 11 ± 0.1 yield strains
+        CHECK(point.moment == Approx(0.02 * 0.1 * My).epsilon(1e-6));
+        CHECK(point.axial_strain ==
+              Approx(std::copysign(fy / E * (1 + 0.2 / 0.02), n)).epsilon(1e-8));
+        CHECK(message_of([&] {
+                  (void)moment_rotation(plate,
+                                        HingeParameters<double>{.length = 0.1, .curvature_max = 1});
+              }) ==
+              "Hinge.proof = 0.001: must be more than the plastic share under axial force and no "
+              "curvature");
+    }
+}
+
 TEST_CASE("adaptive fibres hold their tolerance at little cost", "[law][fibres][order]") {
     const RambergOsgood curve(
         RambergOsgoodParameters{.youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});

@@ -68,6 +68,17 @@ double peak(const Law& law, const typename Law::State& state, double from, doubl
     return from + direction * low;
 }
 
+/// A law that counts how often its value is asked for.
+template <StrengthLaw Law>
+struct Counted {
+    using Scalar = double;
+    Law law;
+    int* calls;
+    double value(double p) const noexcept { return ++*calls, law.value(p); }
+    double slope(double p) const noexcept { return law.slope(p); }
+    double work(double a, double b) const noexcept { return law.work(a, b); }
+};
+
 struct Oscillation {
     double peak = 0;
     double set = 0;
@@ -209,6 +220,24 @@ TEST_CASE("mixed and non-linear hardening return to the range along the exact fl
             RC_ASSERT(std::abs(dissipated_one - dissipated_many) < 1e-10);
         }
     });
+}
+
+TEST_CASE("the return takes one Newton step for linear hardening and few for Voce",
+          "[law][return_map]") {
+    int calls = 0;
+    const ReturnMap line(
+        k, IsotropicHardening<Counted<Linear<double>>>(
+               {Linear(LinearParameters{.strength = 4.0, .hardening = 90.0}), &calls}));
+    decltype(line)::State a;
+    line.project(a, 0.5);
+    CHECK(calls <= 5); // range: 2, start: 1, there: 1, and one that confirms
+    calls = 0;
+    const ReturnMap curved(
+        k, IsotropicHardening<Counted<Voce<double>>>(
+               {Voce(VoceParameters{.strength = 4.0, .saturation = 30.0, .rate = 9.0}), &calls}));
+    decltype(curved)::State b;
+    curved.project(b, 0.5);
+    CHECK(calls <= 10);
 }
 
 TEST_CASE("a softening spring fades to zero and stays there, having taken its area",

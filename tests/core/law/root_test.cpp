@@ -39,7 +39,21 @@ TEST_CASE("the bracketed search finds roots of smooth, flat and jumping function
           Approx(0.3).margin(1e-12));
     CHECK(bracketed_root(-1.0, 5.0, 0.0, [](double x) { return x < 0.7 ? -1e6 : 1.0; }) ==
           Approx(0.7).epsilon(1e-14));
-    CHECK(bracketed_root(0.0, 1.0, 0.0, [](double x) { return x; }) == 0.0);
+    for (const double sign : {-1.0, 1.0}) {
+        const auto line = [&](double x) { return sign * x; };
+        CHECK(bracketed_root(0.0, 1.0, 0.0, line) == 0.0);
+        CHECK(bracketed_root(-1.0, 0.0, 0.0, line) == 0.0);
+    }
     CHECK(bracketed_root(0.0f, 2.0f, 0.0f, [](float x) { return x * x - 2; }) ==
           Approx(std::sqrt(2.0)).epsilon(1e-6));
+}
+
+TEST_CASE("the bracketed search is much quicker than bisection on a bent function", "[law][root]") {
+    int calls = 0;
+    const double root = bracketed_root(0.0, 10.0, 0.0, [&](double x) {
+        ++calls;
+        return std::exp(x) - 20;
+    });
+    CHECK(root == Approx(std::log(20.0)).epsilon(1e-14));
+    CHECK(calls <= 25); // bisection needs 54
 }
