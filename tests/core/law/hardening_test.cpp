@@ -31,12 +31,12 @@ using Kinematic = KinematicHardening<double>;
 using Isotropic = IsotropicHardening<Linear<double>>;
 using Mixed = Hardening<Voce<double>, ArmstrongFrederick<double>>;
 
-const Kinematic kinematic(Perfect(PerfectParameters{.strength = 4.0}),
-                          Prager(PragerParameters{.modulus = 20.0}));
-const Isotropic isotropic(Linear(LinearParameters{.strength = 4.0, .hardening = 20.0}));
-const Mixed mixed(Voce(VoceParameters{.strength = 4.0, .saturation = 2.0, .rate = 5.0}),
-                  ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 60.0,
-                                                                  .recall = 12.0}));
+const Kinematic kinematic(Perfect(PerfectParameters<double>{.strength = 4.0}),
+                          Prager(PragerParameters<double>{.modulus = 20.0}));
+const Isotropic isotropic(Linear(LinearParameters<double>{.strength = 4.0, .hardening = 20.0}));
+const Mixed mixed(Voce(VoceParameters<double>{.strength = 4.0, .saturation = 2.0, .rate = 5.0}),
+                  ArmstrongFrederick(ArmstrongFrederickParameters<double>{.modulus = 60.0,
+                                                                          .recall = 12.0}));
 
 struct Flown {
     double displacement = 0; ///< u_p, work-conjugate
@@ -186,15 +186,16 @@ TEST_CASE("the tangent is the finite difference of the resistance", "[law][harde
 }
 
 TEST_CASE("Armstrong-Frederick saturates, and tends to Prager without recall", "[law][hardening]") {
-    const ArmstrongFrederick law(ArmstrongFrederickParameters{.modulus = 60.0, .recall = 12.0});
+    const ArmstrongFrederick law(
+        ArmstrongFrederickParameters<double>{.modulus = 60.0, .recall = 12.0});
     CHECK(law.shifted(0, 10) == Approx(5).epsilon(1e-14));
     CHECK(law.shifted(0, -10) == Approx(-5).epsilon(1e-14));
     CHECK(law.shifted(0, 0.1) == Approx(5 * (1 - std::exp(-1.2))).epsilon(1e-14));
     // all work at saturation is lost: rate γ a²/C = a
     CHECK(law.dissipated(5, 0.1) == Approx(0.5).epsilon(1e-13));
     const ArmstrongFrederick straight(
-        ArmstrongFrederickParameters{.modulus = 60.0, .recall = 1e-9});
-    const Prager prager(PragerParameters{.modulus = 60.0});
+        ArmstrongFrederickParameters<double>{.modulus = 60.0, .recall = 1e-9});
+    const Prager prager(PragerParameters<double>{.modulus = 60.0});
     CHECK(straight.shifted(0.5, 0.2) == Approx(prager.shifted(0.5, 0.2)).epsilon(1e-8));
     CHECK(straight.stored(0.5) == prager.stored(0.5));
 }
@@ -222,8 +223,8 @@ TEST_CASE("kinematic hardening gives stored work back until zero force is inside
           "[law][hardening][order]") {
     // First stop at x = H u > R: flows back from rest; every excursion by energy,
     // H u²/2 + R |u - u0| = H u0²/2
-    const Kinematic law(Perfect(PerfectParameters{.strength = 1.0}),
-                        Prager(PragerParameters{.modulus = 20.0}));
+    const Kinematic law(Perfect(PerfectParameters<double>{.strength = 1.0}),
+                        Prager(PragerParameters<double>{.modulus = 20.0}));
     double u = (-1 + std::sqrt(1 + 40.0)) / 20;
     double travel = u;
     while (20 * std::abs(u) > 1) {

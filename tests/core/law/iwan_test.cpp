@@ -115,8 +115,8 @@ TEST_CASE("unloading follows the backbone doubled, as Masing's rule says",
 
 TEST_CASE("N elements approach the Ramberg-Osgood loop to second order (P09)",
           "[law][iwan][order]") {
-    const RambergOsgood curve(
-        RambergOsgoodParameters{.youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});
+    const RambergOsgood curve(RambergOsgoodParameters<double>{
+        .youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});
     struct Row {
         double stress;
         std::array<double, 4> energy;
@@ -144,9 +144,10 @@ TEST_CASE("one element is perfectly plastic, one element and a spring are Prager
     constexpr double alpha = 0.1;
     const std::array<IwanElement<double>, 1> one{{{k * (1 - alpha), 4 * (1 - alpha)}}};
     const Iwan<double, 1> iwan(one, alpha * k);
-    const ReturnMap prager(k, KinematicHardening<double>(
-                                  Perfect(PerfectParameters{.strength = 4.0}),
-                                  Prager(PragerParameters{.modulus = alpha * k / (1 - alpha)})));
+    const ReturnMap prager(
+        k, KinematicHardening<double>(
+               Perfect(PerfectParameters<double>{.strength = 4.0}),
+               Prager(PragerParameters<double>{.modulus = alpha * k / (1 - alpha)})));
     Iwan<double, 1>::State a;
     decltype(prager)::State b;
     for (const double to : {0.1, -0.03, 0.02, -0.3, 0.15}) {

@@ -57,8 +57,8 @@ constexpr double Mp = 31250;
 constexpr double ky = 0.025;
 
 BilinearCurve<double> steel(double ratio = 0) {
-    return BilinearCurve(
-        BilinearCurveParameters{.youngs_modulus = E, .yield_stress = fy, .slope_ratio = ratio});
+    return BilinearCurve(BilinearCurveParameters<double>{
+        .youngs_modulus = E, .yield_stress = fy, .slope_ratio = ratio});
 }
 double exact_plate(double k) { return k <= ky ? k / ky * My : Mp * (1 - ky * ky / (3 * k * k)); }
 
@@ -167,8 +167,8 @@ TEST_CASE("a section beyond yield under axial force bends on its second slope", 
 }
 
 TEST_CASE("adaptive fibres hold their tolerance at little cost", "[law][fibres][order]") {
-    const RambergOsgood curve(
-        RambergOsgoodParameters{.youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});
+    const RambergOsgood curve(RambergOsgoodParameters<double>{
+        .youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});
     int calls = 0;
     const Counted counted{&curve, &calls};
     const auto moment = [&](double tolerance) {
@@ -261,9 +261,9 @@ TEST_CASE("fibres work in float and in other units", "[law][fibres][units]") {
                                                                      .yield_stress = 250e6f}));
     CHECK(single.moment(0.05f) == Approx(exact_plate(0.05)).epsilon(1e-5));
     // mm, N, MPa: N mm
-    const MomentCurvature mm(
-        Plate<double>{50, 100},
-        BilinearCurve(BilinearCurveParameters{.youngs_modulus = 200e3, .yield_stress = 250.0}));
+    const MomentCurvature mm(Plate<double>{50, 100},
+                             BilinearCurve(BilinearCurveParameters<double>{.youngs_modulus = 200e3,
+                                                                           .yield_stress = 250.0}));
     CHECK(mm.moment(0.05e-3) == Approx(1e3 * exact_plate(0.05)).epsilon(1e-8));
 }
 

@@ -31,9 +31,10 @@ constexpr double R = 4;
 constexpr double H = 0.1 * k / 0.9;
 constexpr double mass = 2;
 constexpr double energy = 1; // m v0²/2 with v0 = 1 m/s
-const Kinematic kinematic(k, KinematicHardening<double>(Perfect(PerfectParameters{.strength = R}),
-                                                        Prager(PragerParameters{.modulus = H})));
-const Isotropic isotropic(k, IsotropicHardening<Linear<double>>(Linear(LinearParameters{
+const Kinematic kinematic(
+    k, KinematicHardening<double>(Perfect(PerfectParameters<double>{.strength = R}),
+                                  Prager(PragerParameters<double>{.modulus = H})));
+const Isotropic isotropic(k, IsotropicHardening<Linear<double>>(Linear(LinearParameters<double>{
                                  .strength = R, .hardening = H})));
 constexpr double printed = 1e-6; // the reference figures have 7 digits
 
@@ -196,9 +197,9 @@ TEST_CASE("mixed and non-linear hardening return to the range along the exact fl
           "[law][return_map][property]") {
     using Law = ReturnMap<Hardening<Voce<double>, ArmstrongFrederick<double>>>;
     const Law law(
-        k, Hardening(
-               Voce(VoceParameters{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
-               ArmstrongFrederick(ArmstrongFrederickParameters{.modulus = 30.0, .recall = 8.0})));
+        k, Hardening(Voce(VoceParameters<double>{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
+                     ArmstrongFrederick(
+                         ArmstrongFrederickParameters<double>{.modulus = 30.0, .recall = 8.0})));
     rc::prop("on the bound, and the same in one move or in several", [&] {
         Law::State one;
         Law::State many;
@@ -227,14 +228,15 @@ TEST_CASE("the return takes one Newton step for linear hardening and few for Voc
     int calls = 0;
     const ReturnMap line(
         k, IsotropicHardening<Counted<Linear<double>>>(
-               {Linear(LinearParameters{.strength = 4.0, .hardening = 90.0}), &calls}));
+               {Linear(LinearParameters<double>{.strength = 4.0, .hardening = 90.0}), &calls}));
     decltype(line)::State a;
     line.project(a, 0.5);
     CHECK(calls <= 5); // range: 2, start: 1, there: 1, and one that confirms
     calls = 0;
     const ReturnMap curved(
         k, IsotropicHardening<Counted<Voce<double>>>(
-               {Voce(VoceParameters{.strength = 4.0, .saturation = 30.0, .rate = 9.0}), &calls}));
+               {Voce(VoceParameters<double>{.strength = 4.0, .saturation = 30.0, .rate = 9.0}),
+                &calls}));
     decltype(curved)::State b;
     curved.project(b, 0.5);
     CHECK(calls <= 10);
@@ -243,7 +245,7 @@ TEST_CASE("the return takes one Newton step for linear hardening and few for Voc
 TEST_CASE("a softening spring fades to zero and stays there, having taken its area",
           "[law][return_map]") {
     const Softening fading(
-        SofteningParameters{.strength = 10.0, .plateau = 0.1, .exhaustion = 0.5});
+        SofteningParameters<double>{.strength = 10.0, .plateau = 0.1, .exhaustion = 0.5});
     const ReturnMap law(100.0, IsotropicHardening<Softening<double>>(fading));
     for (const int parts : {10, 1000}) {
         decltype(law)::State state;
@@ -256,7 +258,7 @@ TEST_CASE("a softening spring fades to zero and stays there, having taken its ar
 
 TEST_CASE("a spring steeper than the softening snaps back without leaving the range",
           "[law][return_map]") {
-    const Softening steep(SofteningParameters{.strength = 10.0, .exhaustion = 0.01});
+    const Softening steep(SofteningParameters<double>{.strength = 10.0, .exhaustion = 0.01});
     const ReturnMap law(100.0, IsotropicHardening<Softening<double>>(steep)); // slope 1000 > 100
     decltype(law)::State state;
     double dissipated = 0;

@@ -82,12 +82,12 @@ double share(int parts_of_thousand) { return parts_of_thousand / 1000.0; }
 } // namespace
 
 TEST_CASE("linear hardening, Voce and softening take their closed forms", "[law]") {
-    const Linear linear(LinearParameters{.strength = 4.0, .hardening = 20.0});
+    const Linear linear(LinearParameters<double>{.strength = 4.0, .hardening = 20.0});
     CHECK(linear.value(0.1) == 6.0);
     CHECK(linear.work(0.1, 0.3) == Approx(0.2 * 8).epsilon(1e-15));
 
-    const Voce voce(
-        VoceParameters{.strength = 250.0, .saturation = 100.0, .rate = 20.0, .hardening = 50.0});
+    const Voce voce(VoceParameters<double>{
+        .strength = 250.0, .saturation = 100.0, .rate = 20.0, .hardening = 50.0});
     CHECK(voce.value(0.0) == 250.0);
     CHECK(voce.value(0.05) == Approx(250 + 100 * (1 - std::exp(-1.0)) + 2.5).epsilon(1e-14));
     CHECK(voce.slope(0.0) == 100.0 * 20 + 50);
@@ -95,7 +95,7 @@ TEST_CASE("linear hardening, Voce and softening take their closed forms", "[law]
           Approx(350 * 0.05 - 5 * (1 - std::exp(-1.0)) + 25 * 0.0025).epsilon(1e-14));
 
     const Softening softening(
-        SofteningParameters{.strength = 10.0, .plateau = 0.2, .exhaustion = 0.6});
+        SofteningParameters<double>{.strength = 10.0, .plateau = 0.2, .exhaustion = 0.6});
     CHECK(softening.value(0.2) == 10.0);
     CHECK(softening.value(0.4) == Approx(5).epsilon(1e-15));
     CHECK(softening.value(0.6) == 0.0);
@@ -225,13 +225,13 @@ TEST_CASE("a law that fades takes exactly its area, and the break hands back the
 TEST_CASE("laws give the same answer in mm-t-s as in m-kg-s", "[law][units]") {
     // forces stay in N (t mm/s² = N), lengths × 1000, slopes and 1/length ÷ 1000, work in mJ × 1000
     const Voce m(
-        VoceParameters{.strength = 9e3, .saturation = 4e3, .rate = 30.0, .hardening = 2e4});
-    const Voce mm(
-        VoceParameters{.strength = 9e3, .saturation = 4e3, .rate = 30e-3, .hardening = 20.0});
+        VoceParameters<double>{.strength = 9e3, .saturation = 4e3, .rate = 30.0, .hardening = 2e4});
+    const Voce mm(VoceParameters<double>{
+        .strength = 9e3, .saturation = 4e3, .rate = 30e-3, .hardening = 20.0});
     const Softening soft_m(
-        SofteningParameters{.strength = 9e3, .plateau = 0.01, .exhaustion = 0.05});
+        SofteningParameters<double>{.strength = 9e3, .plateau = 0.01, .exhaustion = 0.05});
     const Softening soft_mm(
-        SofteningParameters{.strength = 9e3, .plateau = 10.0, .exhaustion = 50.0});
+        SofteningParameters<double>{.strength = 9e3, .plateau = 10.0, .exhaustion = 50.0});
     const Multilinear<double> pairs_m({{0, 9e3}, {0.02, 11e3}, {0.06, 8e3}});
     const Multilinear<double> pairs_mm({{0, 9e3}, {20, 11e3}, {60, 8e3}});
     constexpr double round_off = 1e-13;
@@ -251,11 +251,11 @@ TEST_CASE("laws give the same answer in mm-t-s as in m-kg-s", "[law][units]") {
 }
 
 TEST_CASE("the limit cases of Voce are linear hardening", "[law]") {
-    const Linear line(LinearParameters{.strength = 10.0, .hardening = 3.0});
+    const Linear line(LinearParameters<double>{.strength = 10.0, .hardening = 3.0});
     const Voce none(
-        VoceParameters{.strength = 10.0, .saturation = 0.0, .rate = 5.0, .hardening = 3.0});
+        VoceParameters<double>{.strength = 10.0, .saturation = 0.0, .rate = 5.0, .hardening = 3.0});
     const Voce fast(
-        VoceParameters{.strength = 8.0, .saturation = 2.0, .rate = 1e9, .hardening = 3.0});
+        VoceParameters<double>{.strength = 8.0, .saturation = 2.0, .rate = 1e9, .hardening = 3.0});
     for (const double p : {0.01, 0.3, 2.0}) {
         CHECK(none.value(p) == line.value(p));
         CHECK(none.work(0.005, p) == Approx(line.work(0.005, p)).epsilon(1e-14));

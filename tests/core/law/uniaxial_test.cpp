@@ -13,7 +13,7 @@ using ductile::test::message_of;
 namespace {
 static_assert(!StressStrainCurve<double>);
 
-const RambergOsgood curve(RambergOsgoodParameters{
+const RambergOsgood curve(RambergOsgoodParameters<double>{
     .youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});
 
 /// A curve that says nothing of its modulus.
@@ -56,13 +56,13 @@ TEMPLATE_TEST_CASE("Ramberg-Osgood inverts itself from tiny to huge strains",
 }
 
 TEST_CASE("the bilinear curve is elastic, then on its second slope", "[law][uniaxial]") {
-    const BilinearCurve steel(BilinearCurveParameters{
+    const BilinearCurve steel(BilinearCurveParameters<double>{
         .youngs_modulus = 200e9, .yield_stress = 250e6, .slope_ratio = 0.02});
     CHECK(steel.stress(0.001) == 200e6);
     CHECK(steel.stress(0.00225) == Approx(250e6 + 0.02 * 200e6).epsilon(1e-14));
     CHECK(steel.stress(-0.00225) == -steel.stress(0.00225));
     const BilinearCurve perfect(
-        BilinearCurveParameters{.youngs_modulus = 200e9, .yield_stress = 250e6});
+        BilinearCurveParameters<double>{.youngs_modulus = 200e9, .yield_stress = 250e6});
     CHECK(perfect.stress(1.0) == 250e6);
 }
 
