@@ -2,6 +2,8 @@
 //
 // Perfect plasticity: the strength does not change with plastic travel, R(p) = R.
 //
+//   ∫ R dp = R (p1 - p0)
+//
 // Limit cases: R → ∞ is a rigid joint, R → 0 a free one.
 #pragma once
 
@@ -29,6 +31,7 @@ class Perfect {
 
     [[nodiscard]] S value(S /*travel*/) const noexcept { return strength_; }
     [[nodiscard]] S slope(S /*travel*/) const noexcept { return 0; }
+    [[nodiscard]] S work(S from, S to) const noexcept { return strength_ * (to - from); }
 
   private:
     S strength_;
