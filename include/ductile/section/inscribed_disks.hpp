@@ -36,6 +36,12 @@ struct Stop {
     [[nodiscard]] W operator()(W u) const noexcept { return c0 + u * (c1 + u * c2); }
 };
 
+/// 1 - a·b of unit vectors, also where they are nearly the same.
+template <class W>
+[[nodiscard]] W one_minus_dot(Point<W> a, Point<W> b) noexcept {
+    return dot(a - b, a - b) / 2;
+}
+
 /// The outline, scaled to size 1 and counterclockwise, so that tolerances are plain numbers.
 template <class W, std::floating_point S>
 class UnitOutline {
@@ -137,7 +143,7 @@ class EdgeDisks {
     [[nodiscard]] Stop<W> by_edge(std::size_t k) const noexcept {
         if (k == index_) return {};
         const Edge<W> other(outline_, k);
-        const W opening = 1 - dot(other.inward, edge_.inward);
+        const W opening = one_minus_dot(other.inward, edge_.inward);
         if (!(opening > epsilon)) return {};
         const Point<W> offset = edge_.from - other.from;
         // Radius and place of touching are linear in s: t = t0 + t1 s, w = w0 + w1 s.
@@ -217,10 +223,10 @@ class VertexDisks {
         const Edge<W> other(outline_, k);
         const W height = dot(other.inward, at_ - other.from);
         if (!(height > epsilon)) return {};
-        const W ahead = dot(other.inward, bisector_);
-        Stop<W> stop{.c0 = (ahead - 1) / height,
+        const Point<W> outward = W(-1) * other.inward;
+        Stop<W> stop{.c0 = -one_minus_dot(other.inward, bisector_) / height,
                      .c1 = 2 * dot(other.inward, left_) / height,
-                     .c2 = -(1 + ahead) / height};
+                     .c2 = -one_minus_dot(outward, bisector_) / height};
         const auto end = [&](W place) {
             // Centre of the disk through the vertex that touches the line at `place`.
             const W reach = place - dot(other.along, at_ - other.from);

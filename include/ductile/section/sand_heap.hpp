@@ -32,6 +32,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <type_traits>
 
@@ -98,18 +99,19 @@ void clip_to_piece(const Disks& disks, const Nearest<W, Disks>& nearest, W u, W&
 template <class W, class Disks>
 [[nodiscard]] W heap_volume(const Disks& disks, W a, W b) noexcept {
     constexpr W inside = W(0.381966011250105152L); // golden, so that symmetric outlines rarely tie
-    constexpr W smallest = W(1e-12);
+    // Where edges meet, whether an obstacle is touched is lost in round-off: leave that length out.
+    constexpr W smallest = 1000 * std::numeric_limits<W>::epsilon();
+    if (!(b - a > smallest * (disks.last() - disks.first()))) return 0;
     const W u = a + inside * (b - a);
     const Nearest<W, Disks> nearest(disks, u);
-    if (nearest.index == disks.count()) return 0; // only where a and b agree to round-off
-    if (!(b - a > smallest * (disks.last() - disks.first()))) return disks.volume(nearest.stop, a, b);
+    if (nearest.index == disks.count()) return 0; // in round-off of a corner, as above
 
     W low = a;
     W high = b;
     clip_to_piece(disks, nearest, u, low, high);
     const W middle = (low + high) / 2;
     const W least = Nearest<W, Disks>(disks, middle).stop(middle);
-    if (nearest.stop(middle) - least > tolerance<W> * std::abs(least)) {
+    if (std::abs(nearest.stop(middle) - least) > tolerance<W> * std::abs(least)) {
         return heap_volume(disks, a, u) + heap_volume(disks, u, b);
     }
     W volume = disks.volume(nearest.stop, low, high);
