@@ -53,6 +53,8 @@ TEMPLATE_TEST_CASE("a stress-strain curve is straight between its pairs and leve
     CHECK(curve.tangent(S(0.006)) == near(10e9));
     CHECK(curve.tangent(S(0.161)) == near(-0.5e9));
     CHECK(curve.tangent(S(0.5)) == 0);
+    CHECK(curve.tangent(S(0.001)) == near(10e9)); // at a pair, of the piece beyond
+    CHECK(curve.tangent(S(0.211)) == 0);
 
     CHECK(curve.youngs_modulus() == near(E));
     CHECK(curve.yield_strain() == S(0.001));

@@ -184,6 +184,17 @@ TEST_CASE("bending about an axis at an angle is bending of the polygon turned ba
     });
 }
 
+TEST_CASE("the width of a polygon at its flat top and bottom is that of the edge there", "[section]") {
+    const LSection<double> angle({.width = 0.3, .height = 0.2, .thickness = 0.01});
+    const auto polygon = polygon_of(angle);
+    CHECK(polygon.width_at(polygon.highest()) == Approx(0.01).epsilon(1e-12));
+    CHECK(polygon.width_at(polygon.lowest()) == Approx(0.3).epsilon(1e-12));
+    CHECK(polygon.width_at(polygon.highest(y), y) == Approx(0.01).epsilon(1e-12));
+    CHECK(polygon.width_at(polygon.lowest(y), y) == Approx(0.2).epsilon(1e-12));
+    CHECK(angle.width_at(angle.highest()) == 0.01);
+    CHECK(angle.width_at(angle.lowest()) == 0.3);
+}
+
 TEST_CASE("the moments of a polygon are those of its cells", "[section]") {
     const auto outline = star(13, 3);
     const Polygon<double> polygon({.vertices = outline});

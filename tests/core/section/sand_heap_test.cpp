@@ -51,21 +51,40 @@ TEST_CASE("the sand heap on a polygon with an inscribed circle is a pyramid", "[
     });
 }
 
-TEST_CASE("the sand heap on an L is its closed form", "[section]") {
-    // Legs of length a, thickness t <= a/2, from the outer corner. Straight legs of length a - t, each
-    // with a hip at its free end, and the corner square. Height over the square is the least of the
-    // distances to the two outer sides and to the re-entrant corner; over the legs beside the square
-    // that corner cuts nothing off, distances to the leg's own sides being less. The square's part in
-    // polar coordinates around the re-entrant corner, and the rest, is done by cells here.
+TEST_CASE("the search along an edge survives a tie of two obstacles where it starts", "[section]") {
+    // The first obstacle rises with u, the second falls, and they tie exactly at the golden section,
+    // where the search looks first and takes the first of them.
+    struct Tied {
+        double at;
+        double first() const { return 0; }
+        double last() const { return 1; }
+        std::size_t count() const { return 2; }
+        detail::Stop<double> stop(std::size_t k) const {
+            return {.c0 = k == 0 ? 0 : 2 * at, .c1 = k == 0 ? 1.0 : -1.0, .c2 = 0};
+        }
+        bool holds(std::size_t, const detail::Stop<double>&, double) const { return true; }
+        double volume(const detail::Stop<double>& stop, double a, double b) const {
+            return (b - a) * stop((a + b) / 2);
+        }
+    };
+    const double golden = 0.381966011250105152;
+    const double expected = golden * golden / 2 + 2 * golden * (1 - golden) -
+                            (1 - golden * golden) / 2;
+    CHECK(detail::heap_volume(Tied{golden}, 0.0, 1.0) == Approx(expected).epsilon(1e-14));
+}
+
+TEST_CASE("the sand heap on an L is two hipped roofs and their corner", "[section]") {
+    // Two straight legs of length a - t, each a roof t²/4 per length less t³/24 at the hip of its free
+    // end, and the square they share, where the height is the least of the distances to the two outer
+    // sides and to the re-entrant corner. Over the square cells of 1/2000 are good to 1e-7.
     const double t = 1;
     const double a = 4;
     const Outline<double> outline{{0, 0}, {a, 0}, {a, t}, {t, t}, {t, a}, {0, a}};
-    const double straight = (a - t) * t * t / 4 - t * t * t / 24; // roof less half of a hipped end pair
+    const double straight = (a - t) * t * t / 4 - t * t * t / 24;
     const Outline<double> square{{0, 0}, {t, 0}, {t, t}, {0, t}};
     const double corner = over_cells(square, 2000, [&](Point<double> q) {
         return std::min({q.x, q.y, std::hypot(t - q.x, t - q.y)});
     });
-    // midpoint cells of 1/2000 across a continuous integrand: 1e-7
     CHECK(heap(outline) == Approx(2 * straight + corner).epsilon(1e-7));
 }
 
