@@ -8,11 +8,17 @@
 //   nu   Poisson's ratio            [-]
 //   f_y  yield stress               [Pa]
 //   G    shear modulus E/(2(1+nu))  [Pa]
+//   eps_y, eps_u  strain at yield f_y/E and at fracture [-]
+//
+// Stress beyond yield is a curve of its own, material/stress_strain_curve.hpp; named materials are in
+// material/named.hpp.
 #pragma once
 
 #include <concepts>
 #include <limits>
+#include <optional>
 
+#include "ductile/material/fatigue_constants.hpp"
 #include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
@@ -23,6 +29,9 @@ struct MaterialParameters {
     S youngs_modulus = std::numeric_limits<S>::quiet_NaN(); ///< E [Pa], > 0
     S poisson_ratio = std::numeric_limits<S>::quiet_NaN();  ///< nu [-], in (-1, 0.5)
     S yield_stress = std::numeric_limits<S>::quiet_NaN();   ///< f_y [Pa], > 0
+    /// eps_u [-], total engineering strain at which a fibre parts, > f_y/E; infinity: never
+    S ultimate_strain = std::numeric_limits<S>::infinity();
+    std::optional<FatigueConstants<S>> fatigue = std::nullopt; ///< none: no low-cycle fatigue
 };
 
 /// Immutable value; all members are noexcept after construction.
@@ -37,12 +46,24 @@ class Material {
           youngs_modulus_(check::positive("Material.youngs_modulus", parameters.youngs_modulus, "Pa")),
           poisson_ratio_(check::between("Material.poisson_ratio", parameters.poisson_ratio, S(-1),
                                         S(0.5), "")),
-          yield_stress_(check::positive("Material.yield_stress", parameters.yield_stress, "Pa")) {}
+          yield_stress_(check::positive("Material.yield_stress", parameters.yield_stress, "Pa")),
+          ultimate_strain_(checked_ultimate_strain(parameters)),
+          fatigue_(parameters.fatigue) {
+        if (fatigue_) checked(*fatigue_);
+    }
 
     [[nodiscard]] S density() const noexcept { return density_; }               ///< rho [kg/m³]
     [[nodiscard]] S youngs_modulus() const noexcept { return youngs_modulus_; } ///< E [Pa]
     [[nodiscard]] S poisson_ratio() const noexcept { return poisson_ratio_; }   ///< nu [-]
     [[nodiscard]] S yield_stress() const noexcept { return yield_stress_; }     ///< f_y [Pa]
+
+    [[nodiscard]] S ultimate_strain() const noexcept { return ultimate_strain_; } ///< eps_u [-]
+    [[nodiscard]] S yield_strain() const noexcept { return yield_stress_ / youngs_modulus_; }
+
+    /// Constants for low-cycle fatigue, where the material has them.
+    [[nodiscard]] const std::optional<FatigueConstants<S>>& fatigue() const noexcept {
+        return fatigue_;
+    }
 
     /// G = E / (2 (1 + nu)) [Pa]
     [[nodiscard]] S shear_modulus() const noexcept {
@@ -50,10 +71,22 @@ class Material {
     }
 
   private:
+    static S checked_ultimate_strain(const MaterialParameters<S>& parameters) {
+        constexpr auto field = "Material.ultimate_strain";
+        check::positive_or_infinite(field, parameters.ultimate_strain, "");
+        if (!(parameters.ultimate_strain > parameters.yield_stress / parameters.youngs_modulus)) {
+            check::fail(field, parameters.ultimate_strain, "",
+                        "> yield_stress / youngs_modulus (infinity: no limit)");
+        }
+        return parameters.ultimate_strain;
+    }
+
     S density_;
     S youngs_modulus_;
     S poisson_ratio_;
     S yield_stress_;
+    S ultimate_strain_;
+    std::optional<FatigueConstants<S>> fatigue_;
 };
 
 template <std::floating_point S>

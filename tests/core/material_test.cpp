@@ -38,3 +38,59 @@ TEST_CASE("a material names the parameter that is missing or out of range", "[ma
     CHECK(message_of([&] { Material<double>{bad}; }) ==
           "Material.youngs_modulus = inf Pa: must be finite and > 0");
 }
+
+TEST_CASE("a material without a limit of strain or fatigue constants says so", "[material]") {
+    const Material material(steel);
+    CHECK(material.ultimate_strain() == std::numeric_limits<double>::infinity());
+    CHECK_FALSE(material.fatigue().has_value());
+    CHECK(material.yield_strain() == 0.002);
+}
+
+TEST_CASE("a material keeps its ultimate strain and fatigue constants", "[material]") {
+    auto parameters = steel;
+    parameters.ultimate_strain = 0.2;
+    parameters.fatigue = ductile::FatigueConstants<double>{.ductility_coefficient = 1,
+                                                           .ductility_exponent = -0.6};
+    const Material material(parameters);
+    CHECK(material.ultimate_strain() == 0.2);
+    REQUIRE(material.fatigue().has_value());
+    CHECK(*material.fatigue() == *parameters.fatigue);
+    CHECK(material.fatigue()->strength_coefficient == 0);
+}
+
+TEST_CASE("a material names the limit of strain or fatigue constant that is out of range",
+          "[material]") {
+    auto bad = steel;
+    bad.ultimate_strain = 0.002;
+    CHECK(message_of([&] { Material<double>{bad}; }) ==
+          "Material.ultimate_strain = 0.002: must be > yield_stress / youngs_modulus (infinity: no "
+          "limit)");
+    bad.ultimate_strain = std::numeric_limits<double>::quiet_NaN();
+    CHECK(message_of([&] { Material<double>{bad}; }) ==
+          "Material.ultimate_strain = nan: must be > 0 (infinity: no limit)");
+
+    const auto with = [](ductile::FatigueConstants<double> fatigue) {
+        return message_of([&] {
+            auto parameters = steel;
+            parameters.fatigue = fatigue;
+            Material<double>{parameters};
+        });
+    };
+    CHECK(with({}) == "FatigueConstants.ductility_coefficient = nan: must be finite and > 0");
+    CHECK(with({.ductility_coefficient = 1}) ==
+          "FatigueConstants.ductility_exponent = nan: must be in (-1, 0)");
+    CHECK(with({.ductility_coefficient = 1, .ductility_exponent = 0.6}) ==
+          "FatigueConstants.ductility_exponent = 0.6: must be in (-1, 0)");
+    CHECK(with({.ductility_coefficient = 1,
+                .ductility_exponent = -0.6,
+                .strength_coefficient = -1}) ==
+          "FatigueConstants.strength_coefficient = -1 Pa: must be finite and >= 0");
+    CHECK(with({.ductility_coefficient = 1,
+                .ductility_exponent = -0.6,
+                .strength_coefficient = 900e6}) ==
+          "FatigueConstants.strength_exponent = 0: must be in (-1, 0)");
+    CHECK(with({.ductility_coefficient = 1,
+                .ductility_exponent = -0.6,
+                .strength_coefficient = 900e6,
+                .strength_exponent = -0.09}) == "nothing thrown");
+}
