@@ -64,7 +64,7 @@ template <CurvedSurface T>
     Vector force = surface.support(e);
     for (int step = 0; step < max_steps; ++step) {
         const Vector gradient = k * e - trial + force;
-        if (gradient.norm() <= 4 * epsilon * trial.norm()) break;
+        if (gradient.norm() <= 4 * epsilon * trial.norm()) return force;
         const Matrix hessian = k + surface.support_slope(e);
         const Vector change = -hessian.ldlt().solve(gradient);
         const S descent = change.dot(gradient);
@@ -84,7 +84,10 @@ template <CurvedSurface T>
         force = next_force;
         if (settled) break;
     }
-    return force;
+    // where the surface is curved so sharply that round-off of e moves the support point
+    const Vector elastic = trial - k * e;
+    return (elastic - force).norm() > 64 * epsilon * trial.norm() ? elastic / surface.value(elastic)
+                                                                  : force;
 }
 
 } // namespace ductile
