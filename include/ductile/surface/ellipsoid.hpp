@@ -78,14 +78,16 @@ class Ellipsoid {
     }
 
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
-        const auto d = capacity_.cwiseInverse().eval();
-        const Ellipsoid unit; // where force and flow are of order one whatever the units
-        return capacity_.cwiseProduct(closest_point(
-            unit, d.cwiseProduct(force).eval(), (d.asDiagonal() * stiffness * d.asDiagonal()).eval()));
+        if (!(value(force) > 1 + on_surface<S>)) return force; // to the bit
+        const Vector d = capacity_.cwiseInverse();
+        const Ellipsoid unit(Vector::Ones(), Checked::yes); // where force and flow are of order one whatever the units
+        const Matrix k = d.asDiagonal() * stiffness * d.asDiagonal();
+        return capacity_.cwiseProduct(closest_point(unit, d.cwiseProduct(force), k));
     }
 
   private:
-    Ellipsoid() noexcept : capacity_(Vector::Ones()) {}
+    enum class Checked { yes };
+    Ellipsoid(const Vector& capacity, Checked) noexcept : capacity_(capacity) {}
 
     Vector capacity_;
 };

@@ -66,10 +66,10 @@ class IAxialBending : public AxialBending<StripProfile<S>> {
     /// `strong`: about the axis parallel to the flanges; `weak`: parallel to the web.
     /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
     IAxialBending(const IAxialBendingParameters<S>& parameters, BendingAxis axis)
-        : AxialBending<StripProfile<S>>(profile(parameters, axis)) {}
+        : AxialBending<StripProfile<S>>(half_section(parameters, axis)) {}
 
   private:
-    static StripProfile<S> profile(const IAxialBendingParameters<S>& p, BendingAxis axis) {
+    static StripProfile<S> half_section(const IAxialBendingParameters<S>& p, BendingAxis axis) {
         check::positive("IAxialBending.height", p.height, "m");
         check::positive("IAxialBending.width", p.width, "m");
         check::between("IAxialBending.web_thickness", p.web_thickness, S(0), p.width, "m");

@@ -52,6 +52,7 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <concepts>
 #include <limits>
 
@@ -148,13 +149,14 @@ template <YieldSurface T>
     const S value = surface.value(predicted);
     const Vector point = value > 1 - window ? Vector(predicted * ((1 - window) / value)) : predicted;
     const Vector g = covectors * point;
+    const Vector wanted = covectors * project_radially(surface, predicted); // is never shut out
     const Vector flow = covectors.row(0).transpose();
     box.upper[0] = flow.dot(surface.support(flow));
     box.lower[0] = -box.upper[0];
     for (int i = 1; i < T::dimension; ++i) {
         const Vector along = box.basis.col(i);
-        box.upper[i] = g[i] + reach(surface, point, along);
-        box.lower[i] = g[i] - reach(surface, point, Vector(-along));
+        box.upper[i] = std::max(wanted[i], g[i] + reach(surface, point, along));
+        box.lower[i] = std::min(wanted[i], g[i] - reach(surface, point, Vector(-along)));
     }
     return box;
 }

@@ -55,6 +55,7 @@ class Scaled {
         return capacity_.cwiseProduct(surface_.support(capacity_.cwiseProduct(flow)));
     }
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
+        if (!(value(force) > 1 + on_surface<Scalar>)) return force; // to the bit
         const Vector d = capacity_.cwiseInverse();
         return capacity_.cwiseProduct(
             surface_.project(d.cwiseProduct(force), d.asDiagonal() * stiffness * d.asDiagonal()));
