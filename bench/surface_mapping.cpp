@@ -2,10 +2,11 @@
 //
 // Question: what does a solver of independent rows get wrong where forces share a yield surface?
 //
-// Table 1, one step. A force f* on the surface, drawn at random, and a trial beyond it along its normal,
-// so that f* is the closest point: the right answer. The mapping is told a force that is off by an
-// angle; the solver answers the trial inside the box it makes. Overshoot: excess of the trial over
-// the tangent plane at f*, in units of the surface. Errors, normalised by the capacities:
+// Table 1, one step. A force f* on the surface, drawn at random, and a trial beyond it along its
+// normal, so that f* is the closest point: the right answer. The mapping is told a force that is
+// off by an angle; the solver answers the trial inside the box it makes. Overshoot: excess of the
+// trial over the tangent plane at f*, in units of the surface. Errors, normalised by the
+// capacities:
 //   force     |f - f*|
 //   outside   γ(f) - 1, positive where the force exceeds the surface
 //   flow      angle between the slips and ∇γ(f*); 90 where nothing slips
@@ -45,15 +46,21 @@ namespace {
 using namespace ductile;
 
 enum class Mapping { independent, chords, half_space, turned, exact };
-constexpr std::array boxed{Mapping::independent, Mapping::chords, Mapping::half_space, Mapping::turned};
+constexpr std::array boxed{Mapping::independent, Mapping::chords, Mapping::half_space,
+                           Mapping::turned};
 
 std::string_view name(Mapping mapping) {
     switch (mapping) {
-        case Mapping::independent: return "independent";
-        case Mapping::chords: return "box_along";
-        case Mapping::half_space: return "half-space";
-        case Mapping::turned: return "turned_box";
-        case Mapping::exact: return "exact";
+        case Mapping::independent:
+            return "independent";
+        case Mapping::chords:
+            return "box_along";
+        case Mapping::half_space:
+            return "half-space";
+        case Mapping::turned:
+            return "turned_box";
+        case Mapping::exact:
+            return "exact";
     }
     return "";
 }
@@ -66,8 +73,10 @@ RowBox<double, T::dimension> box_of(Mapping mapping, const T& surface,
     constexpr double infinity = std::numeric_limits<double>::infinity();
     RowBox<double, T::dimension> box;
     switch (mapping) {
-        case Mapping::chords: return box_along(surface, predicted);
-        case Mapping::turned: return turned_box(surface, predicted, mass);
+        case Mapping::chords:
+            return box_along(surface, predicted);
+        case Mapping::turned:
+            return turned_box(surface, predicted, mass);
         case Mapping::half_space:
             box = turned_box(surface, predicted, mass);
             for (int i = 1; i < T::dimension; ++i) {
@@ -76,7 +85,8 @@ RowBox<double, T::dimension> box_of(Mapping mapping, const T& surface,
             }
             return box;
         case Mapping::independent:
-        case Mapping::exact: break;
+        case Mapping::exact:
+            break;
     }
     for (int i = 0; i < T::dimension; ++i) {
         box.upper[i] = 1 / surface.value(Vector::Unit(i));
@@ -94,7 +104,8 @@ struct Csv {
     }
 };
 
-// ---- table 1 ----------------------------------------------------------------------------------------
+// ---- table 1
+// ----------------------------------------------------------------------------------------
 
 struct Error {
     double force_max = 0, force_mean = 0, outside_max = 0, flow_max = 0, flow_mean = 0;
@@ -151,22 +162,27 @@ void table_one(const char* surface_name, const T& surface, const Csv& csv) {
                 fmt::print("{:<20}{:<13}{:>9}{:>7}{:>12.2e}{:>12.2e}{:>12.2e}{:>9.2f}{:>9.2f}\n",
                            surface_name, name(mapping), overshoot, angle, e.force_max, e.force_mean,
                            e.outside_max, e.flow_max, e.flow_mean);
-                csv.line("step,{},{},,{},{},{},{},{},{},{}\n", surface_name, name(mapping), overshoot,
-                         angle, e.force_max, e.force_mean, e.outside_max, e.flow_max, e.flow_mean);
+                csv.line("step,{},{},,,{},{},{},{},{},{},{}\n", surface_name, name(mapping),
+                         overshoot, angle, e.force_max, e.force_mean, e.outside_max, e.flow_max,
+                         e.flow_mean);
             }
         }
     }
 }
 
-// ---- table 2 ----------------------------------------------------------------------------------------
+// ---- table 2
+// ----------------------------------------------------------------------------------------
 
 enum class Prediction { last_force, predicted, wrong_mass };
 
 std::string_view name(Prediction prediction) {
     switch (prediction) {
-        case Prediction::last_force: return "last force";
-        case Prediction::predicted: return "predicted";
-        case Prediction::wrong_mass: return "wrong mass";
+        case Prediction::last_force:
+            return "last force";
+        case Prediction::predicted:
+            return "predicted";
+        case Prediction::wrong_mass:
+            return "wrong mass";
     }
     return "";
 }
@@ -214,9 +230,10 @@ struct Motion {
             if (mapping == Mapping::exact) {
                 force = surface.project(trial, real);
             } else {
-                const Vector told = prediction == Prediction::last_force
-                                        ? force
-                                        : predicted_force(surface, force, velocity, last_velocity, guess);
+                const Vector told =
+                    prediction == Prediction::last_force
+                        ? force
+                        : predicted_force(surface, force, velocity, last_velocity, guess);
                 force = enforce(box_of(mapping, surface, told, guess), trial, real);
             }
             last_velocity = velocity;
@@ -242,7 +259,8 @@ void table_two(const char* surface_name, const T& surface, const typename T::Mat
             const double error =
                 (motion.run(mapping, prediction, dt) - reference).norm() / reference.norm();
             fmt::print("{:>12.2e}", error);
-            csv.line("motion,{} {},{},{},,,{},,,,\n", surface_name, kind, name(mapping), label, error);
+            csv.line("motion,{} {},{},{},{},,,{},,,,\n", surface_name, kind, name(mapping), label,
+                     dt, error);
         }
         fmt::print("\n");
     };
@@ -279,10 +297,12 @@ int main(int argc, char** argv) {
     const BiaxialRectangle<double> biaxial;
 
     fmt::print("1. One step, 2000 random forces and masses; angle = prediction off by [deg]\n\n");
-    fmt::print("{:<20}{:<13}{:>9}{:>7}{:>12}{:>12}{:>12}{:>9}{:>9}\n", "surface", "mapping", "oversh.",
-               "angle", "force max", "mean", "outside", "flow max", "mean");
-    csv.line("table,surface,mapping,prediction,overshoot,angle_deg,force_max,force_mean,outside_max,"
-             "flow_max_deg,flow_mean_deg\n");
+    fmt::print("{:<20}{:<13}{:>9}{:>7}{:>12}{:>12}{:>12}{:>9}{:>9}\n", "surface", "mapping",
+               "oversh.", "angle", "force max", "mean", "outside", "flow max", "mean");
+    csv.line(
+        "table,surface,mapping,prediction,dt_s,overshoot,angle_deg,force_max,force_mean,outside_"
+        "max,"
+        "flow_max_deg,flow_mean_deg\n");
     table_one("ellipse", ellipse, csv);
     table_one("rectangle n-m", rectangle, csv);
     table_one("I strong n-m", i_section, csv);

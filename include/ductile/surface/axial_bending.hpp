@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// Axial force with bending of a section that is symmetric about its bending axis, from the kinematics
-// of the fully plastic section. The headers *_axial_bending.hpp name the sections.
+// Axial force with bending of a section that is symmetric about its bending axis, from the
+// kinematics of the fully plastic section. The headers *_axial_bending.hpp name the sections.
 //
 // A hinge that turns by κ and extends by ε has its neutral axis at the distance Y = ε/κ from the
-// centroid; every fibre flows in tension on one side and in compression on the other. With the width
-// b(η) of the section at the height η (half its height is 1) and y = |Y|/half height,
+// centroid; every fibre flows in tension on one side and in compression on the other. With the
+// width b(η) of the section at the height η (half its height is 1) and y = |Y|/half height,
 //
 //   n(y) = ∫₀^y b dη / ∫₀¹ b dη,   m(y) = ∫_y^1 b η dη / ∫₀¹ b η dη,   y in [0, 1]
 //   dm/dn = -a y,   a = ∫₀¹ b dη / ∫₀¹ b η dη = N_p (half height) / M_p
 //
-// so the normal of the curve m(n) at y is (a y, 1): flow is associated because Y = ε/κ. At y = 1 the
-// whole section yields in tension: the surface has a corner at n = 1, m = 0, where any neutral axis
-// outside the section will do.
+// so the normal of the curve m(n) at y is (a y, 1): flow is associated because Y = ε/κ. At y = 1
+// the whole section yields in tension: the surface has a corner at n = 1, m = 0, where any neutral
+// axis outside the section will do.
 //
 // The gauge of (n, m) is γ = max_y (a y |n| + |m|)/(a y n(y) + m(y)), reached where n(y) : m(y) is
 // |n| : |m|. It is stationary in y, so an error of y enters squared.
@@ -36,7 +36,8 @@
 
 namespace ductile {
 
-/// The section's n(y), m(y), dn/dy and a, for y in [0, 1]. n rises from 0 to 1, m falls from 1 to 0.
+/// The section's n(y), m(y), dn/dy and a, for y in [0, 1]: n rises from 0 to 1,
+/// m falls from 1 to 0.
 template <class T>
 concept AxialBendingProfile = requires(const T profile, typename T::Scalar y) {
     { profile.axial(y) } noexcept -> std::same_as<typename T::Scalar>;
@@ -126,7 +127,8 @@ class AxialBending {
                      [&](Scalar y) { return -profile_.density(y) * (n * a * y + m); });
     }
 
-    /// Root in [0, 1] of a falling function: Newton, bisecting where it leaves the bracket or is slow.
+    /// Root in [0, 1] of a falling function: Newton, bisecting where that leaves the
+    /// bracket or is slow.
     template <class Function, class Derivative>
     static Scalar solve(const Function& function, const Derivative& derivative) noexcept {
         constexpr Scalar epsilon = std::numeric_limits<Scalar>::epsilon();

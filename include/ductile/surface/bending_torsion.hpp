@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// Bending with torsion: the ellipse (M/M_p)² + (T/T_p)² = 1. Exact for a thin round tube with von Mises
-// yield; for solid sections a lower bound that is a few per cent low.
+// Bending with torsion: the ellipse (M/M_p)² + (T/T_p)² = 1. Exact for a thin round tube with von
+// Mises yield; for any other section a safe (lower) bound, since the stresses of pure bending scaled
+// by M/M_p and those of pure torsion scaled by T/T_p are in equilibrium and nowhere beyond yield.
 //
-// Source: Hill & Siebel (1951), doi:10.1080/14786445108561272.
+// Source: Hill & Siebel (1951), Philosophical Magazine 42; (1953), J. Mech. Phys. Solids 1.
 #pragma once
 
 #include <concepts>

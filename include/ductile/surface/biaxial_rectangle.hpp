@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Rectangle under axial force and bending about both axes, exact, from the kinematics of the fully
-// plastic section: with the section mapped on the square |X|, |Y| ≤ 1 and the flow e + k_x Y + k_y X,
+// plastic section: with the section mapped on the square |X|, |Y| ≤ 1 and the rate of strain
+// e + k_x Y + k_y X,
 //
 //   n = ⟨sgn⟩,   m_x = 2 ⟨Y sgn⟩,   m_y = 2 ⟨X sgn⟩        ⟨·⟩ mean over the square
 //
@@ -19,8 +20,8 @@
 // Symbols (normalised)
 //   n = N/N_p, m_x = M_x/M_px, m_y = M_y/M_py   [-], entries 0, 1, 2 of the vector
 //
-// Source: Santathadaporn & Chen (1970), Interaction curves for sections under combined biaxial bending
-// and axial force, WRC Bulletin 148; written out here.
+// Source: Santathadaporn & Chen (1970), Interaction curves for sections under combined biaxial
+// bending and axial force, WRC Bulletin 148; written out here.
 #pragma once
 
 #include <Eigen/Core>
@@ -60,8 +61,11 @@ class BiaxialRectangle {
         const Line line(flow);
         Vector force;
         switch (line.kind) {
-            case Kind::none: return Vector::Zero();
-            case Kind::outside: force << 1, 0, 0; break;
+            case Kind::none:
+                return Vector::Zero();
+            case Kind::outside:
+                force << 1, 0, 0;
+                break;
             case Kind::sides:
                 force << line.a, 1 - line.a * line.a - line.b * line.b / 3, 2 * line.b / 3;
                 break;
@@ -79,7 +83,7 @@ class BiaxialRectangle {
         const Line line(flow);
         const S a = line.a;
         const S b = line.b;
-        S density = 0; // of area swept per unit e
+        S density = 0;                          // of area swept per unit e
         S y = 0, x = 0, yy = 0, xx = 0, xy = 0; // means along the line
         if (line.kind == Kind::sides) {
             density = 1 / line.larger;
@@ -115,8 +119,8 @@ class BiaxialRectangle {
   private:
     enum class Kind { none, outside, sides, corner };
 
-    /// Neutral line of a flow: a, b are ν, τ where it runs through two sides, the legs of the triangle
-    /// where it cuts a corner.
+    /// Neutral line of a flow: a, b are ν, τ where it runs through two sides, the legs of the
+    /// triangle where it cuts a corner.
     struct Line {
         explicit Line(const Vector& flow) noexcept
             : swapped(std::abs(flow[2]) > std::abs(flow[1])),

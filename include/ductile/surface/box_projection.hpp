@@ -9,7 +9,7 @@
 // Principal pivoting by the least index: only K_BB of the rows at a bound is factorised. Finite for
 // every positive definite K.
 //
-// Source: Murty (1974), doi:10.1016/0024-3795(74)90060-X; with two bounds Júdice & Pires (1994),
+// Source: Murty (1974), Note on a Bard-type scheme, Opsearch 11; with two bounds Júdice & Pires (1994),
 // doi:10.1016/0305-0548(94)90106-6.
 #pragma once
 
@@ -24,10 +24,9 @@ namespace ductile {
 
 /// lower ≤ upper; equal ones prescribe the force. Infinite bounds are allowed.
 template <std::floating_point S, int N>
-[[nodiscard]] Eigen::Matrix<S, N, 1> project_on_box(const Eigen::Matrix<S, N, 1>& trial,
-                                                    const Eigen::Matrix<S, N, 1>& lower,
-                                                    const Eigen::Matrix<S, N, 1>& upper,
-                                                    const Eigen::Matrix<S, N, N>& stiffness) noexcept {
+[[nodiscard]] Eigen::Matrix<S, N, 1> project_on_box(
+    const Eigen::Matrix<S, N, 1>& trial, const Eigen::Matrix<S, N, 1>& lower,
+    const Eigen::Matrix<S, N, 1>& upper, const Eigen::Matrix<S, N, N>& stiffness) noexcept {
     using Vector = Eigen::Matrix<S, N, 1>;
     using Matrix = Eigen::Matrix<S, N, N>;
     enum class Row { free, at_lower, at_upper };

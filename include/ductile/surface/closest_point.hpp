@@ -5,12 +5,12 @@
 // Solved for the flow e instead of the force, because corners of the surface are smooth there:
 //
 //   minimise  φ(e) = ½ eᵀ K e - eᵀ f_trial + h(e),   h(e) = support(e)·e
-//   ∇φ = K e - f_trial + support(e) = 0   ⇔   f = f_trial - K e = support(e) on the surface, e normal
+//   ∇φ = K e - f_trial + support(e) = 0   ⇔   f = f_trial - K e = support(e), e normal there
 //
 // φ is strictly convex and its Hessian K + support_slope(e) is positive definite, so Newton with
 // backtracking converges from anywhere; the answer support(e) is on the surface whatever is left of
-// the residual. Corners of h, which flat parts of a surface cause, are not allowed: a box has its own
-// projection.
+// the residual. Corners of h, which flat parts of a surface cause, are not allowed: a box has its
+// own projection.
 //
 // Limit cases: f_trial → surface: e → 0, f → f_trial; f_trial → ∞: f → support of K⁻¹ f_trial.
 //
@@ -38,8 +38,8 @@ concept CurvedSurface = requires(const T surface, const typename T::Vector& vect
     { surface.support_slope(vector) } noexcept -> std::same_as<typename T::Matrix>;
 };
 
-/// `trial` where it is inside, else the closest force on the surface. `stiffness` symmetric, positive
-/// definite.
+/// `trial` where it is inside, else the closest force on the surface. `stiffness` symmetric,
+/// positive definite.
 template <CurvedSurface T>
 [[nodiscard]] typename T::Vector closest_point(const T& surface, const typename T::Vector& trial,
                                                const typename T::Matrix& stiffness) noexcept {

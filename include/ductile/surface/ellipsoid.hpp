@@ -4,11 +4,11 @@
 //
 //   γ(f) = |D⁻¹ f|,  ∇γ = D⁻² f/γ,  support(e) = D² e/|D e|,  D = diag(c)
 //
-// Limit cases: N = 1 is the single row; a stiffness proportional to D² makes the closest-point return
-// radial, and the return of one increment after another then follows the exact path to first order.
+// Limit cases: N = 1 is the single row; a stiffness proportional to D² makes the closest-point
+// return radial, and the return of one increment after another then follows the exact path to first
+// order.
 //
-// Source: bending with torsion: Hill & Siebel (1951), doi:10.1080/14786445108561272; exact path on it:
-// Krieg & Krieg (1977), doi:10.1115/1.3454568.
+// Source: exact path on it: Krieg & Krieg (1977), doi:10.1115/1.3454568.
 #pragma once
 
 #include <Eigen/Core>
@@ -80,7 +80,8 @@ class Ellipsoid {
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
         if (!(value(force) > 1 + on_surface<S>)) return force; // to the bit
         const Vector d = capacity_.cwiseInverse();
-        const Ellipsoid unit(Vector::Ones(), Checked::yes); // where force and flow are of order one whatever the units
+        // on the unit sphere force and flow are of order one whatever the units
+        const Ellipsoid unit(Vector::Ones(), Checked::yes);
         const Matrix k = d.asDiagonal() * stiffness * d.asDiagonal();
         return capacity_.cwiseProduct(closest_point(unit, d.cwiseProduct(force), k));
     }

@@ -13,7 +13,8 @@
 //
 // Limit case w₁ = w₂: the rectangle, m = 1 - n².
 //
-// Source: e.g. Neal (1977), The Plastic Methods of Structural Analysis, chapter 6; written out here.
+// Source: e.g. Neal (1977), The Plastic Methods of Structural Analysis, chapter 6; written out
+// here.
 #pragma once
 
 #include <concepts>
@@ -31,7 +32,9 @@ class StripProfile {
     using Scalar = S;
 
     StripProfile(S inner_width, S outer_width, S inner_height) noexcept
-        : w1_(inner_width), w2_(outer_width), c_(inner_height),
+        : w1_(inner_width),
+          w2_(outer_width),
+          c_(inner_height),
           area_(w1_ * c_ + w2_ * (1 - c_)),
           modulus_((w1_ * c_ * c_ + w2_ * (1 - c_) * (1 + c_)) / 2) {}
 
@@ -73,9 +76,11 @@ class IAxialBending : public AxialBending<StripProfile<S>> {
         check::positive("IAxialBending.height", p.height, "m");
         check::positive("IAxialBending.width", p.width, "m");
         check::between("IAxialBending.web_thickness", p.web_thickness, S(0), p.width, "m");
-        check::between("IAxialBending.flange_thickness", p.flange_thickness, S(0), p.height / 2, "m");
+        check::between("IAxialBending.flange_thickness", p.flange_thickness, S(0), p.height / 2,
+                       "m");
         return axis == BendingAxis::strong
-                   ? StripProfile<S>(p.web_thickness, p.width, 1 - 2 * p.flange_thickness / p.height)
+                   ? StripProfile<S>(p.web_thickness, p.width,
+                                     1 - 2 * p.flange_thickness / p.height)
                    : StripProfile<S>(p.height, 2 * p.flange_thickness, p.web_thickness / p.width);
     }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Axes that do not know of each other: |f_i| ≤ c_i. The surface a solver of independent rows enforces
-// by itself; the upper bound of every surface with the same capacities.
+// Axes that do not know of each other: |f_i| ≤ c_i. The surface a solver of independent rows
+// enforces by itself; the upper bound of every surface with the same capacities.
 //
 //   γ(f) = max_i |f_i|/c_i
 //

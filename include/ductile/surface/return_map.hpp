@@ -26,10 +26,9 @@ struct Return {
 
 /// Closest-point return: associated flow. `stiffness` symmetric, positive definite [N/m | N m/rad].
 template <YieldSurface T>
-[[nodiscard]] Return<typename T::Vector> return_closest(const T& surface,
-                                                        const typename T::Vector& force,
-                                                        const typename T::Vector& increment,
-                                                        const typename T::Matrix& stiffness) noexcept {
+[[nodiscard]] Return<typename T::Vector> return_closest(
+    const T& surface, const typename T::Vector& force, const typename T::Vector& increment,
+    const typename T::Matrix& stiffness) noexcept {
     const typename T::Vector trial = force + stiffness * increment;
     const typename T::Vector next = surface.project(trial, stiffness);
     return {next, stiffness.ldlt().solve(trial - next)};
@@ -37,10 +36,9 @@ template <YieldSurface T>
 
 /// Radial return.
 template <YieldSurface T>
-[[nodiscard]] Return<typename T::Vector> return_radially(const T& surface,
-                                                         const typename T::Vector& force,
-                                                         const typename T::Vector& increment,
-                                                         const typename T::Matrix& stiffness) noexcept {
+[[nodiscard]] Return<typename T::Vector> return_radially(
+    const T& surface, const typename T::Vector& force, const typename T::Vector& increment,
+    const typename T::Matrix& stiffness) noexcept {
     const typename T::Vector trial = force + stiffness * increment;
     const typename T::Vector next = project_radially(surface, trial);
     return {next, stiffness.ldlt().solve(trial - next)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A normalised surface in forces: f_i = c_i x_i with the capacities c (N_p, M_p, T_p ...) of the axes.
+// A normalised surface in forces: f_i = c_i x_i with the capacities c (N_p, M_p, T_p ...) of the
+// axes.
 //
 //   γ(f) = γ₁(D⁻¹ f),  ∇γ = D⁻¹ ∇γ₁,  support(e) = D support₁(D e),  K₁ = D⁻¹ K D⁻¹,  D = diag(c)
 //

@@ -48,7 +48,9 @@ struct ThinTubeProfile {
     [[nodiscard]] S axial(S y) const noexcept {
         return 2 * std::numbers::inv_pi_v<S> * std::asin(std::min(y, S(1)));
     }
-    [[nodiscard]] S bending(S y) const noexcept { return std::sqrt(std::max((1 - y) * (1 + y), S(0))); }
+    [[nodiscard]] S bending(S y) const noexcept {
+        return std::sqrt(std::max((1 - y) * (1 + y), S(0)));
+    }
     /// Infinite at y = 1, kept finite there.
     [[nodiscard]] S density(S y) const noexcept {
         const S square = std::max((1 - y) * (1 + y), std::numeric_limits<S>::epsilon());
@@ -70,12 +72,13 @@ class TubeProfile {
 
     /// @throws std::invalid_argument where a radius is missing (NaN) or out of range.
     explicit TubeProfile(const TubeAxialBendingParameters<S>& parameters)
-        : ratio_(check::between("TubeAxialBending.inner_radius", parameters.inner_radius, S(0),
-                                check::positive("TubeAxialBending.outer_radius",
-                                                parameters.outer_radius, "m"),
-                                "m") /
+        : ratio_(check::between(
+                     "TubeAxialBending.inner_radius", parameters.inner_radius, S(0),
+                     check::positive("TubeAxialBending.outer_radius", parameters.outer_radius, "m"),
+                     "m") /
                  parameters.outer_radius),
-          area_((1 - ratio_) * (1 + ratio_)), modulus_(1 - ratio_ * ratio_ * ratio_) {
+          area_((1 - ratio_) * (1 + ratio_)),
+          modulus_(1 - ratio_ * ratio_ * ratio_) {
         if (!(ratio_ < 1)) {
             check::fail("TubeAxialBending.inner_radius", parameters.inner_radius, "m",
                         "less than outer_radius by more than round-off");
@@ -130,7 +133,8 @@ class TubeAxialBending : public AxialBending<TubeProfile<S>> {
 template <std::floating_point S>
 TubeAxialBending(const TubeAxialBendingParameters<S>&) -> TubeAxialBending<S>;
 
-static_assert(YieldSurface<CircleAxialBending<double>> && YieldSurface<ThinTubeAxialBending<float>> &&
-              YieldSurface<TubeAxialBending<double>> && YieldSurface<TubeAxialBending<float>>);
+static_assert(YieldSurface<CircleAxialBending<double>> &&
+              YieldSurface<ThinTubeAxialBending<float>> && YieldSurface<TubeAxialBending<double>> &&
+              YieldSurface<TubeAxialBending<float>>);
 
 } // namespace ductile

@@ -22,10 +22,8 @@ namespace ductile::test {
 
 /// 200 x 200 x 15 x 9 mm, the one of the tabulated interaction curves.
 template <class S>
-inline constexpr IAxialBendingParameters<S> i_200{.height = S(0.2),
-                                                  .width = S(0.2),
-                                                  .web_thickness = S(0.009),
-                                                  .flange_thickness = S(0.015)};
+inline constexpr IAxialBendingParameters<S> i_200{
+    .height = S(0.2), .width = S(0.2), .web_thickness = S(0.009), .flange_thickness = S(0.015)};
 
 /// Calls visit(name, surface) for every kind of surface.
 template <class S, class Visit>
@@ -39,13 +37,13 @@ void for_every_surface(Visit&& visit) {
     visit("rectangle n-mx-my", BiaxialRectangle<S>());
     visit("bending-torsion",
           BendingTorsion<S>({.plastic_moment = S(1.2), .plastic_torque = S(0.8)}));
-    visit("ellipsoid",
-          Ellipsoid<S, 6>({.capacity = {S(1), S(2), S(0.5), S(1.5), S(0.7), S(1)}}));
+    visit("ellipsoid", Ellipsoid<S, 6>({.capacity = {S(1), S(2), S(0.5), S(1.5), S(0.7), S(1)}}));
     visit("independent axes", IndependentAxes<S, 3>({.capacity = {S(1), S(2), S(0.5)}}));
     visit("scaled rectangle n-m",
           Scaled(RectangleAxialBending<S>(), ScaledParameters<S, 2>{.capacity = {S(2), S(0.6)}}));
-    visit("scaled rectangle n-mx-my",
-          Scaled(BiaxialRectangle<S>(), ScaledParameters<S, 3>{.capacity = {S(3), S(0.8), S(0.5)}}));
+    visit(
+        "scaled rectangle n-mx-my",
+        Scaled(BiaxialRectangle<S>(), ScaledParameters<S, 3>{.capacity = {S(3), S(0.8), S(0.5)}}));
 }
 
 /// Uniform in [low, high].

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What holds for every yield surface.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -182,7 +182,8 @@ TEST_CASE("the slope of the support is its derivative", "[surface]") {
                     const Matrix last = surface.support_slope(flow - shift);
                     RC_PRE((next - last).norm() < 1e-2); // the plates of an I meet in a jump
                     const Vector difference =
-                        (surface.support(flow + shift) - surface.support(flow - shift)) / (2 * step);
+                        (surface.support(flow + shift) - surface.support(flow - shift)) /
+                        (2 * step);
                     RC_ASSERT((difference - slope.col(i)).norm() <= 1e-5);
                 }
             });
@@ -247,8 +248,7 @@ TEST_CASE("a change of units or of the order of the moments changes nothing", "[
         const Eigen::Vector3d swapped_capacity{capacity[0], capacity[2], capacity[1]};
         const Surface swapped(BiaxialRectangle<double>(), {.capacity = swapped_capacity});
 
-        const Eigen::Vector3d f =
-            3 * capacity.cwiseProduct(any_direction<Eigen::Vector3d>());
+        const Eigen::Vector3d f = 3 * capacity.cwiseProduct(any_direction<Eigen::Vector3d>());
         const auto stiffness = any_stiffness<Eigen::Matrix3d>();
         const Eigen::Matrix3d k = capacity.asDiagonal() * stiffness * capacity.asDiagonal();
         const Eigen::Vector3d on = si.project(f, k);
@@ -256,7 +256,8 @@ TEST_CASE("a change of units or of the order of the moments changes nothing", "[
         const Eigen::Vector3d g = units.cwiseProduct(f);
         RC_ASSERT(std::abs(other.value(g) - si.value(f)) <= 1e-13);
         const Eigen::Vector3d on_g = other.project(g, units.asDiagonal() * k * units.asDiagonal());
-        RC_ASSERT((on_g - units.cwiseProduct(on)).cwiseQuotient(g.cwiseAbs() + units).norm() <= 1e-9);
+        RC_ASSERT((on_g - units.cwiseProduct(on)).cwiseQuotient(g.cwiseAbs() + units).norm() <=
+                  1e-9);
 
         Eigen::Matrix3d exchange;
         exchange << 1, 0, 0, 0, 0, 1, 0, 1, 0;

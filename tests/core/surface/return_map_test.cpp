@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The return to a surface along paths with known answers.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <vector>
@@ -66,7 +66,8 @@ TEST_CASE("bent, then twisted: the return in N increments", "[surface]") {
     }
 }
 
-TEST_CASE("where the metric is not the ellipse's, the closest point is not the radial one", "[surface]") {
+TEST_CASE("where the metric is not the ellipse's, the closest point is not the radial one",
+          "[surface]") {
     const Eigen::Matrix2d soft = Eigen::Vector2d(50e3, 8e3).asDiagonal();
     const Eigen::Vector2d start{1000, 0};
     const Eigen::Vector2d increment{0.01, 0.05};

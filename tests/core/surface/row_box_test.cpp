@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Yield surfaces as bounds of independent rows.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <Eigen/LU>
 #include <cmath>
@@ -38,8 +38,8 @@ struct Rows {
             force = surface.project(trial, mass);
         } else {
             const typename T::Matrix impedance = believed_mass / dt;
-            force = enforce(box_along(surface, predicted_force(surface, force, velocity, last_velocity,
-                                                               impedance)),
+            force = enforce(box_along(surface, predicted_force(surface, force, velocity,
+                                                               last_velocity, impedance)),
                             trial, mass);
         }
         last_velocity = velocity;
@@ -83,12 +83,13 @@ TEST_CASE("the box solver finds the closest point of a box", "[surface]") {
         }
     });
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    const Eigen::Vector2d rigid = project_on_box<double, 2>(
-        {5, -7}, {-infinity, -1}, {infinity, 1}, Eigen::Matrix2d::Identity());
+    const Eigen::Vector2d rigid = project_on_box<double, 2>({5, -7}, {-infinity, -1}, {infinity, 1},
+                                                            Eigen::Matrix2d::Identity());
     CHECK(rigid == Eigen::Vector2d(5, -1));
 }
 
-TEST_CASE("the box along a prediction touches the surface there and holds what is inside", "[surface]") {
+TEST_CASE("the box along a prediction touches the surface there and holds what is inside",
+          "[surface]") {
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
@@ -132,16 +133,36 @@ TEST_CASE("told the right force, the rows give it and its associated flow", "[su
             // turned rows know one normal only: not where the answer is in a corner of the surface
             const Vector flow = mass.inverse() * (trial - exact);
             if (flow.normalized().dot(surface.normal(exact).normalized()) < 1 - 1e-12) return;
-            RC_ASSERT((enforce(turned_box(surface, exact, mass), trial, mass) - exact).norm() <= 1e-6);
+            RC_ASSERT((enforce(turned_box(surface, exact, mass), trial, mass) - exact).norm() <=
+                      1e-6);
         });
     });
+}
+
+TEST_CASE("under a steady load the prediction is the answer, in rest and in flow", "[surface]") {
+    const RectangleAxialBending<double> surface;
+    for (const double size : {0.5, 1.5}) {
+        CAPTURE(size);
+        Rows<Exact, RectangleAxialBending<double>> rows{surface, masses};
+        rows.velocity = {0.3, -0.2}; // so that the flow turns
+        const Eigen::Vector2d load = size * Eigen::Vector2d(0.6, 0.5);
+        const double dt = 1e-3;
+        for (int i = 0; i < 20; ++i) {
+            const Eigen::Vector2d predicted =
+                predicted_force(surface, rows.force, rows.velocity, rows.last_velocity,
+                                Eigen::Matrix2d(masses / dt));
+            rows.step(load, dt);
+            if (i > 0)
+                CHECK((predicted - rows.force).norm() < 1e-12); // the load came before step 0
+        }
+    }
 }
 
 TEST_CASE("a row without force in flow gets no room, and its chord only touches", "[surface]") {
     const RectangleAxialBending<double> surface;
     const auto box = box_along(surface, {0, 1});
     CHECK(box.upper[1] == Approx(1).epsilon(1e-15));
-    CHECK(std::abs(box.upper[0]) < 1e-7); // round-off of the value, under a square root
+    CHECK(std::abs(box.upper[0]) < 1e-7);            // round-off of the value, under a square root
     const auto bent = box_along(surface, {0, 0.75}); // inside: the chord at m = 0.75
     CHECK(bent.upper[0] == Approx(0.5).epsilon(1e-14));
     CHECK(bent.lower[0] == Approx(-0.5).epsilon(1e-14));
@@ -164,9 +185,9 @@ TEST_CASE("turned rows decouple, and slip along the normal", "[surface]") {
     CHECK(slip.dot(normal) > 0);
 }
 
-TEST_CASE("rows bounded along the prediction flow as the surface does, to first order", "[surface]") {
+TEST_CASE("rows bounded along the prediction flow as the surface does, to first order",
+          "[surface]") {
     const auto check = [](const auto& surface) {
-        using T = std::decay_t<decltype(surface)>;
         const Eigen::Vector2d exact = travel_of<Exact>(surface, 100000, masses);
         Eigen::Matrix2d wrong = masses.diagonal().asDiagonal();
         wrong(1, 1) *= 4;
@@ -180,7 +201,6 @@ TEST_CASE("rows bounded along the prediction flow as the surface does, to first 
                 last = error;
             }
         }
-        (void)sizeof(T);
     };
     check(BendingTorsion<double>({.plastic_moment = 1, .plastic_torque = 1}));
     check(RectangleAxialBending<double>());
@@ -188,11 +208,13 @@ TEST_CASE("rows bounded along the prediction flow as the surface does, to first 
 }
 
 TEST_CASE("a joint bent in flow extends as associated flow demands", "[surface]") {
-    // moment beyond capacity, steady axial force: the rate of extension over that of rotation tends to
-    // the neutral axis of the section, n h/2
+    // moment beyond capacity, steady axial force: the rate of extension over that of rotation tends
+    // to the neutral axis of the section, n h/2
     const double np = 2, mp = 0.5, h = 4 * mp / np, n = 0.4;
-    const Scaled surface(RectangleAxialBending<double>(), ScaledParameters<double, 2>{.capacity = {np, mp}});
-    Rows<Chords, std::decay_t<decltype(surface)>> rows{surface, Eigen::Matrix2d{{3.0, 0.0}, {0.0, 0.01}}};
+    const Scaled surface(RectangleAxialBending<double>(),
+                         ScaledParameters<double, 2>{.capacity = {np, mp}});
+    Rows<Chords, std::decay_t<decltype(surface)>> rows{surface,
+                                                       Eigen::Matrix2d{{3.0, 0.0}, {0.0, 0.01}}};
     // settle into the flow, in which the axial row hardly accelerates
     for (int i = 0; i < 400; ++i) rows.step({n * np, (1 - n * n) * mp * 1.0001}, 1e-2);
     for (int i = 0; i < 4000; ++i) rows.step({n * np, (1 - n * n) * mp}, 1e-2);
