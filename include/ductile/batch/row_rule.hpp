@@ -9,8 +9,9 @@
 // raises a floating-point exception.
 #pragma once
 
-#include <concepts>
+#include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
@@ -19,18 +20,31 @@
 
 namespace ductile::batch_detail {
 
-/// Flags as wide as the scalar: mixed widths in a loop cost shuffles.
+/// A flag as wide as the scalar, all bits set or none: mixed widths in a loop cost shuffles.
 template <std::floating_point S>
-using Flags = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
+using Mask = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
 
-/// a where `choice`, else b; both are computed.
-template <class T>
-constexpr T select(bool choice, T a, T b) noexcept {
-    return choice ? a : b;
+template <std::floating_point S>
+constexpr Mask<S> mask(bool flag) noexcept {
+    return Mask<S>(0) - Mask<S>(flag);
 }
-template <class T>
-constexpr T larger(T a, T b) noexcept {
-    return select(a < b, b, a);
+
+/// a where `choice` is set, else b. On the bits, because a conditional would let g++ thread the
+/// cases into branches again.
+template <std::floating_point S>
+constexpr S select(Mask<S> choice, S a, S b) noexcept {
+    return std::bit_cast<S>((choice & std::bit_cast<Mask<S>>(a)) |
+                            (~choice & std::bit_cast<Mask<S>>(b)));
+}
+/// a where `choice` is set, else +0.
+template <std::floating_point S>
+constexpr S only(Mask<S> choice, S a) noexcept {
+    return std::bit_cast<S>(choice & std::bit_cast<Mask<S>>(a));
+}
+/// std::max(a, b).
+template <std::floating_point S>
+constexpr S larger(S a, S b) noexcept {
+    return select(mask<S>(a < b), b, a);
 }
 
 /// Numbers that all joints share in a step.
@@ -54,7 +68,7 @@ struct RowLaw {
         return strength + hardening * (travel + speed * dt / 2);
     }
     constexpr S remaining(S travel) const noexcept {
-        return select(travel < limit, limit - travel, S(0));
+        return only(mask<S>(travel < limit), limit - travel);
     }
 };
 
@@ -72,25 +86,27 @@ struct Prepared {
 
 template <std::floating_point S>
 inline Prepared<S> prepare_row(const RowLaw<S>& law, const StepNumbers<S>& step, S position,
-                               S velocity, S offset, S travel, S start, Flags<S> status) noexcept {
-    const bool broken = (status & outcome_bits) == Flags<S>(Outcome::broken);
+                               S velocity, S offset, S travel, S start, Mask<S> status) noexcept {
+    const Mask<S> intact = mask<S>((status & outcome_bits) != Mask<S>(Outcome::broken));
+    const Mask<S> flowing = mask<S>((status & flowing_bit) != 0);
     const S speed = std::abs(velocity);
     const S lost = larger(std::abs(start) - speed, S(0));
-    const S slowed = select((status & flowing_bit) != 0, larger(speed - lost, S(0)), S(0));
+    const S slowed = only(flowing, larger(speed - lost, S(0)));
     const S ahead = (speed + slowed) / 2 * step.dt;
     const S left = law.remaining(travel);
-    const bool ends = left < ahead;
+    const Mask<S> ends = mask<S>(left < ahead);
     const S share = select(ends, left, S(1)) / select(ends, ahead, S(1));
-    const S bound = select(broken, S(0), law.midpoint(travel, speed, step.dt) * share);
+    const S bound = law.midpoint(travel, speed, step.dt) * share;
     const S bias = (offset - position) / step.drift_time;
-    return {-bound, bound, select(broken, S(0), bias), select(broken, start, velocity)};
+    return {only(intact, -bound), only(intact, bound), only(intact, bias),
+            select(intact, velocity, start)};
 }
 
 /// What commit reads and writes of one joint's state.
 template <std::floating_point S>
 struct RowState {
     S offset, travel, plastic_work, other_work, velocity, residual_max;
-    Flags<S> status;
+    Mask<S> status;
 };
 
 template <std::floating_point S>
@@ -103,51 +119,49 @@ template <std::floating_point S>
 inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force, S velocity,
                                S position, S bound, S bias, S start,
                                const RowState<S>& old) noexcept {
-    const bool was_broken = (old.status & outcome_bits) == Flags<S>(Outcome::broken);
+    const Mask<S> intact = mask<S>((old.status & outcome_bits) != Mask<S>(Outcome::broken));
+    const Mask<S> was_flowing = mask<S>((old.status & flowing_bit) != 0);
     const S start_speed = std::abs(start);
-    const S work = -force * step.dt * (start + velocity) / 2;
-    const bool at_bound = std::abs(force) >= bound * at_bound_share<S>;
-    const bool was_flowing = (old.status & flowing_bit) != 0;
-    const bool kicked = std::abs(start - old.velocity) >
-                        step.absolute_residual + step.relative_residual * start_speed;
-    const bool flows = (at_bound | was_flowing | kicked) & (work > 0);
+    const S tolerated = step.absolute_residual + step.relative_residual * start_speed;
+    const Mask<S> kicked = mask<S>(std::abs(start - old.velocity) > tolerated);
+    const Mask<S> at_bound = mask<S>(std::abs(force) >= bound * at_bound_share<S>);
 
-    const S taken = select(flows, work, S(0));
+    const S work = -force * step.dt * (start + velocity) / 2;
+    const Mask<S> flows = intact & (at_bound | was_flowing | kicked) & mask<S>(work > 0);
+    const S taken = only(flows, work);
     const S strength = law.midpoint(old.travel, start_speed, step.dt);
     const S left = law.remaining(old.travel);
     const S travel = taken / strength;
-    const bool breaks = flows & (travel >= left * used_up_share<S>);
-    const S release = select(breaks, larger(taken - strength * left, S(0)), S(0));
+    const Mask<S> breaks = flows & mask<S>(travel >= left * used_up_share<S>);
+    const S release = only(breaks, larger(taken - strength * left, S(0)));
     const S plastic = taken - release;
 
     const S excess = velocity - bias;
-    const S ahead = larger(select(force > 0, excess, -excess), S(0));
-    const S residual = select(at_bound, ahead, std::abs(excess));
+    const S against = larger(select(mask<S>(force > 0), excess, -excess), S(0));
+    const S residual = only(intact, select(at_bound, against, std::abs(excess)));
     const S speed = larger(start_speed, std::abs(velocity));
-    const bool unreliable =
-        residual > step.absolute_residual + step.relative_residual * speed;
-    const bool yields = (plastic > 0) & (at_bound | (start_speed > step.absolute_residual));
+    const Mask<S> unreliable =
+        mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
+    const Mask<S> yields =
+        mask<S>(plastic > 0) & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
-    const Flags<S> outcome =
-        select(breaks, Flags<S>(Outcome::broken),
-               select(unreliable, Flags<S>(Outcome::unreliable),
-                      select(yields, Flags<S>(Outcome::yielding), Flags<S>(Outcome::elastic))));
-    const Flags<S> flag = select(at_bound, Flags<S>(flowing_bit), Flags<S>(0));
+    constexpr auto code = [](Outcome outcome) { return Mask<S>(outcome); };
+    const Mask<S> whole = (unreliable & code(Outcome::unreliable)) |
+                          (~unreliable & yields & code(Outcome::yielding));
+    const Mask<S> outcome = (breaks & code(Outcome::broken)) | (~breaks & whole);
+    const Mask<S> status = outcome | (at_bound & flowing_bit);
 
-    Committed<S> now;
-    now.state.offset = select(was_broken | !flows, old.offset, position);
-    const S after = select(breaks, law.limit, old.travel + travel);
-    now.state.travel = select(was_broken | !flows, old.travel, after);
-    now.state.plastic_work = select(was_broken, old.plastic_work, old.plastic_work + plastic);
-    now.state.other_work =
-        select(was_broken, old.other_work, old.other_work + select(flows, S(0), work));
-    now.state.velocity = select(was_broken, old.velocity, velocity);
-    now.state.residual_max =
-        select(was_broken, old.residual_max, larger(old.residual_max, residual));
-    now.state.status = select(was_broken, old.status, Flags<S>(outcome | flag));
-    now.release = select(was_broken, S(0), release);
-    now.residual = select(was_broken, S(0), residual);
-    return now;
+    return {.state = {.offset = select(flows, position, old.offset),
+                      .travel = select(breaks, law.limit, old.travel + travel),
+                      .plastic_work = old.plastic_work + plastic,
+                      .other_work = old.other_work + only(intact & ~flows, work),
+                      .velocity = select(intact, velocity, old.velocity),
+                      .residual_max = larger(old.residual_max, residual),
+                      .status = (intact & status) | (~intact & old.status)},
+            .release = release,
+            .residual = residual};
 }
+
+static_assert(unsigned(Outcome::elastic) == 0); // the code left where no mask is set
 
 } // namespace ductile::batch_detail
