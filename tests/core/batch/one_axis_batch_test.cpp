@@ -77,6 +77,7 @@ Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint
             S impulse =
                 std::clamp(mass * (rows[i].bias - free), rows[i].lower * dt, rows[i].upper * dt);
             if (random() % 16 == 0) impulse *= uniform(S(-0.5), S(0.9)); // left unsolved
+            if (random() % 32 == 0) impulse += uniform(S(-0.3), S(0.3)); // out of bounds
             memory.force[i] = impulse / dt;
             memory.velocity_after[i] = free + impulse / mass;
             memory.position_after[i] = memory.position[i] + memory.velocity_after[i] * dt;
