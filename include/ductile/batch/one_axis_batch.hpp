@@ -20,6 +20,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <utility>
@@ -35,23 +36,41 @@ namespace ductile {
 
 namespace batch_detail {
 
-// `__restrict`, which all compilers know on parameters, is what lets the loops vectorise without
-// checking 18 arrays against each other in every call; check_arrays has refused overlaps.
+// Two things let the loops vectorise well. `__restrict`, which all compilers know on parameters: without
+// it every call would check 18 arrays against each other; check_arrays has refused overlaps. And the
+// status bytes are widened to masks block by block, in the first cache level: bytes and scalars
+// in one loop would make g++ unroll it to 16 joints and run out of registers.
+
+inline constexpr std::size_t block = 256;
+
+template <std::floating_point S>
+using MaskBlock = std::array<Mask<S>, block>;
+
+template <std::floating_point S>
+void widen(const BatchStatus* __restrict status, std::size_t joints, MaskBlock<S>& wide) noexcept {
+    for (std::size_t i = 0; i < joints; ++i) wide[i] = status[i];
+}
+
+template <std::floating_point S>
+void narrow(const MaskBlock<S>& wide, std::size_t joints, BatchStatus* __restrict status) noexcept {
+    for (std::size_t i = 0; i < joints; ++i) status[i] = static_cast<BatchStatus>(wide[i]);
+}
 
 template <std::floating_point S, class Law>
-void prepare_rows(std::size_t joints, const StepNumbers<S>& numbers, const Law& law,
-                  const S* __restrict position, const S* __restrict velocity,
+void prepare_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
+                  const Law& law, const S* __restrict position, const S* __restrict velocity,
                   const S* __restrict offset, const S* __restrict travel,
-                  const BatchStatus* __restrict status, S* __restrict start, S* __restrict lower,
+                  const Mask<S>* __restrict status, S* __restrict start, S* __restrict lower,
                   S* __restrict upper, S* __restrict bias) noexcept {
     const StepNumbers<S> step = numbers;
     const auto strength = law.strength();
     const auto hardening = law.hardening();
     const auto limit = law.limit();
-    for (std::size_t i = 0; i < joints; ++i) {
+    for (std::size_t n = 0; n < joints; ++n) {
+        const std::size_t i = from + n;
         const RowLaw<S> row{strength[i], hardening[i], limit[i]};
         const Prepared<S> now = prepare_row<S>(row, step, position[i], velocity[i], offset[i],
-                                               travel[i], start[i], status[i]);
+                                               travel[i], start[i], status[n]);
         lower[i] = now.lower;
         upper[i] = now.upper;
         bias[i] = now.bias;
@@ -60,22 +79,23 @@ void prepare_rows(std::size_t joints, const StepNumbers<S>& numbers, const Law& 
 }
 
 template <std::floating_point S, class Law>
-void commit_rows(std::size_t joints, const StepNumbers<S>& numbers, const Law& law,
-                 const S* __restrict force, const S* __restrict velocity,
+void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
+                 const Law& law, const S* __restrict force, const S* __restrict velocity,
                  const S* __restrict position, const S* __restrict upper,
                  const S* __restrict bias, const S* __restrict start, S* __restrict offset,
                  S* __restrict travel, S* __restrict plastic_work, S* __restrict other_work,
                  S* __restrict last_velocity, S* __restrict residual_max,
-                 BatchStatus* __restrict status, S* __restrict release,
+                 Mask<S>* __restrict status, S* __restrict release,
                  S* __restrict residual) noexcept {
     const StepNumbers<S> step = numbers;
     const auto strength = law.strength();
     const auto hardening = law.hardening();
     const auto limit = law.limit();
-    for (std::size_t i = 0; i < joints; ++i) {
+    for (std::size_t n = 0; n < joints; ++n) {
+        const std::size_t i = from + n;
         const RowLaw<S> row{strength[i], hardening[i], limit[i]};
         const RowState<S> old{offset[i],        travel[i],       plastic_work[i], other_work[i],
-                              last_velocity[i], residual_max[i], status[i]};
+                              last_velocity[i], residual_max[i], status[n]};
         const Committed<S> now = commit_row<S>(row, step, force[i], velocity[i], position[i],
                                                upper[i], bias[i], start[i], old);
         offset[i] = now.state.offset;
@@ -84,7 +104,7 @@ void commit_rows(std::size_t joints, const StepNumbers<S>& numbers, const Law& l
         other_work[i] = now.state.other_work;
         last_velocity[i] = now.state.velocity;
         residual_max[i] = now.state.residual_max;
-        status[i] = static_cast<BatchStatus>(now.state.status);
+        status[n] = now.state.status;
         release[i] = now.release;
         residual[i] = now.residual;
     }
@@ -117,22 +137,34 @@ class OneAxisBatch {
     /// Rules all rows for a step of `dt` > 0 [s]. Call once per step, before commit.
     void prepare(Scalar dt) noexcept {
         const auto& [motion, rows, reaction, state, step] = arrays_;
-        batch_detail::prepare_rows<Scalar>(
-            size(), numbers(dt), law_, motion.position.data(), motion.velocity.data(),
-            state.plastic_offset.data(), state.plastic_travel.data(), state.status.data(),
-            state.start_velocity.data(), rows.lower.data(), rows.upper.data(), rows.bias.data());
+        for (std::size_t from = 0; from < size(); from += batch_detail::block) {
+            const std::size_t joints = std::min(batch_detail::block, size() - from);
+            batch_detail::MaskBlock<Scalar> status;
+            batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
+            batch_detail::prepare_rows<Scalar>(
+                from, joints, numbers(dt), law_, motion.position.data(), motion.velocity.data(),
+                state.plastic_offset.data(), state.plastic_travel.data(), status.data(),
+                state.start_velocity.data(), rows.lower.data(), rows.upper.data(),
+                rows.bias.data());
+        }
     }
 
     /// Books the step that `prepare` opened; same `dt` [s], rows as prepare wrote them.
     void commit(Scalar dt) noexcept {
         const auto& [motion, rows, reaction, state, step] = arrays_;
-        batch_detail::commit_rows<Scalar>(
-            size(), numbers(dt), law_, reaction.force.data(), reaction.velocity.data(),
-            reaction.position.data(), rows.upper.data(), rows.bias.data(),
-            state.start_velocity.data(), state.plastic_offset.data(), state.plastic_travel.data(),
-            state.plastic_work.data(), state.other_work.data(), state.velocity.data(),
-            state.residual_max.data(), state.status.data(), step.release.data(),
-            step.residual.data());
+        for (std::size_t from = 0; from < size(); from += batch_detail::block) {
+            const std::size_t joints = std::min(batch_detail::block, size() - from);
+            batch_detail::MaskBlock<Scalar> status;
+            batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
+            batch_detail::commit_rows<Scalar>(
+                from, joints, numbers(dt), law_, reaction.force.data(), reaction.velocity.data(),
+                reaction.position.data(), rows.upper.data(), rows.bias.data(),
+                state.start_velocity.data(), state.plastic_offset.data(),
+                state.plastic_travel.data(), state.plastic_work.data(), state.other_work.data(),
+                state.velocity.data(), state.residual_max.data(), status.data(),
+                step.release.data(), step.residual.data());
+            batch_detail::narrow<Scalar>(status, joints, state.status.data() + from);
+        }
     }
 
     /// State of joint i, as OneAxisJoint keeps it. O(1).

@@ -162,6 +162,19 @@ TEMPLATE_TEST_CASE("joints with numbers of their own in one batch", "[batch]", f
     });
 }
 
+TEST_CASE("a batch longer than the block it is worked in", "[batch]") {
+    // three blocks, the last one short, and one exactly full
+    for (const std::size_t joints : {3 * batch_detail::block - 5, batch_detail::block}) {
+        const Perfect<float> law({.strength = 25});
+        const TravelLimit<float> at({.limit = 1});
+        BatchStorage<float> memory(joints);
+        const Seen seen =
+            compare<float>(OneAxisBatch(batch_law(law, at), memory.arrays()), memory,
+                           std::vector(joints, OneAxisJoint(law, at)), 5, 40);
+        CHECK(seen.broken > 0);
+    }
+}
+
 TEST_CASE("a batch of rotors dissipates exactly the energy each can take", "[batch]") {
     // I = 2 kg m², M_p = 40 N m, ω₀ = 10 rad/s; the even ones break at 1.6 rad with 6 rad/s left
     constexpr std::size_t count = 10;
