@@ -25,7 +25,8 @@
 //    per period, moves with velocities half a step late: amplitudes are off by a/8, energies by
 //    a/4. So
 //        error = a/4 = (π / steps per period)²
-//    and Nikula's frequency ratio `steps_per_period` is the least to accept.
+//    beside what any detail is off by in such an engine, where a load seems to act dt/2 before the
+//    speed it meets, and Nikula's frequency ratio `steps_per_period` is the least to accept.
 //    The elastic part is used where 2. is beyond the tolerance and 3. is accepted and the smaller
 //    error; where the event is not known, wherever 3. is within the tolerance, because that cannot
 //    harm. Otherwise the axis is rigid-plastic, and the error that remains is told.
@@ -76,8 +77,7 @@ struct JointDetailParameters {
     std::array<S, 6> mass{};           ///< effective, of each axis alone [kg | kg m²], > 0
     S dt = std::numeric_limits<S>::quiet_NaN(); ///< step [s], > 0
     std::array<std::optional<AxisEvent<S>>, 6> event{}; ///< none: not known
-    S lever = std::numeric_limits<S>::infinity(); ///< ℓ [m], > 0; infinity: no bound on the shear...
-                                                  ///< ...that is not known
+    S lever = std::numeric_limits<S>::infinity(); ///< ℓ [m], > 0; infinity: bounds no shear
     S tolerance = S(0.05);      ///< relative error of peak displacement and of strength, in (0, 1)
     S margin = S(0.1);          ///< by which loads may turn out larger, >= 0
     S steps_per_period = S(12); ///< fewest for an elastic part, >= 2
@@ -132,7 +132,7 @@ std::string percent(S share) {
 
 template <std::floating_point S>
 S shear_bound(const JointDetailParameters<S>& p, std::size_t axis) {
-    if (axis > 1) return std::numeric_limits<S>::infinity();
+    if (axis > 1 || std::isinf(p.lever)) return std::numeric_limits<S>::infinity();
     return 2 * p.capacity.capacity[axis == 0 ? 4 : 3] / p.lever; // Fx bends about y, Fy about x
 }
 
