@@ -60,6 +60,16 @@ BatchStorage<S> scene(std::size_t joints, long yielding) {
     return memory;
 }
 
+/// Time per joint and step, and bytes moved per second where they are known.
+void report(benchmark::State& state, std::size_t joints, std::size_t bytes) {
+    state.counters["per joint"] =
+        benchmark::Counter(double(joints), benchmark::Counter::kIsIterationInvariantRate |
+                                               benchmark::Counter::kInvert);
+    if (bytes == 0) return;
+    state.counters["bytes/s"] =
+        benchmark::Counter(double(joints * bytes), benchmark::Counter::kIsIterationInvariantRate);
+}
+
 template <class S>
 void scalar(benchmark::State& state) {
     const auto joints = std::size_t(state.range(0));
@@ -79,17 +89,7 @@ void scalar(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
-    state.counters["ns/joint"] =
-        benchmark::Counter(double(joints) * 1e-9, benchmark::Counter::kIsIterationInvariantRate |
-                                                      benchmark::Counter::kInvert);
-}
-
-void report(benchmark::State& state, std::size_t joints, std::size_t bytes) {
-    state.counters["ns/joint"] =
-        benchmark::Counter(double(joints) * 1e-9, benchmark::Counter::kIsIterationInvariantRate |
-                                                      benchmark::Counter::kInvert);
-    state.counters["bytes/s"] =
-        benchmark::Counter(double(joints * bytes), benchmark::Counter::kIsIterationInvariantRate);
+    report(state, joints, 0);
 }
 
 template <class S>

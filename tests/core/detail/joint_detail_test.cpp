@@ -166,6 +166,24 @@ TEST_CASE("a step that does not resolve the elastic part leaves the error and sa
     CHECK(choose_detail(p).axis[mx].detail == AxisDetail::rigid_plastic);
 }
 
+TEST_CASE("of two errors the smaller one is chosen", "[joint_detail]") {
+    // 12.5 steps per period: error (π/12.5)² = 6.3 %; U_y/(E + U_y) of 6 % and of 7 %
+    const AxisSystem<double> system{.mass = 0.5, .stiffness = 200, .strength = 10};
+    const double dt = 2 * std::numbers::pi / 20 / 12.5;
+    const auto choice = [&](double ignored) {
+        const double energy = 0.25 * (1 - ignored) / ignored;
+        const AxisEvent<double> event{.speed = std::sqrt(4 * energy)};
+        return choose_detail(only_bending(system, event, dt)).axis[mx];
+    };
+    CHECK(choice(0.06).detail == AxisDetail::rigid_plastic);
+    CHECK(choice(0.06).error == Approx(0.06).epsilon(1e-9));
+    CHECK(choice(0.07).detail == AxisDetail::elastic_plastic);
+    CHECK(choice(0.07).error == Approx(0.0631654682).epsilon(1e-9));
+    // and where the event is not known, the elastic part has to be within the tolerance of 5 %
+    CHECK(choose_detail(only_bending(system, {}, dt)).axis[mx].detail ==
+          AxisDetail::rigid_plastic);
+}
+
 TEST_CASE("an event that is not known gets the elastic part where it costs nothing",
           "[joint_detail]") {
     const AxisSystem<double> system{.mass = 0.5, .stiffness = 200, .strength = 10};
