@@ -118,7 +118,7 @@ TEST_CASE("a steel bar hit hard is a rigid-plastic hinge about one axis", "[join
     CHECK(joint.detail() == AxisDetail::rigid_plastic);
     // U_y = M_p²/(2 E I/L), 8533 N m/rad
     CHECK(joint.axis[mx].error == Approx(0.24 / 250.24).epsilon(1e-9));
-    for (const std::size_t i : {0, 2, 4, 5}) CHECK(joint.axis[i].detail == AxisDetail::rigid);
+    for (const std::size_t i : {0u, 2u, 4u, 5u}) CHECK(joint.axis[i].detail == AxisDetail::rigid);
     // V <= 2 M_p/ℓ = 6400 N of V_p = 80 mm² × 400 MPa/√3 = 18475 N
     CHECK(joint.axis[1].utilisation == Approx(6400 / (80e-6 * 400e6 / std::numbers::sqrt3)));
     CHECK_THAT(joint.reason(), Contains("Mx rigid-plastic: "));
