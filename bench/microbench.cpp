@@ -89,6 +89,11 @@ void scalar(benchmark::State& state) {
         }
         benchmark::ClobberMemory();
     }
+    for (std::size_t i = 0; i < joints; ++i) {
+        if ((steps[i].outcome == Outcome::yielding) != (memory.velocity[i] != 0)) {
+            state.SkipWithError("the joints that should yield are not those that do");
+        }
+    }
     report(state, joints, 0);
 }
 
@@ -104,6 +109,11 @@ void batch(benchmark::State& state) {
         benchmark::ClobberMemory();
         bank.commit(S(step));
         benchmark::ClobberMemory();
+    }
+    for (std::size_t i = 0; i < joints; ++i) {
+        if ((bank.outcome(i) == Outcome::yielding) != (memory.velocity[i] != 0)) {
+            state.SkipWithError("the joints that should yield are not those that do");
+        }
     }
     report(state, joints, batch_bytes_read<S> + batch_bytes_written<S>);
 }
