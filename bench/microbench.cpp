@@ -9,8 +9,8 @@
 //           read the lines it is going to write, so the copy is a hard baseline.
 //
 // Time is per joint and step; bytes are those of the batch's header. Every joint has its motion and
-// reaction in arrays, as an engine would hand them over; a share of them, scattered at random, flows
-// at its bound, the others hold.
+// reaction in arrays, as an engine would hand them over; a share of them, scattered at random,
+// flows at its bound, the others hold.
 //
 // Run with --quick for a smoke test, else with --benchmark_repetitions=9 and
 // --benchmark_report_aggregates_only=true on a quiet machine.

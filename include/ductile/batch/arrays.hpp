@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The arrays of a batch: one span per number, entry i belongs to joint i. The caller owns the
-// memory and hands in the same arrays every step; the engine writes `motion` and `reaction` and reads
-// `rows`. No two spans may overlap where one of them is written, because the loops run over several
-// joints at once.
+// memory and hands in the same arrays every step; the engine writes `motion` and `reaction` and
+// reads `rows`. No two spans may overlap where one of them is written, because the loops run over
+// several joints at once.
 //
 // Symbols as in joint/one_axis_joint.hpp.
 #pragma once
@@ -114,8 +114,8 @@ std::array<NamedBytes, 18> all_spans(const BatchArrays<S>& a) noexcept {
 
 inline void check_size(const NamedBytes& span, std::size_t joints) {
     if (span.size != joints) {
-        throw std::invalid_argument("OneAxisBatch." + std::string(span.name) + ".size() = " +
-                                    std::to_string(span.size) + ": must be " +
+        throw std::invalid_argument("OneAxisBatch." + std::string(span.name) +
+                                    ".size() = " + std::to_string(span.size) + ": must be " +
                                     std::to_string(joints) + ", as motion.position.size()");
     }
 }

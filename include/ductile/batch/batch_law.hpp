@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The parameters of a batch: strength R(p) = R0 + H p with travel limit p_max, where each of the
-// three is one number for all joints or an array with one per joint. Numbers that joints share should
-// be shared here too: an array costs its bytes twice a step.
+// three is one number for all joints or an array with one per joint. Numbers that joints share
+// should be shared here too: an array costs its bytes twice a step.
 //
 //   BatchLaw{Perfect, TravelLimit}             all joints alike
 //   BatchLaw{Linear, TravelLimit}
@@ -46,14 +46,14 @@ struct PerJoint {
 
 /// Shared or PerJoint: `parameter[i]` is the number of joint i.
 template <class T>
-concept BatchParameter = std::same_as<T, Shared<typename T::Scalar>> ||
-                         std::same_as<T, PerJoint<typename T::Scalar>>;
+concept BatchParameter =
+    std::same_as<T, Shared<typename T::Scalar>> || std::same_as<T, PerJoint<typename T::Scalar>>;
 
 /// Immutable view.
 template <BatchParameter Strength, BatchParameter Hardening = Shared<typename Strength::Scalar>,
           BatchParameter Limit = Shared<typename Strength::Scalar>>
-    requires std::same_as<typename Strength::Scalar, typename Hardening::Scalar> &&
-             std::same_as<typename Strength::Scalar, typename Limit::Scalar>
+requires std::same_as<typename Strength::Scalar, typename Hardening::Scalar> &&
+    std::same_as<typename Strength::Scalar, typename Limit::Scalar>
 class BatchLaw {
   public:
     using Scalar = typename Strength::Scalar;

@@ -17,8 +17,8 @@
 
 namespace ductile {
 
-/// Owns all arrays of `joints` joints, zero at first. Its arrays stay where they are for as long as it
-/// lives, also when it is moved; a copy has arrays of its own.
+/// Owns all arrays of `joints` joints, zero at first. Its arrays stay where they are for as long as
+/// it lives, also when it is moved; a copy has arrays of its own.
 template <std::floating_point S>
 struct BatchStorage {
     explicit BatchStorage(std::size_t joints)
@@ -52,11 +52,11 @@ struct BatchStorage {
                 .step = {release, residual}};
     }
 
-    std::vector<S> position, velocity;                     ///< BatchMotion
-    std::vector<S> lower, upper, bias;                     ///< BatchRows
-    std::vector<S> force, velocity_after, position_after;  ///< BatchReaction
+    std::vector<S> position, velocity;                    ///< BatchMotion
+    std::vector<S> lower, upper, bias;                    ///< BatchRows
+    std::vector<S> force, velocity_after, position_after; ///< BatchReaction
     std::vector<S> plastic_offset, plastic_travel, plastic_work, other_work, start_velocity,
-        last_velocity, residual_max; ///< BatchState
+        last_velocity, residual_max;  ///< BatchState
     std::vector<S> release, residual; ///< BatchStep
     std::vector<BatchStatus> status;  ///< BatchState
 };

@@ -6,8 +6,8 @@
 //   before the solve   batch.prepare(dt)   reads motion and state, writes rows
 //   after the solve    batch.commit(dt)    reads reaction, rows and state, writes state and step
 //
-// The loops have no branch, no call and no alias, so g++ and clang++ run them on a whole register of
-// joints at -O3. Results are those of OneAxisJoint, bit for bit where the compiler fuses no
+// The loops have no branch, no call and no alias, so g++ and clang++ run them on a whole register
+// of joints at -O3. Results are those of OneAxisJoint, bit for bit where the compiler fuses no
 // products (-ffp-contract=off).
 //
 // Bytes per joint, with s = sizeof(S) and shared parameters; a PerJoint parameter adds s to the
@@ -16,7 +16,9 @@
 //   prepare   reads 5 s + 1    writes 4 s        float  21 + 16, double  41 + 32
 //   commit    reads 12 s + 1   writes 8 s + 1    float  49 + 33, double  97 + 65
 //
-// A call is O(n) and bound by memory beyond the cache.
+// A call is O(n) and bound by memory beyond the cache. In it, registers of 16 bytes are bound by the
+// number of instructions: build for the processor (-march=x86-64-v3 or native) where that counts.
+// SSE2 alone cannot compare 64-bit masks, so double needs -march=x86-64-v2 to vectorise.
 #pragma once
 
 #include <algorithm>
@@ -36,10 +38,10 @@ namespace ductile {
 
 namespace batch_detail {
 
-// Two things let the loops vectorise well. `__restrict`, which all compilers know on parameters: without
-// it every call would check 18 arrays against each other; check_arrays has refused overlaps. And the
-// status bytes are widened to masks block by block, in the first cache level: bytes and scalars
-// in one loop would make g++ unroll it to 16 joints and run out of registers.
+// Two things let the loops vectorise well. `__restrict`, which all compilers know on parameters:
+// without it every call would check 18 arrays against each other; check_arrays has refused
+// overlaps. And the status bytes are widened to masks block by block, in the first cache level:
+// bytes and scalars in one loop would make g++ unroll it to 16 joints and run out of registers.
 
 inline constexpr std::size_t block = 256;
 
@@ -81,11 +83,10 @@ void prepare_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& nu
 template <std::floating_point S, class Law>
 void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
                  const Law& law, const S* __restrict force, const S* __restrict velocity,
-                 const S* __restrict position, const S* __restrict upper,
-                 const S* __restrict bias, const S* __restrict start, S* __restrict offset,
-                 S* __restrict travel, S* __restrict plastic_work, S* __restrict other_work,
-                 S* __restrict last_velocity, S* __restrict residual_max,
-                 Mask<S>* __restrict status, S* __restrict release,
+                 const S* __restrict position, const S* __restrict upper, const S* __restrict bias,
+                 const S* __restrict start, S* __restrict offset, S* __restrict travel,
+                 S* __restrict plastic_work, S* __restrict other_work, S* __restrict last_velocity,
+                 S* __restrict residual_max, Mask<S>* __restrict status, S* __restrict release,
                  S* __restrict residual) noexcept {
     const StepNumbers<S> step = numbers;
     const auto strength = law.strength();

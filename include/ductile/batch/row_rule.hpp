@@ -116,8 +116,8 @@ struct Committed {
 };
 
 template <std::floating_point S>
-inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force, S velocity,
-                               S position, S bound, S bias, S start,
+inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force,
+                               S velocity, S position, S bound, S bias, S start,
                                const RowState<S>& old) noexcept {
     const Mask<S> intact = mask<S>((old.status & outcome_bits) != Mask<S>(Outcome::broken));
     const Mask<S> was_flowing = mask<S>((old.status & flowing_bit) != 0);
@@ -146,8 +146,8 @@ inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step,
         mask<S>(plastic > 0) & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
     constexpr auto code = [](Outcome outcome) { return Mask<S>(outcome); };
-    const Mask<S> whole = (unreliable & code(Outcome::unreliable)) |
-                          (~unreliable & yields & code(Outcome::yielding));
+    const Mask<S> whole =
+        (unreliable & code(Outcome::unreliable)) | (~unreliable & yields & code(Outcome::yielding));
     const Mask<S> outcome = (breaks & code(Outcome::broken)) | (~breaks & whole);
     const Mask<S> status = outcome | (at_bound & flowing_bit);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// One byte per joint of a batch: the outcome of its last step and whether it ended at a bound. It is
-// both an output of the step and the two flags of the state, because a joint is broken exactly
+// One byte per joint of a batch: the outcome of its last step and whether it ended at a bound. It
+// is both an output of the step and the two flags of the state, because a joint is broken exactly
 // where its outcome says so.
 //
 //   bits 0, 1   Outcome of the last step
@@ -34,7 +34,8 @@ inline constexpr unsigned flowing_bit = 4;
     return outcome_of(status) == Outcome::broken;
 }
 
-static_assert(unsigned(Outcome::unreliable) <= outcome_bits && batch_status(Outcome::elastic, false) == 0);
+static_assert(unsigned(Outcome::unreliable) <= outcome_bits &&
+              batch_status(Outcome::elastic, false) == 0);
 static_assert(is_broken(batch_status(Outcome::broken, true)));
 
 } // namespace ductile

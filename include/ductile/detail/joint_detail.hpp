@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// How much detail a joint needs: rigid, rigid-plastic on some of its six axes, or elastic-plastic, with
-// the reason as text. For scene building, not for the inner loop: it allocates.
+// How much detail a joint needs: rigid, rigid-plastic on some of its six axes, or elastic-plastic,
+// with the reason as text. For scene building, not for the inner loop: it allocates.
 //
 // 1. Which axes yield. Let n_i be the force axis i sees in its event (elastic, so with its dynamic
 //    amplification) over its capacity.
 //    - All rigid where (1 + margin) Σ n_i <= 1. Every convex surface through the six capacities
 //      contains the octahedron Σ |n_i| <= 1, so this holds for any of them.
-//    - Otherwise the axes with the smallest n_i stay rigid as long as what they would have taken from
+//    - Otherwise the axes with the smallest n_i stay rigid as long as what they would have taken
+//      from
 //      the strength of the others is tolerable, Σ ((1 + margin) n_i)² <= tolerance. The square is
 //      exact for axial force on a rectangle (m = 1 - n²), on the safe side for an ellipsoid
 //      (1 - √(1 - n²) <= n²), and up to 1/4 low for thin tubes; an I section bent about its strong
@@ -18,9 +19,9 @@
 // 2. Whether the elastic part matters. Without it the peak displacement changes by
 //        error = |u_ep - u_rp| / u_ep
 //    both in closed form (peak_response.hpp). For an axis that is hit with the energy E this is
-//    U_y/(E + U_y), U_y = R²/(2k) the most it can store: a hard hit needs no elastic part. For a load
-//    F < R put on at once it is 1: without elasticity nothing moves. Under a load F < R held during
-//    a hit, u_ep - u_rp = U_y/(R - F).
+//    U_y/(E + U_y), U_y = R²/(2k) the most it can store: a hard hit needs no elastic part. For a
+//    load F < R put on at once it is 1: without elasticity nothing moves. Under a load F < R held
+//    during a hit, u_ep - u_rp = U_y/(R - F).
 // 3. Whether the step resolves it. The explicit spring (symplectic Euler), a = k dt²/m, 2π/√a steps
 //    per period, moves with velocities half a step late: amplitudes are off by a/8, energies by
 //    a/4. So
@@ -31,10 +32,11 @@
 //    error; where the event is not known, wherever 3. is within the tolerance, because that cannot
 //    harm. Otherwise the axis is rigid-plastic, and the error that remains is told.
 //
-// Limit cases: k → ∞ rigid-plastic, error 0; dt → 0 never worse than the tolerance; loads → 0 rigid.
+// Limit cases: k → ∞ rigid-plastic, error 0; dt → 0 never worse than the tolerance; loads → 0
+// rigid.
 //
-// Source: frequency ratio from Nikula (2017), Handling of plasticity in physics engine, section 2.9,
-// which drops the spring where it is too low; errors derived here.
+// Source: frequency ratio from Nikula (2017), Handling of plasticity in physics engine,
+// section 2.9, which drops the spring where it is too low; errors derived here.
 //
 // Axes in the order Fx, Fy, Fz, Mx, My, Mz of section/capacity.hpp.
 #pragma once
@@ -61,9 +63,12 @@ enum class AxisDetail { rigid, rigid_plastic, elastic_plastic };
 
 [[nodiscard]] constexpr std::string_view to_string(AxisDetail detail) noexcept {
     switch (detail) {
-        case AxisDetail::rigid: return "rigid";
-        case AxisDetail::rigid_plastic: return "rigid-plastic";
-        case AxisDetail::elastic_plastic: return "elastic-plastic";
+        case AxisDetail::rigid:
+            return "rigid";
+        case AxisDetail::rigid_plastic:
+            return "rigid-plastic";
+        case AxisDetail::elastic_plastic:
+            return "elastic-plastic";
     }
     return "unknown";
 }
@@ -73,11 +78,11 @@ inline constexpr std::array<std::string_view, 6> joint_axis_names{"Fx", "Fy", "F
 
 template <std::floating_point S>
 struct JointDetailParameters {
-    JointCapacity<S> capacity{};       ///< capacities and stiffnesses, > 0, infinity allowed
-    std::array<S, 6> mass{};           ///< effective, of each axis alone [kg | kg m²], > 0
-    S dt = std::numeric_limits<S>::quiet_NaN(); ///< step [s], > 0
+    JointCapacity<S> capacity{}; ///< capacities and stiffnesses, > 0, infinity allowed
+    std::array<S, 6> mass{};     ///< effective, of each axis alone [kg | kg m²], > 0
+    S dt = std::numeric_limits<S>::quiet_NaN();         ///< step [s], > 0
     std::array<std::optional<AxisEvent<S>>, 6> event{}; ///< none: not known
-    S lever = std::numeric_limits<S>::infinity(); ///< ℓ [m], > 0; infinity: bounds no shear
+    S lever = std::numeric_limits<S>::infinity();       ///< ℓ [m], > 0; infinity: bounds no shear
     S tolerance = S(0.05);      ///< relative error of peak displacement and of strength, in (0, 1)
     S margin = S(0.1);          ///< by which loads may turn out larger, >= 0
     S steps_per_period = S(12); ///< fewest for an elastic part, >= 2
@@ -99,17 +104,17 @@ struct JointDetail {
 
     /// The most detailed of the six.
     [[nodiscard]] AxisDetail detail() const noexcept {
-        return std::max_element(axis.begin(), axis.end(), [](const auto& a, const auto& b) {
-                   return a.detail < b.detail;
-               })->detail;
+        return std::max_element(axis.begin(), axis.end(),
+                                [](const auto& a, const auto& b) { return a.detail < b.detail; })
+            ->detail;
     }
 
     /// One line per axis.
     [[nodiscard]] std::string reason() const {
         std::string text;
         for (std::size_t i = 0; i < axis.size(); ++i) {
-            text += std::string(joint_axis_names[i]) + " " + std::string(to_string(axis[i].detail)) +
-                    ": " + axis[i].reason + "\n";
+            text += std::string(joint_axis_names[i]) + " " +
+                    std::string(to_string(axis[i].detail)) + ": " + axis[i].reason + "\n";
         }
         return text;
     }
@@ -166,8 +171,8 @@ void choose_plastic(const JointDetailParameters<S>& p, const AxisSystem<S>& syst
     }
     if (std::isinf(system.stiffness)) ignored = 0;
 
-    const bool elastic = accepted && ignored > p.tolerance &&
-                         resolved < (event ? ignored : p.tolerance);
+    const bool elastic =
+        accepted && ignored > p.tolerance && resolved < (event ? ignored : p.tolerance);
     choice.detail = elastic ? AxisDetail::elastic_plastic : AxisDetail::rigid_plastic;
     choice.error = elastic ? resolved : ignored;
     const std::string period = number(steps) + " steps per elastic period";
@@ -180,9 +185,10 @@ void choose_plastic(const JointDetailParameters<S>& p, const AxisSystem<S>& syst
     } else {
         const S needed = std::max(p.steps_per_period, pi / std::sqrt(p.tolerance));
         choice.reason =
-            (event ? "elasticity would change the peak by " + percent(ignored)
-                   : "the event is not known; elasticity stores up to " +
-                         number(system.strength * system.strength / (2 * system.stiffness)) + " J") +
+            (event
+                 ? "elasticity would change the peak by " + percent(ignored)
+                 : "the event is not known; elasticity stores up to " +
+                       number(system.strength * system.strength / (2 * system.stiffness)) + " J") +
             ", but " + period + " do not resolve it; dt <= " + number(p.dt * steps / needed) +
             " s would";
     }
@@ -224,7 +230,8 @@ template <std::floating_point S>
         joint.axis[i].utilisation = utilisation(p, systems[i], i);
         if (!std::isinf(systems[i].stiffness)) {
             joint.axis[i].steps_per_period = 2 * std::numbers::pi_v<S> *
-                                             std::sqrt(systems[i].mass / systems[i].stiffness) / p.dt;
+                                             std::sqrt(systems[i].mass / systems[i].stiffness) /
+                                             p.dt;
         }
         sum += (1 + p.margin) * joint.axis[i].utilisation;
     }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Subdivision just in time: which sections of a member need a plastic hinge now. A section that does not
-// yield needs no joint at all, and fewer joints are faster and better solved.
+// Subdivision just in time: which sections of a member need a plastic hinge now. A section that
+// does not yield needs no joint at all, and fewer joints are faster and better solved.
 //
 // A section gets its hinge where its moment reaches `activate` of the capacity, a little before it
 // yields, and loses it again after the moment has stayed below `release` of the capacity for
 // `hold_time`. Between the two nothing changes, so a moment that trembles by less than
-// (activate - release) of the capacity moves no hinge twice. A hinge that flows carries its capacity
-// and so is never lost.
+// (activate - release) of the capacity moves no hinge twice. A hinge that flows carries its
+// capacity and so is never lost.
 //
 // The moment is linear between loads, so sections belong where loads act and where the section
 // changes. A welded section is rigid and takes any moment at once: where it was carried beyond the
@@ -51,14 +51,15 @@ struct SubdivisionChange {
 };
 
 /// One member. The arrays are the caller's: `moment` is written anew before every update,
-/// `capacity` may follow hardening. Not thread-safe. After construction nothing allocates or throws.
+/// `capacity` may follow hardening. Not thread-safe. After construction nothing allocates or
+/// throws.
 template <std::floating_point S>
 class MemberSubdivision {
   public:
     using Scalar = S;
 
-    /// @throws std::invalid_argument where a parameter is out of range, a capacity is not positive or
-    /// the sizes differ.
+    /// @throws std::invalid_argument where a parameter is out of range, a capacity is not positive
+    /// or the sizes differ.
     MemberSubdivision(std::span<const S> moment, std::span<const S> capacity,
                       const MemberSubdivisionParameters<S>& parameters = {})
         : moment_(moment), capacity_(capacity), p_(parameters) {

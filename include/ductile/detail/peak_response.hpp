@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What one axis does alone in a plain event, in closed form: a mass on an elastic-perfectly plastic
-// resistance that is hit at a speed, loaded suddenly for a while, or both. An answer to compare a choice
-// of detail with, before anything is simulated.
+// resistance that is hit at a speed, loaded suddenly for a while, or both. An answer to compare a
+// choice of detail with, before anything is simulated.
 //
 //   m u'' + r(u) = G + F(t),   u'(0) = v,   F(t) = F for 0 < t < t_d, then 0
 //
@@ -13,18 +13,18 @@
 // Elastic, ω = √(k/m), u_s = F/k:   u = u_s + C sin(ωt - ψ),  C = √(u_s² + v²/ω²),  tan ψ = u_s ω/v
 //   ends at yield (u_y = R/k), at the peak u_s + C, or at t_d; from there on the amplitude is
 //   √(u² + u'²/ω²), and what it has above u_y is kinetic energy at yield.
-// Plastic, from u_y with v_y:       m u'' = F - R, to the stop or to t_d; then a stop over m u'²/(2 R)
-// k = ∞: no elastic phase, v_y = v; an axis at rest under F <= R does not move.
+// Plastic, from u_y with v_y:       m u'' = F - R, to the stop or to t_d; then a stop over m u'²/(2
+// R) k = ∞: no elastic phase, v_y = v; an axis at rest under F <= R does not move.
 //
 // The peak of the first swing is the largest there is: later the load can only take energy out.
 //
 // Symbols ("x | y": translational axis | rotational axis)
 //   m  effective mass   [kg | kg m²]       v        speed at the start, >= 0   [m/s | rad/s]
-//   k  stiffness        [N/m | N m/rad]    F, t_d   sudden load, >= 0, its duration   [N | N m], [s]
-//   R  strength         [N | N m]          G        load held from before, >= 0   [N | N m]
+//   k  stiffness        [N/m | N m/rad]    F, t_d   sudden load, >= 0, its duration   [N | N m],
+//   [s] R  strength         [N | N m]          G        load held from before, >= 0   [N | N m]
 //
-// Limit cases: t_d → 0 with F t_d = m v, the impact at v; F = 0: u = (m v²/2 + R u_y/2)/R past yield;
-// t_d = ∞, v = 0: u = u_y/(2 (1 - F/R)) past yield, 2 F/k before; F > R for ever runs away.
+// Limit cases: t_d → 0 with F t_d = m v, the impact at v; F = 0: u = (m v²/2 + R u_y/2)/R past
+// yield; t_d = ∞, v = 0: u = u_y/(2 (1 - F/R)) past yield, 2 F/k before; F > R for ever runs away.
 //
 // Source: Biggs (1964), Introduction to Structural Dynamics, section 2.7; written out here.
 #pragma once
@@ -52,10 +52,10 @@ struct AxisSystem {
 /// What happens to it; everything towards the same side, which is the worst.
 template <std::floating_point S>
 struct AxisEvent {
-    S speed = 0; ///< v [m/s | rad/s], >= 0
-    S load = 0;  ///< F [N | N m], >= 0
+    S speed = 0;                                     ///< v [m/s | rad/s], >= 0
+    S load = 0;                                      ///< F [N | N m], >= 0
     S duration = std::numeric_limits<S>::infinity(); ///< t_d [s], > 0; infinity: the load stays
-    S held = 0;  ///< G [N | N m], >= 0
+    S held = 0;                                      ///< G [N | N m], >= 0
 
     bool operator==(const AxisEvent&) const = default;
 };
@@ -101,7 +101,8 @@ S flow(S mass, S strength, S load, S time, S v) noexcept {
 /// Exact answer. O(1).
 /// @throws std::invalid_argument where a number is out of range.
 template <std::floating_point S>
-[[nodiscard]] PeakResponse<S> peak_response(const AxisSystem<S>& system, const AxisEvent<S>& event) {
+[[nodiscard]] PeakResponse<S> peak_response(const AxisSystem<S>& system,
+                                            const AxisEvent<S>& event) {
     check_axis(system);
     check_event(event);
     constexpr S infinity = std::numeric_limits<S>::infinity();
@@ -123,8 +124,9 @@ template <std::floating_point S>
     const S mean = load / k, swing = std::hypot(mean, v / omega);
     const S phase = std::atan2(mean, v / omega);
     const bool yields = mean + swing > yield;
-    const S end = yields ? (phase + std::asin(std::clamp((yield - mean) / swing, S(-1), S(1)))) / omega
-                         : (phase + std::numbers::pi_v<S> / 2) / omega;
+    const S end = yields
+                      ? (phase + std::asin(std::clamp((yield - mean) / swing, S(-1), S(1)))) / omega
+                      : (phase + std::numbers::pi_v<S> / 2) / omega;
     S peak = mean + swing;
     S plastic = 0;
     if (event.duration < end) {

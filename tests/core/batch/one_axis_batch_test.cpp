@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The batch against the scalar joint, which is the reference: every field, bit for bit.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -41,8 +41,8 @@ struct Seen {
     int yielding = 0, broken = 0, released = 0, clipped = 0, unreliable = 0, elastic = 0;
 };
 
-/// Masses on one joint each, driven by random loads, kicks, jitter and unsolved rows; each is stepped
-/// on the numbers of its scalar joint, and the batch has to ask for and book the same.
+/// Masses on one joint each, driven by random loads, kicks, jitter and unsolved rows; each is
+/// stepped on the numbers of its scalar joint, and the batch has to ask for and book the same.
 template <class S, class Law, class Joint>
 Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint> joints,
              unsigned seed, int steps) {
@@ -56,7 +56,7 @@ Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint
         std::vector<Motion<S>> motion(joints.size());
         std::vector<RowLimits<S>> rows(joints.size());
         for (std::size_t i = 0; i < joints.size(); ++i) {
-            if (random() % 8 == 0) memory.velocity_after[i] += uniform(-3, 3); // a kick
+            if (random() % 8 == 0) memory.velocity_after[i] += uniform(-3, 3);             // a kick
             if (random() % 4 == 0) memory.velocity_after[i] += uniform(S(-1e-5), S(1e-5)); // jitter
             memory.position[i] = memory.position_after[i];
             memory.velocity[i] = memory.velocity_after[i];
@@ -168,9 +168,8 @@ TEST_CASE("a batch longer than the block it is worked in", "[batch]") {
         const Perfect<float> law({.strength = 25});
         const TravelLimit<float> at({.limit = 1});
         BatchStorage<float> memory(joints);
-        const Seen seen =
-            compare<float>(OneAxisBatch(batch_law(law, at), memory.arrays()), memory,
-                           std::vector(joints, OneAxisJoint(law, at)), 5, 40);
+        const Seen seen = compare<float>(OneAxisBatch(batch_law(law, at), memory.arrays()), memory,
+                                         std::vector(joints, OneAxisJoint(law, at)), 5, 40);
         CHECK(seen.broken > 0);
     }
 }
@@ -267,23 +266,40 @@ TEST_CASE("every span of a batch is checked, whichever is wrong", "[batch]") {
                   ".size() = 2: must be 3, as motion.position.size()");
         ++checked;
     };
-    shorten([](auto& a) -> auto& { return a.motion.velocity; }, 1);
-    shorten([](auto& a) -> auto& { return a.reaction.force; }, 2);
-    shorten([](auto& a) -> auto& { return a.reaction.velocity; }, 3);
-    shorten([](auto& a) -> auto& { return a.reaction.position; }, 4);
-    shorten([](auto& a) -> auto& { return a.rows.lower; }, 5);
-    shorten([](auto& a) -> auto& { return a.rows.upper; }, 6);
-    shorten([](auto& a) -> auto& { return a.rows.bias; }, 7);
-    shorten([](auto& a) -> auto& { return a.state.plastic_offset; }, 8);
-    shorten([](auto& a) -> auto& { return a.state.plastic_travel; }, 9);
-    shorten([](auto& a) -> auto& { return a.state.plastic_work; }, 10);
-    shorten([](auto& a) -> auto& { return a.state.other_work; }, 11);
-    shorten([](auto& a) -> auto& { return a.state.start_velocity; }, 12);
-    shorten([](auto& a) -> auto& { return a.state.velocity; }, 13);
-    shorten([](auto& a) -> auto& { return a.state.residual_max; }, 14);
-    shorten([](auto& a) -> auto& { return a.state.status; }, 15);
-    shorten([](auto& a) -> auto& { return a.step.release; }, 16);
-    shorten([](auto& a) -> auto& { return a.step.residual; }, 17);
+    shorten(
+        [](auto& a) -> auto& { return a.motion.velocity; }, 1);
+    shorten(
+        [](auto& a) -> auto& { return a.reaction.force; }, 2);
+    shorten(
+        [](auto& a) -> auto& { return a.reaction.velocity; }, 3);
+    shorten(
+        [](auto& a) -> auto& { return a.reaction.position; }, 4);
+    shorten(
+        [](auto& a) -> auto& { return a.rows.lower; }, 5);
+    shorten(
+        [](auto& a) -> auto& { return a.rows.upper; }, 6);
+    shorten(
+        [](auto& a) -> auto& { return a.rows.bias; }, 7);
+    shorten(
+        [](auto& a) -> auto& { return a.state.plastic_offset; }, 8);
+    shorten(
+        [](auto& a) -> auto& { return a.state.plastic_travel; }, 9);
+    shorten(
+        [](auto& a) -> auto& { return a.state.plastic_work; }, 10);
+    shorten(
+        [](auto& a) -> auto& { return a.state.other_work; }, 11);
+    shorten(
+        [](auto& a) -> auto& { return a.state.start_velocity; }, 12);
+    shorten(
+        [](auto& a) -> auto& { return a.state.velocity; }, 13);
+    shorten(
+        [](auto& a) -> auto& { return a.state.residual_max; }, 14);
+    shorten(
+        [](auto& a) -> auto& { return a.state.status; }, 15);
+    shorten(
+        [](auto& a) -> auto& { return a.step.release; }, 16);
+    shorten(
+        [](auto& a) -> auto& { return a.step.residual; }, 17);
     CHECK(checked == names.size() - 1); // motion.position is the measure
 }
 

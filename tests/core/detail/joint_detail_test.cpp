@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The choice of detail against what the oscillator really does with and without its elastic part.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <limits>
@@ -17,10 +17,10 @@
 #include "support/throws.hpp"
 
 using namespace ductile;
+using Catch::Matchers::Contains;
 using ductile::test::elastic_plastic_peak;
 using ductile::test::message_of;
 using ductile::test::rigid_plastic_peak;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -53,8 +53,7 @@ TEST_CASE("below yield a joint is rigid", "[joint_detail]") {
     const auto joint = choose_detail(only_bending(system, AxisEvent<double>{.load = 800}, 1e-3));
     CHECK(joint.detail() == AxisDetail::rigid);
     CHECK(joint.axis[mx].utilisation == Approx(0.8).epsilon(1e-12));
-    CHECK(joint.axis[mx].reason ==
-          "sees 80 % of its capacity, and all axes together do not yield");
+    CHECK(joint.axis[mx].reason == "sees 80 % of its capacity, and all axes together do not yield");
     // 0.46 R reaches 0.92 R, beyond what a margin of 10 % leaves
     const auto more = choose_detail(only_bending(system, AxisEvent<double>{.load = 920}, 1e-3));
     CHECK(more.detail() != AxisDetail::rigid);
@@ -77,8 +76,7 @@ TEST_CASE("axes that yield only together are not called rigid", "[joint_detail]"
     CHECK(choose_detail(p).detail() == AxisDetail::rigid); // (1 + 0.1) 0.9 < 1
 }
 
-TEST_CASE("an axis too weakly loaded to weaken the one that yields stays rigid",
-          "[joint_detail]") {
+TEST_CASE("an axis too weakly loaded to weaken the one that yields stays rigid", "[joint_detail]") {
     // axial force on a rectangle takes n² of its moment: (1.1 n)² <= 0.05 up to n = 0.203
     auto p = only_bending({.mass = 1, .stiffness = 1e6, .strength = 10},
                           AxisEvent<double>{.speed = 10}, 1e-3);
@@ -98,12 +96,10 @@ TEST_CASE("an axis too weakly loaded to weaken the one that yields stays rigid",
 }
 
 TEST_CASE("a steel bar hit hard is a rigid-plastic hinge about one axis", "[joint_detail]") {
-    // 10 × 8 mm (notched) of 400 MPa, M_p = 64 N m, joint length 10 mm, hit by 20 kg at 5 m/s in the middle of
-    // 40 mm: per radian of the hinge 10 mm, so 20 kg × (10 mm)² and 500 rad/s, 250 J
-    const Material<double> steel({.density = 7800,
-                                  .youngs_modulus = 200e9,
-                                  .poisson_ratio = 0.3,
-                                  .yield_stress = 400e6});
+    // 10 × 8 mm (notched) of 400 MPa, M_p = 64 N m, joint length 10 mm, hit by 20 kg at 5 m/s in
+    // the middle of 40 mm: per radian of the hinge 10 mm, so 20 kg × (10 mm)² and 500 rad/s, 250 J
+    const Material<double> steel(
+        {.density = 7800, .youngs_modulus = 200e9, .poisson_ratio = 0.3, .yield_stress = 400e6});
     JointDetailParameters<double> p;
     p.capacity = joint_capacity(Rectangle<double>({.width = 0.01, .height = 0.008}), steel,
                                 {.length = 0.01});
@@ -180,8 +176,7 @@ TEST_CASE("of two errors the smaller one is chosen", "[joint_detail]") {
     CHECK(choice(0.07).detail == AxisDetail::elastic_plastic);
     CHECK(choice(0.07).error == Approx(0.0631654682).epsilon(1e-9));
     // and where the event is not known, the elastic part has to be within the tolerance of 5 %
-    CHECK(choose_detail(only_bending(system, {}, dt)).axis[mx].detail ==
-          AxisDetail::rigid_plastic);
+    CHECK(choose_detail(only_bending(system, {}, dt)).axis[mx].detail == AxisDetail::rigid_plastic);
 }
 
 TEST_CASE("an event that is not known gets the elastic part where it costs nothing",
@@ -195,15 +190,15 @@ TEST_CASE("an event that is not known gets the elastic part where it costs nothi
     CHECK(coarse.axis[mx].reason ==
           "the event is not known; elasticity stores up to 0.25 J, but 9.42 steps per elastic "
           "period do not resolve it; dt <= 0.0224 s would");
-    const auto rigid = choose_detail(
-        only_bending({.mass = 1, .stiffness = infinity, .strength = 10}, {}, 1e-3));
+    const auto rigid =
+        choose_detail(only_bending({.mass = 1, .stiffness = infinity, .strength = 10}, {}, 1e-3));
     CHECK(rigid.axis[mx].detail == AxisDetail::rigid_plastic);
     CHECK(rigid.axis[mx].error == 0);
 }
 
 TEST_CASE("the error told is the error made by leaving the elastic part out", "[joint_detail]") {
-    // the suddenly applied load of P04, alone and after a hit: the elastic-plastic oscillator and the
-    // rigid-plastic joint stepped so finely that only the model differs
+    // the suddenly applied load of P04, alone and after a hit: the elastic-plastic oscillator and
+    // the rigid-plastic joint stepped so finely that only the model differs
     rc::prop("any hit, load and length of it", [] {
         const AxisSystem<double> system{.mass = 100, .stiffness = 4e4, .strength = 2000};
         const double omega = 20, dt = 1e-3 / omega;
@@ -285,8 +280,7 @@ TEST_CASE("a choice of detail refuses what it cannot decide on, by name", "[join
           "JointDetail.Fx.stiffness = 0 N/m or N m/rad: must be > 0 (infinity: no limit)");
     CHECK(with([](auto& p) { p.lever = 0; }) ==
           "JointDetail.lever = 0 m: must be > 0 (infinity: no limit)");
-    CHECK(with([](auto& p) { p.tolerance = 1; }) ==
-          "JointDetail.tolerance = 1: must be in (0, 1)");
+    CHECK(with([](auto& p) { p.tolerance = 1; }) == "JointDetail.tolerance = 1: must be in (0, 1)");
     CHECK(with([](auto& p) { p.margin = -1; }) ==
           "JointDetail.margin = -1: must be finite and >= 0");
     CHECK(with([](auto& p) { p.steps_per_period = 1; }) ==

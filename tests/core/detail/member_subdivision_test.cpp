@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <limits>
@@ -66,8 +66,8 @@ TEST_CASE("a moment beyond the capacity of a rigid section is told as late", "[s
 TEST_CASE("a trembling moment moves no hinge twice", "[subdivision]") {
     rc::prop("any mean, any noise narrower than the hysteresis", [] {
         std::vector<double> moment(1), capacity{100};
-        MemberSubdivision<double> member(
-            moment, capacity, {.activate = 0.9, .release = 0.7, .hold_time = 0});
+        MemberSubdivision<double> member(moment, capacity,
+                                         {.activate = 0.9, .release = 0.7, .hold_time = 0});
         const double mean = *rc::gen::inRange(0, 1200) / 10.0;
         std::size_t changes = 0;
         for (int i = 0; i < 200; ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The oscillator of peak_response.hpp stepped in time, to hold its closed forms and the errors told by
-// joint_detail.hpp against: an explicit elastic-perfectly plastic spring, and the library's own
+// The oscillator of peak_response.hpp stepped in time, to hold its closed forms and the errors told
+// by joint_detail.hpp against: an explicit elastic-perfectly plastic spring, and the library's own
 // rigid-plastic joint.
 #pragma once
 
@@ -14,7 +14,8 @@
 
 namespace ductile::test {
 
-/// Mean load over the step from t to t + dt, so that an end inside a step counts as much as it lasts.
+/// Mean load over the step from t to t + dt, so that an end inside a step counts as much as it
+/// lasts.
 inline double mean_load(const AxisEvent<double>& event, double t, double dt) {
     return event.load * std::clamp((event.duration - t) / dt, 0.0, 1.0);
 }

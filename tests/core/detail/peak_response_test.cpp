@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <cmath>
 #include <limits>
@@ -21,7 +21,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 TEST_CASE("a free oscillator past yield stops where its energy is used up", "[peak_response]") {
     // θ_max = θ_y + (E0 - k θ_y²/2)/M_y = 0.25 rad
-    const auto r = peak_response<double>({.mass = 0.5, .stiffness = 200, .strength = 10}, {.speed = 3});
+    const auto r =
+        peak_response<double>({.mass = 0.5, .stiffness = 200, .strength = 10}, {.speed = 3});
     CHECK(r.displacement == Approx(0.25).epsilon(1e-14));
     CHECK(r.plastic == Approx(0.2).epsilon(1e-14));
     CHECK(r.force == 10);
@@ -60,8 +61,8 @@ TEST_CASE("the chart of Biggs for rectangular pulses", "[peak_response]") {
     const double period = 2 * std::numbers::pi * std::sqrt(3.0 / 700);
     for (int i = 0; i < 6; ++i) {
         for (int j = 0; j < 6; ++j) {
-            const auto r = peak_response(
-                system, {.load = 21 / r_over_f[j], .duration = duration[i] * period});
+            const auto r =
+                peak_response(system, {.load = 21 / r_over_f[j], .duration = duration[i] * period});
             INFO("t_d/T = " << duration[i] << ", R/F = " << r_over_f[j]);
             CHECK(r.displacement / (21.0 / 700) == Approx(chart[i][j]).margin(6e-6));
         }
@@ -145,10 +146,10 @@ TEST_CASE("float gives the answer of double to its round-off", "[peak_response]"
             const double expected =
                 peak_response(system, {.speed = 0.3, .load = 10 * share, .duration = duration})
                     .displacement;
-            const float value = peak_response(single, {.speed = 0.3f,
-                                                       .load = float(10 * share),
-                                                       .duration = float(duration)})
-                                    .displacement;
+            const float value =
+                peak_response(
+                    single, {.speed = 0.3f, .load = float(10 * share), .duration = float(duration)})
+                    .displacement;
             CHECK(double(value) == Approx(expected).epsilon(1e-5)); // some 50 roundings of 6e-8
         }
     }
