@@ -7,9 +7,8 @@
 //    amplification) over its capacity.
 //    - All rigid where (1 + margin) Σ n_i <= 1. Every convex surface through the six capacities
 //      contains the octahedron Σ |n_i| <= 1, so this holds for any of them.
-//    - Otherwise the axes with the smallest n_i stay rigid as long as what they would have taken
-//      from
-//      the strength of the others is tolerable, Σ ((1 + margin) n_i)² <= tolerance. The square is
+//    - Otherwise the axes with the smallest n_i stay rigid as long as the strength they would have
+//      taken from the others is tolerable, Σ ((1 + margin) n_i)² <= tolerance. The square is
 //      exact for axial force on a rectangle (m = 1 - n²), on the safe side for an ellipsoid
 //      (1 - √(1 - n²) <= n²), and up to 1/4 low for thin tubes; an I section bent about its strong
 //      axis under axial force loses more: give it a smaller tolerance.
