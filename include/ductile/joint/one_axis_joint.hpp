@@ -1,42 +1,47 @@
 // SPDX-License-Identifier: MIT
 //
-// One rigid-plastic degree of freedom: a hinge that turns, or a bar that stretches, at a known
-// moment or force and is rigid below it.
+// One plastic degree of freedom: a hinge that turns, or a bar that stretches, at a known moment or
+// force; below it rigid or elastic.
 //
 //   before the solve   prepare(motion, dt)   -> RowLimits
 //   after the solve    commit(reaction, dt)  -> Step
 //
 // Symbols ("x | y": translational row | rotational row)
-//   q, q_p  position and plastic rest position            [m | rad]
-//   u, u'   velocity at the start and end of the step     [m/s | rad/s]
-//   f       force of the row over the step, λ/dt          [N | N m]
-//   R(p)    strength at the accumulated plastic travel p  [N | N m]
-//   W       work the row took from the bodies             [J]
+//   q, q_p  position and plastic rest position                [m | rad]
+//   q_e     elastic part, q - q_p                             [m | rad]
+//   u, u'   velocity at the start and end of the step         [m/s | rad/s]
+//   f       force of the row over the step, λ/dt              [N | N m]
+//   R       strength: bound of |f|, from the law and its state [N | N m]
+//   k       stiffness; infinite: rigid                        [N/m | N m/rad]
+//   W       work the row took from the bodies                 [J]
 //
-// Law. C = 0 and |f| <= R. Inside the bounds the row is rigid, and the target velocity removes drift
-// towards q_p; at a bound it slips, which is plastic flow. The box-bounded row solved to convergence
-// is the exact implicit rule, so nothing needs an iteration of our own.
+// Rigid row. C = 0 and |f| <= R. Inside the bounds the row is rigid, and the target velocity removes
+// drift towards q_p; at a bound it slips, which is plastic flow. The box-bounded row solved to
+// convergence is the exact implicit rule, so nothing needs an iteration of our own.
+//
+// Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what the
+// yield range allows, and the rest of the observed displacement is plastic. k → ∞ is the rigid row.
 //
 // Account. With v' = v + M⁻¹(Jᵀλ + f_ext dt) the change of kinetic energy is exactly the sum over
 // all rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any dt,
-// where M_p |Δθ| is first order only. Accumulated plastic travel is counted by the same rule,
-// Δp = W / R, so that R p is the dissipated work and a break is invariant under the step.
-//   Counted as plastic: steps at a bound, and the step that brings a flowing (or just now kicked) row
-//   to rest inside the bounds: a force R acting until rest would do the very same work. Everything
-//   else, such as the jitter of a solver below yield or drift being removed, is booked as
-//   `other_work` and never consumes life.
+// where M_p |Δθ| is first order only. Plastic travel is counted by the same rule, so that a break is
+// invariant under the step.
+//   Counted as plastic: steps that flow, and the step that brings a flowing (or just now kicked) rigid
+//   row to rest inside the bounds: a force R acting until rest would do the very same work. Everything
+//   else, such as the jitter of a solver below yield, drift being removed or numerical damping, is
+//   booked as `other_work` and never consumes life.
 //
 // Break at the right energy. If the travel left, r, is less than the step would consume, the bounds
 // are lowered before the solve so that the row does about R r of work. What it did in excess is
 // returned as Step::release, for the adapter to hand back to the two bodies; with it the energy
-// taken is R r at every dt. In isolation u'² = u² - 2 R r / m, exactly.
+// taken is R r at every dt. In isolation u'² = u² - 2 R r / m, exactly. A brittle break, where a cap
+// on the force is reached before yield, absorbs nothing and releases all the work of its step. What
+// was stored in the part is set free inside it: Step::lost.
 //
-// Certificate. A solved row satisfies u' = b inside the bounds, u' <= b at the upper and u' >= b at
-// the lower one. The violation of that is the residual; a step whose residual is large is reported
+// Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at the
+// lower one. The violation of that is the residual; a step whose residual is large is reported
 // as Outcome::unreliable instead of being passed off as physics. (A closed energy ledger proves
 // nothing here: it closes in unconverged solves too.)
-//
-// Limit cases: R → ∞ rigid; R → 0 free; dt → 0 the continuous rigid-plastic law.
 //
 // Source: work-conjugate account and break derived here; row bounds as Nikula (2017), section 2.8.
 #pragma once
@@ -47,7 +52,12 @@
 #include <limits>
 #include <utility>
 
+#include "ductile/fracture/fracture.hpp"
 #include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/elastic_row.hpp"
+#include "ductile/joint/one_axis_state.hpp"
+#include "ductile/law/cyclic.hpp"
+#include "ductile/law/hardening.hpp"
 #include "ductile/law/law.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -55,56 +65,32 @@
 
 namespace ductile {
 
-/// What one committed step did. Plain value.
-template <std::floating_point S>
-struct Step {
-    Outcome outcome = Outcome::elastic;
-    S plastic_work = 0; ///< dissipated by flow in this step, >= 0 [J]
-    S other_work = 0;   ///< taken by the row without flow: solver residual, drift removal [J]
-    S release = 0;      ///< taken in excess by the breaking step, to be handed back, >= 0 [J]
-    S residual = 0;     ///< violation of the row's complementarity, >= 0 [m/s | rad/s]
+/// A law as the joint uses it: a strength that follows the accumulated travel becomes isotropic
+/// hardening, a law with a memory of its own stays as it is.
+template <class Law>
+struct CyclicForm {
+    using type = Law;
 };
-
-/// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
-template <std::floating_point S>
-struct OneAxisState {
-    S plastic_offset = 0; ///< q_p, geometric rest position [m | rad]
-    S plastic_travel = 0; ///< p, work-conjugate, never decreases [m | rad]
-    S plastic_work = 0;   ///< D, never decreases [J]
-    S other_work = 0;     ///< sum of Step::other_work, either sign [J]
-    S start_velocity = 0; ///< u of the last step [m/s | rad/s]
-    S velocity = 0;       ///< u' of the last step [m/s | rad/s]
-    S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
-    bool flowing = false; ///< the last step ended at a bound
-    bool broken = false;
-
-    bool operator==(const OneAxisState&) const = default;
-};
-
-template <std::floating_point S>
-struct OneAxisParameters {
-    /// Time in which a holding row removes drift from q_p [s], > 0; five steps where that is longer. A
-    /// time, not a share of each step: a share would turn the drift left by a long step into a
-    /// kick in a short one.
-    S drift_time = S(0.02);
-    /// A step is unreliable where its residual exceeds this plus `relative_residual` × |velocity|
-    /// [m/s | rad/s], > 0.
-    S absolute_residual = S(1e-3);
-    S relative_residual = S(1e-2); ///< [-], in [0, 1]
+template <StrengthLaw Law>
+struct CyclicForm<Law> {
+    using type = IsotropicHardening<Law>;
 };
 
 /// Not thread-safe: one joint belongs to one thread at a time. After construction nothing allocates
 /// or throws, and both calls are O(1).
-template <StrengthLaw Law>
+template <class Law, FractureCriterion Criterion = TravelLimit<typename Law::Scalar>>
+    requires CyclicLaw<typename CyclicForm<Law>::type>
 class OneAxisJoint {
   public:
     using Scalar = typename Law::Scalar;
-    using State = OneAxisState<Scalar>;
+    using Cyclic = typename CyclicForm<Law>::type;
+    using State = OneAxisState<Scalar, typename Cyclic::State, typename Criterion::State>;
+    using Parameters = OneAxisParameters<Scalar>;
 
     /// @throws std::invalid_argument where a parameter is out of range.
-    explicit OneAxisJoint(Law law, TravelLimit<Scalar> limit = {},
-                          const OneAxisParameters<Scalar>& parameters = {})
-        : law_(std::move(law)), limit_(std::move(limit)), parameters_(parameters) {
+    explicit OneAxisJoint(Law law, Criterion criterion = Criterion(), Parameters parameters = {})
+        : law_(Cyclic(std::move(law))), criterion_(std::move(criterion)), parameters_(parameters) {
+        check::positive_or_infinite("OneAxisJoint.stiffness", parameters.stiffness, "N/m or N m/rad");
         check::positive("OneAxisJoint.drift_time", parameters.drift_time, "s");
         check::positive("OneAxisJoint.absolute_residual", parameters.absolute_residual,
                         "m/s or rad/s");
@@ -112,25 +98,47 @@ class OneAxisJoint {
                        Scalar(1), "", true);
     }
 
-    [[nodiscard]] const Law& law() const noexcept { return law_; }
-    [[nodiscard]] const TravelLimit<Scalar>& limit() const noexcept { return limit_; }
+    [[nodiscard]] const Cyclic& law() const noexcept { return law_; }
+    [[nodiscard]] const Criterion& criterion() const noexcept { return criterion_; }
+    [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
 
-    /// Strength at the present plastic travel [N | N m].
-    [[nodiscard]] Scalar strength() const noexcept { return law_.value(state_.plastic_travel); }
-    /// Plastic travel left before the break; infinity where there is no limit. [m | rad]
-    [[nodiscard]] Scalar remaining() const noexcept { return limit_.remaining(state_.plastic_travel); }
+    /// Force at which the row would flow now towards `direction` = ±1 [N | N m].
+    [[nodiscard]] Scalar strength(Scalar direction = 1) const noexcept {
+        return std::abs(law_.resistance(state_.law, Scalar(0), direction)) *
+               criterion_.strength_factor(state_.criterion, Scalar(0));
+    }
+    /// Share of life used, in [0, 1]; 1 exactly where broken.
+    [[nodiscard]] Scalar damage() const noexcept {
+        return state_.broken ? Scalar(1) : criterion_.damage(state_.criterion);
+    }
+    /// What broke the joint, or is the nearest to do so.
+    [[nodiscard]] CriterionKind governing() const noexcept {
+        return criterion_.governing(state_.criterion);
+    }
 
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`. A broken joint asks for no
     /// force at all.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
+        elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) return {.lower = 0, .upper = 0};
-        strength_ = midpoint_strength(motion.velocity, dt);
-        bound_ = strength_ * unspent_fraction(motion.velocity, dt);
-        bias_ = (state_.plastic_offset - motion.position) / std::max(parameters_.drift_time, 5 * dt);
-        return {.lower = -bound_, .upper = bound_, .bias = bias_, .compliance = 0};
+        bound(dt);
+        row_ = {.lower = lower_, .upper = upper_};
+        const Scalar k = parameters_.stiffness;
+        if (rigid()) {
+            row_.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
+            return row_;
+        }
+        implicit_ = implicit_share(k, motion.mass, dt);
+        if (implicit_ > 0) {
+            row_.bias = -elastic_ / (implicit_ * dt);
+            row_.compliance = 1 / (implicit_ * k * dt * dt);
+        } else {
+            row_.lower = row_.upper = std::clamp(-k * elastic_, lower_, upper_);
+        }
+        return row_;
     }
 
     /// Books the step that `prepare` opened; same `dt` [s].
@@ -140,95 +148,246 @@ class OneAxisJoint {
             step.outcome = Outcome::broken;
             return step;
         }
-        const Scalar work = -reaction.force * dt * (start_ + reaction.velocity) / 2;
-        const bool at_bound = std::abs(reaction.force) >= bound_ * (1 - bound_tolerance);
-        const bool flows = at_bound || state_.flowing || kicked();
-        (flows && work > 0 ? step.plastic_work : step.other_work) = work;
-
-        if (step.plastic_work > 0) flow(step, reaction.position);
-        certify(step, reaction, at_bound);
-
-        state_.plastic_work += step.plastic_work;
-        state_.other_work += step.other_work;
-        state_.start_velocity = start_;
-        state_.velocity = reaction.velocity;
-        state_.flowing = at_bound;
-        if (state_.broken) {
-            step.outcome = Outcome::broken;
-        } else if (step.residual > tolerance(reaction.velocity)) {
-            step.outcome = Outcome::unreliable;
-        } else if (step.plastic_work > 0 &&
-                   (at_bound || std::abs(start_) > parameters_.absolute_residual)) {
-            step.outcome = Outcome::yielding; // and not the round-off of a flow that has stopped
+        const Taken taken{.force = reaction.force,
+                          .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
+                          .travel = (start_ + reaction.velocity) / 2 * dt,
+                          .position = reaction.position,
+                          .dt = dt,
+                          .at_upper = reaction.force >= upper_ - tolerance_,
+                          .at_lower = reaction.force <= lower_ + tolerance_};
+        step.residual = violation(reaction, taken);
+        if (brittle(taken)) {
+            snap(step, taken);
+        } else if (rigid()) {
+            commit_rigid(step, taken);
+        } else {
+            commit_elastic(step, taken);
         }
+        settle(step, taken, reaction.velocity);
         return step;
     }
 
   private:
+    /// What the engine's step did to the row.
+    struct Taken {
+        Scalar force;    ///< f [N | N m]
+        Scalar work;     ///< W [J]
+        Scalar travel;   ///< (u + u')/2 dt, signed [m | rad]
+        Scalar position; ///< q after the step [m | rad]
+        Scalar dt;       ///< [s]
+        bool at_upper, at_lower;
+
+        [[nodiscard]] bool at_bound() const noexcept { return at_upper || at_lower; }
+    };
+
     /// A force this close to its bound is at it; wider than the round-off of λ/dt in float.
     static constexpr Scalar bound_tolerance = Scalar(4e-6);
-    /// Less travel than this fraction of the limit counts as used up.
-    static constexpr Scalar exhausted = 16 * std::numeric_limits<Scalar>::epsilon();
 
-    /// R half a step ahead, which keeps a hardening law second order.
-    Scalar midpoint_strength(Scalar velocity, Scalar dt) const noexcept {
-        return law_.value(state_.plastic_travel + std::abs(velocity) * dt / 2);
+    [[nodiscard]] bool rigid() const noexcept {
+        return parameters_.stiffness == std::numeric_limits<Scalar>::infinity();
+    }
+
+    // ---- before the solve ---------------------------------------------------------------------------
+
+    /// The bounds of the row's force for this step.
+    void bound(Scalar dt) noexcept {
+        const Scalar ahead = start_ * dt;
+        fade_ = criterion_.strength_factor(state_.criterion, std::abs(ahead) / 2);
+        const ForceRange<Scalar> range = law_.prepare(state_.law, ahead);
+        flow_lower_ = range.lower * fade_;
+        flow_upper_ = range.upper * fade_;
+        const Scalar direction = std::copysign(Scalar(1), start_);
+        left_ = std::min(
+            criterion_.remaining(state_.criterion, resistance(direction), direction),
+            fading_distance());
+        const Scalar share = unspent_share(dt);
+        upper_ = std::min(-flow_lower_ * share, criterion_.force_cap(state_.criterion, Scalar(1)));
+        lower_ = std::max(-flow_upper_ * share, -criterion_.force_cap(state_.criterion, Scalar(-1)));
+        share_ = share;
+        tolerance_ = bound_tolerance * std::max(std::abs(upper_), std::abs(lower_));
+    }
+
+    /// |force| that resists flow towards `direction` in this step [N | N m].
+    [[nodiscard]] Scalar resistance(Scalar direction) const noexcept {
+        return std::abs(direction < 0 ? flow_lower_ : flow_upper_);
+    }
+
+    /// Travel until a softening law has faded to nothing [m | rad].
+    [[nodiscard]] Scalar fading_distance() const noexcept {
+        if constexpr (StrengthLaw<Law>) {
+            return std::max(exhaustion(law_.law()) - state_.plastic_travel, Scalar(0));
+        } else {
+            return std::numeric_limits<Scalar>::infinity();
+        }
     }
 
     /// Share of the full strength that uses up the travel left in this step, in (0, 1]. The travel of
     /// the step is predicted from below, so that a step that can break does break: with the
     /// deceleration of the last step where the row flowed in it, else with a stop inside this one.
-    Scalar unspent_fraction(Scalar velocity, Scalar dt) const noexcept {
-        const Scalar speed = std::abs(velocity);
+    [[nodiscard]] Scalar unspent_share(Scalar dt) const noexcept {
+        const Scalar speed = std::abs(start_);
         const Scalar lost = std::max(std::abs(state_.start_velocity) - speed, Scalar(0));
         const Scalar slowed = state_.flowing ? std::max(speed - lost, Scalar(0)) : Scalar(0);
         const Scalar travel = (speed + slowed) / 2 * dt;
-        const Scalar left = remaining();
-        return left < travel ? left / travel : Scalar(1);
+        return left_ < travel ? left_ / travel : Scalar(1);
     }
 
-    /// True where somebody changed the velocity between the steps, well above solver noise.
-    bool kicked() const noexcept { return std::abs(start_ - state_.velocity) > tolerance(start_); }
+    // ---- after the solve ----------------------------------------------------------------------------
 
-    Scalar tolerance(Scalar velocity) const noexcept {
+    /// True where somebody changed the velocity between the steps, well above solver noise.
+    [[nodiscard]] bool kicked() const noexcept {
+        return std::abs(start_ - state_.velocity) > allowed_residual(start_);
+    }
+
+    [[nodiscard]] Scalar allowed_residual(Scalar velocity) const noexcept {
         const Scalar speed = std::max(std::abs(start_), std::abs(velocity));
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
     }
 
-    void flow(Step<Scalar>& step, Scalar position) noexcept {
-        const Scalar left = remaining();
-        const Scalar travel = step.plastic_work / strength_;
-        if (travel >= left * (1 - exhausted)) {
-            step.release = std::max(step.plastic_work - strength_ * left, Scalar(0));
-            step.plastic_work -= step.release;
-            state_.plastic_travel = limit_.limit();
-            state_.broken = true;
-        } else {
-            state_.plastic_travel += travel;
-        }
-        state_.plastic_offset = position;
+    [[nodiscard]] Scalar violation(const Reaction<Scalar>& reaction,
+                                   const Taken& taken) const noexcept {
+        if (row_.lower == row_.upper && !rigid()) return 0; // the force was given
+        const Scalar excess =
+            reaction.velocity + row_.compliance * reaction.force * taken.dt - row_.bias;
+        if (taken.at_upper) return std::max(excess, Scalar(0));
+        if (taken.at_lower) return std::max(-excess, Scalar(0));
+        return std::abs(excess);
     }
 
-    void certify(Step<Scalar>& step, const Reaction<Scalar>& reaction, bool at_bound) noexcept {
-        const Scalar excess = reaction.velocity - bias_;
-        if (!at_bound) {
-            step.residual = std::abs(excess);
+    /// True where the force reached a cap before the row could yield.
+    [[nodiscard]] bool brittle(const Taken& taken) const noexcept {
+        const Scalar upper = criterion_.force_cap(state_.criterion, Scalar(1));
+        const Scalar lower = -criterion_.force_cap(state_.criterion, Scalar(-1));
+        return (taken.at_upper && upper_ == upper) || (taken.at_lower && lower_ == lower);
+    }
+
+    /// Breaks without flow: what the row took beyond its elastic energy is handed back.
+    void snap(Step<Scalar>& step, const Taken& taken) noexcept {
+        const Scalar k = parameters_.stiffness;
+        const Scalar strained = rigid() ? Scalar(0) : taken.force / k;
+        step.elastic = rigid() ? Scalar(0) : k * (strained * strained - elastic_ * elastic_) / 2;
+        step.release = std::max(taken.work - step.elastic, Scalar(0));
+        step.other_work = taken.work - step.elastic - step.release;
+        criterion_.update(state_.criterion,
+                          {Scalar(0), state_.plastic_travel, taken.force, Scalar(0), taken.dt});
+        state_.broken = true;
+    }
+
+    void commit_rigid(Step<Scalar>& step, const Taken& taken) noexcept {
+        const Scalar direction = std::copysign(Scalar(1), taken.travel);
+        if (flows_with_bound(taken)) {
+            flow(step, taken, taken.work, taken.travel * share_);
+            state_.plastic_offset = taken.position;
+        } else if (!taken.at_bound() && taken.work > 0 && (state_.flowing || kicked())) {
+            flow(step, taken, taken.work, direction * taken.work / resistance(direction));
+            state_.plastic_offset = taken.position;
         } else {
-            step.residual = std::max(reaction.force > 0 ? excess : -excess, Scalar(0));
+            step.other_work = taken.work;
         }
+    }
+
+    /// At a bound, and moving the way that bound resists.
+    [[nodiscard]] static bool flows_with_bound(const Taken& taken) noexcept {
+        return (taken.at_lower && taken.travel > 0) || (taken.at_upper && taken.travel < 0);
+    }
+
+    void commit_elastic(Step<Scalar>& step, const Taken& taken) noexcept {
+        const Scalar k = parameters_.stiffness;
+        const Scalar trial = taken.position - state_.plastic_offset;
+        const Scalar slipped = spring_slip(law_, state_.law, k, fade_, trial);
+        const Scalar strained = trial - slipped;
+        step.elastic = k * (strained * strained - elastic_ * elastic_) / 2;
+        const Scalar rest = taken.work - step.elastic;
+        const Scalar direction = std::copysign(Scalar(1), slipped != 0 ? slipped : taken.travel);
+        const Scalar strength = resistance(direction);
+        if (slipped != 0) {
+            // the geometry of a symplectic row is second order, the work of an implicit one is the
+            // better account; in between as the row itself
+            state_.plastic_offset += slipped;
+            const Scalar by_work = strength > tolerance_ ? std::max(rest / strength, Scalar(0))
+                                                         : std::abs(slipped);
+            flow(step, taken, rest,
+                 direction * ((1 - implicit_) * std::abs(slipped) + implicit_ * by_work));
+        } else if (stopped_in_step(taken)) {
+            // a row too stiff for the step: what the yield range cannot hold was flow
+            const Scalar yield = strength * strength / (2 * k);
+            const Scalar room = std::max(yield - k * elastic_ * elastic_ / 2, Scalar(0));
+            const Scalar excess = std::max(taken.work - room, Scalar(0)) * implicit_;
+            flow(step, taken, excess, direction * excess / strength);
+            step.other_work += rest - excess;
+        } else {
+            step.other_work = rest;
+        }
+    }
+
+    /// An implicit row that came to rest inside its bounds after flow or a kick.
+    [[nodiscard]] bool stopped_in_step(const Taken& taken) const noexcept {
+        return row_.lower != row_.upper && !taken.at_bound() && taken.work > 0 &&
+               (state_.flowing || kicked());
+    }
+
+    /// Flows by the signed `travel`, for which `work` was taken; breaks where no more is left.
+    void flow(Step<Scalar>& step, const Taken& taken, Scalar work, Scalar travel) noexcept {
+        if (travel == 0) {
+            step.other_work = work;
+            return;
+        }
+        const bool last = std::abs(travel) >= left_ * (1 - exhausted_share<Scalar>);
+        if (last) travel = std::copysign(left_, travel);
+        const FlowWork<Scalar> done = law_.commit(state_.law, travel);
+        step.plastic_work = done.dissipated * fade_;
+        step.elastic += done.stored * fade_;
+        state_.plastic_travel += std::abs(travel);
+        criterion_.update(state_.criterion,
+                          {travel, state_.plastic_travel, taken.force, step.plastic_work, taken.dt});
+        const Scalar rest = work - step.plastic_work - done.stored * fade_;
+        state_.broken = last || criterion_.broken(state_.criterion);
+        if (state_.broken) step.release = std::max(rest, Scalar(0));
+        step.other_work = rest - step.release;
+    }
+
+    /// Carries the step into the state.
+    void settle(Step<Scalar>& step, const Taken& taken, Scalar velocity) noexcept {
+        if (state_.broken) {
+            step.lost = state_.stored + step.elastic;
+            step.elastic -= step.lost;
+        }
+        state_.plastic_work += step.plastic_work;
+        state_.stored += step.elastic;
+        state_.other_work += step.other_work;
+        state_.lost += step.lost;
         state_.residual_max = std::max(state_.residual_max, step.residual);
+        state_.start_velocity = start_;
+        state_.velocity = velocity;
+        state_.flowing = taken.at_bound();
+        if (state_.broken) {
+            step.outcome = Outcome::broken;
+        } else if (step.residual > allowed_residual(velocity)) {
+            step.outcome = Outcome::unreliable;
+        } else if (step.plastic_work > 0 &&
+                   (taken.at_bound() || std::abs(start_) > parameters_.absolute_residual)) {
+            step.outcome = Outcome::yielding; // and not the round-off of a flow that has stopped
+        }
     }
 
-    Law law_;
-    TravelLimit<Scalar> limit_;
-    OneAxisParameters<Scalar> parameters_;
+    Cyclic law_;
+    Criterion criterion_;
+    Parameters parameters_;
     State state_;
 
     // between prepare and commit
-    Scalar start_ = 0;
-    Scalar bound_ = 0;
-    Scalar strength_ = 0;
-    Scalar bias_ = 0;
+    RowLimits<Scalar> row_;
+    Scalar start_ = 0;      ///< u
+    Scalar elastic_ = 0;    ///< q_e at the start
+    Scalar flow_lower_ = 0; ///< force along the flow at which it flows back and forth
+    Scalar flow_upper_ = 0;
+    Scalar lower_ = 0; ///< bounds of the row's force
+    Scalar upper_ = 0;
+    Scalar tolerance_ = 0;
+    Scalar fade_ = 1;  ///< strength factor of the criterion
+    Scalar left_ = 0;  ///< travel left before a break
+    Scalar share_ = 1; ///< of the strength that the bounds allow
+    Scalar implicit_ = 1; ///< θ of an elastic row
 };
 
 } // namespace ductile

@@ -54,7 +54,7 @@ struct MomentCurvaturePoint {
 
 /// Immutable value. A call costs up to some ten integrations; meant for the construction of joints,
 /// not for their steps. Allocates nothing.
-template <FibreSection Section, StressStrainCurve Curve,
+template <FibreSection Section, UniaxialCurve Curve,
           class Rule = AdaptiveFibres<typename Section::Scalar>>
     requires std::same_as<typename Section::Scalar, typename Curve::Scalar> &&
              FibreRule<Rule, typename Section::Scalar>

@@ -34,14 +34,14 @@ namespace ductile {
 /// `stress(strain)` [Pa], odd in the strain [-] and finite. Where the curve also has
 /// `youngs_modulus()` [Pa], that is its slope at zero.
 template <class T>
-concept StressStrainCurve = requires(const T curve, typename T::Scalar strain) {
+concept UniaxialCurve = requires(const T curve, typename T::Scalar strain) {
     requires std::floating_point<typename T::Scalar>;
     { curve.stress(strain) } -> std::same_as<typename T::Scalar>;
 };
 
 /// Slope at zero strain [Pa]: what the curve says, else its secant at a strain of 1e-6, where any
 /// curve that starts elastic still is.
-template <StressStrainCurve Curve>
+template <UniaxialCurve Curve>
 [[nodiscard]] typename Curve::Scalar initial_modulus(const Curve& curve) noexcept {
     using S = typename Curve::Scalar;
     if constexpr (requires {
@@ -157,6 +157,6 @@ class RambergOsgood {
 template <std::floating_point S>
 RambergOsgood(const RambergOsgoodParameters<S>&) -> RambergOsgood<S>;
 
-static_assert(StressStrainCurve<BilinearCurve<double>> && StressStrainCurve<RambergOsgood<float>>);
+static_assert(UniaxialCurve<BilinearCurve<double>> && UniaxialCurve<RambergOsgood<float>>);
 
 } // namespace ductile

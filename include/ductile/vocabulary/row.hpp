@@ -42,6 +42,9 @@ template <std::floating_point Scalar>
 struct Motion {
     Scalar position = 0; ///< q, not wrapped: a hinge may turn many times [m | rad]
     Scalar velocity = 0; ///< u [m/s | rad/s]
+    /// m = 1/(J M⁻¹ Jᵀ) with the joint's rigid rows holding; read only by rows with an elastic part,
+    /// 0: not known [kg | kg m²]
+    Scalar mass = 0;
 };
 
 /// What the engine did to the row in the step.

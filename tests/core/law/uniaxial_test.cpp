@@ -11,7 +11,7 @@ using namespace ductile;
 using ductile::test::message_of;
 
 namespace {
-static_assert(!StressStrainCurve<double>);
+static_assert(!UniaxialCurve<double>);
 
 const RambergOsgood curve(RambergOsgoodParameters<double>{
     .youngs_modulus = 200e9, .coefficient = 1200e6, .exponent = 0.15});

@@ -132,7 +132,9 @@ class OneAxisConstraint : public PlasticConstraint {
         : PlasticConstraint(MAX_CONSTRAINT_TYPE, a, b),
           frame_in_a_(frame_in_a),
           frame_in_b_(frame_in_b),
-          joint_(std::move(joint)) {}
+          joint_(std::move(joint)) {
+        require_rigid(joint_.parameters().stiffness);
+    }
     ~OneAxisConstraint() override = default;
 
     /// Where frames, joint and axis are now, from the bodies' present transforms.

@@ -101,10 +101,15 @@ class OneAxisConstraint : public PlasticConstraint {
     /// @throws std::invalid_argument where `a` is null.
     OneAxisConstraint(dJointID id, dBodyID a, dBodyID b, Joint joint)
         : id_(id), a_(a), b_(b), joint_(std::move(joint)) {
-        if (a == nullptr) {
+        try {
+            require_rigid(joint_.parameters().stiffness);
+            if (a == nullptr) {
+                throw std::invalid_argument(
+                    "OneAxisConstraint.a = null: must be a body (only b may be the static world)");
+            }
+        } catch (...) {
             dJointDestroy(id);
-            throw std::invalid_argument(
-                "OneAxisConstraint.a = null: must be a body (only b may be the static world)");
+            throw;
         }
         dJointAttach(id_, a_, b_);
         dJointSetFeedback(id_, &feedback_);

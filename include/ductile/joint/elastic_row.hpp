@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// A spring as a row: the force -k (q_e + θ u' dt), with θ chosen so that the row is as accurate as the
+// step allows and never unstable.
+//
+// Symbols
+//   k    stiffness                          [N/m | N m/rad]
+//   q_e  elastic displacement at the start  [m | rad]
+//   m    mass the row feels                 [kg | kg m²]
+//   a    k dt²/m = (ω dt)²                  [-]
+//
+//   λ = -k dt (q_e + θ dt u')   <=>   u' + C λ = b,   C = 1/(θ k dt²),  b = -q_e/(θ dt)
+//
+// θ = 0 is the symplectic force, which keeps energy and is second order in the peak, stable for a < 4;
+// the row then has a given force, lower = upper. θ = 1 is the implicit one, first order, damped, and
+// stable for every a. For the free oscillator the characteristic equation
+//   z² - z (1 + 1/(1+θa) - a/(1+θa)) + 1/(1+θa) = 0
+// has |z| <= 1 where 4 + (2θ - 1) a >= 0. The choice
+//   θ(a) = 0 for a <= 1/4 (at least 12 steps per period),  1 for a >= 4,  linear in between
+// satisfies it and is continuous, so that a change of step or mass makes no jump. Limit cases: a → 0
+// keeps energy; a → ∞ tends to the rigid row that returns to q_e = 0 in one step.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+
+#include "ductile/law/cyclic.hpp"
+#include "ductile/law/root.hpp"
+
+namespace ductile {
+
+/// θ for a = k dt²/m; 1 where the mass is not known (0).
+template <std::floating_point S>
+[[nodiscard]] constexpr S implicit_share(S stiffness, S mass, S dt) noexcept {
+    if (!(mass > 0)) return 1;
+    constexpr S resolved = S(0.25), stiff = 4;
+    const S a = stiffness * dt * dt / mass;
+    return std::clamp((a - resolved) / (stiff - resolved), S(0), S(1));
+}
+
+/// Flow that brings a spring's force back to the law's, k (trial - slip) = fade × resistance(slip),
+/// signed; zero inside the elastic range [m | rad]. `trial` is q_e as if nothing had flowed, `fade` what
+/// the law's strength is multiplied by. A few Newton steps; one where the law is linear.
+template <CyclicLaw Law>
+[[nodiscard]] typename Law::Scalar spring_slip(const Law& law, const typename Law::State& state,
+                                               typename Law::Scalar stiffness,
+                                               typename Law::Scalar fade,
+                                               typename Law::Scalar trial) noexcept {
+    using S = typename Law::Scalar;
+    for (const S direction : {S(1), S(-1)}) {
+        const auto beyond = [&](S travel) noexcept {
+            const S held = law.resistance(state, travel, direction) * fade;
+            return direction * (stiffness * (trial - direction * travel) - held);
+        };
+        if (!(beyond(0) > 0)) continue;
+        const S first = beyond(0) / stiffness; // enough unless the law softens
+        const S most = beyond(first) <= 0 ? first : std::abs(trial);
+        return direction * newton_root(S(0), most, first, [&](S travel) noexcept {
+                   const S hardening = law.tangent(state, travel, direction) * fade;
+                   return ValueAndSlope<S>{beyond(travel), -stiffness - hardening};
+               });
+    }
+    return 0;
+}
+
+} // namespace ductile

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+//
+// What a plastic axis remembers between steps, what one step of it did, and its numerical parameters.
+#pragma once
+
+#include <concepts>
+#include <limits>
+
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// What one committed step did. Plain value. The work that the row took from the bodies is
+///   plastic_work + elastic + other_work + release + lost [J].
+template <std::floating_point S>
+struct Step {
+    Outcome outcome = Outcome::elastic;
+    S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
+    S elastic = 0;      ///< change of what is stored, elastic and by a back force [J]
+    S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
+    S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
+    S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
+    S residual = 0;     ///< violation of the row's complementarity, >= 0 [m/s | rad/s]
+};
+
+/// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
+template <std::floating_point S, class LawState, class CriterionState>
+struct OneAxisState {
+    S plastic_offset = 0; ///< q_p, geometric rest position [m | rad]
+    S plastic_travel = 0; ///< p, work-conjugate, never decreases [m | rad]
+    S plastic_work = 0;   ///< D, never decreases [J]
+    S stored = 0;         ///< elastic energy, and what a back force holds [J]
+    S other_work = 0;     ///< sum of Step::other_work, either sign [J]
+    S lost = 0;           ///< stored energy that the break set free [J]
+    S start_velocity = 0; ///< u of the last step [m/s | rad/s]
+    S velocity = 0;       ///< u' of the last step [m/s | rad/s]
+    S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
+    LawState law{};
+    CriterionState criterion{};
+    bool flowing = false; ///< the last step ended at a bound
+    bool broken = false;
+
+    bool operator==(const OneAxisState&) const = default;
+};
+
+template <std::floating_point S>
+struct OneAxisParameters {
+    /// k of the elastic part [N/m | N m/rad], > 0; infinity: rigid below yield.
+    S stiffness = std::numeric_limits<S>::infinity();
+    /// Time in which a rigid row that holds removes drift from q_p [s], > 0; five steps where that is
+    /// longer. A time, not a share of each step: a share would turn the drift left by a long step
+    /// into a kick in a short one.
+    S drift_time = S(0.02);
+    /// A step is unreliable where its residual exceeds this plus `relative_residual` × |velocity|
+    /// [m/s | rad/s], > 0.
+    S absolute_residual = S(1e-3);
+    S relative_residual = S(1e-2); ///< [-], in [0, 1]
+};
+
+/// For adapters that map rigid-plastic rows only.
+/// @throws std::invalid_argument where the stiffness is finite.
+template <std::floating_point S>
+void require_rigid(S stiffness) {
+    if (stiffness != std::numeric_limits<S>::infinity()) {
+        check::fail("OneAxisJoint.stiffness", stiffness, "N/m or N m/rad",
+                    "infinite: this adapter has no elastic rows");
+    }
+}
+
+} // namespace ductile

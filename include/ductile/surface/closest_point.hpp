@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+//
+// The closest-point return to a curved yield surface, in the metric of the inverse stiffness.
+//
+// Solved for the flow e instead of the force, because corners of the surface are smooth there:
+//
+//   minimise  φ(e) = ½ eᵀ K e - eᵀ f_trial + h(e),   h(e) = support(e)·e
+//   ∇φ = K e - f_trial + support(e) = 0   ⇔   f = f_trial - K e = support(e), e normal there
+//
+// φ is strictly convex and its Hessian K + support_slope(e) is positive definite, so Newton with
+// backtracking converges from anywhere; the answer support(e) is on the surface whatever is left of
+// the residual. Corners of h, which flat parts of a surface cause, are not allowed: a box has its
+// own projection.
+//
+// Limit cases: f_trial → surface: e → 0, f → f_trial; f_trial → ∞: f → support of K⁻¹ f_trial.
+//
+// Source: closest-point projection: Simo & Hughes (1998), Computational Inelasticity, section 3.6;
+// the dual form in e after Moreau (1965), doi:10.24033/bsmf.1625, written out here. Cost: 4-10
+// Newton steps of one Cholesky factorisation each.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "ductile/surface/surface.hpp"
+
+namespace ductile {
+
+/// `support_slope(flow)` is the derivative of `support`, symmetric, positive semidefinite.
+template <class T>
+concept CurvedSurface = requires(const T surface, const typename T::Vector& vector) {
+    { surface.value(vector) } noexcept -> std::same_as<typename T::Scalar>;
+    { surface.normal(vector) } noexcept -> std::same_as<typename T::Vector>;
+    { surface.support(vector) } noexcept -> std::same_as<typename T::Vector>;
+    { surface.support_slope(vector) } noexcept -> std::same_as<typename T::Matrix>;
+};
+
+/// `trial` where it is inside, else the closest force on the surface. `stiffness` symmetric,
+/// positive definite.
+template <CurvedSurface T>
+[[nodiscard]] typename T::Vector closest_point(const T& surface, const typename T::Vector& trial,
+                                               const typename T::Matrix& stiffness) noexcept {
+    using S = typename T::Scalar;
+    using Vector = typename T::Vector;
+    using Matrix = typename T::Matrix;
+    constexpr S epsilon = std::numeric_limits<S>::epsilon();
+    constexpr int max_steps = 60;
+    constexpr int max_halvings = 40;
+
+    const S value = surface.value(trial);
+    if (!(value > 1 + on_surface<S>)) return trial;
+
+    // a stiffness of order one keeps K e, f and h(e) comparable whatever the units
+    const Matrix k = stiffness / (stiffness.trace() / S(T::dimension));
+    const auto potential = [&](const Vector& e, const Vector& force) {
+        return e.dot(k * e) / 2 - e.dot(trial) + e.dot(force);
+    };
+
+    const Vector normal = surface.normal(trial);
+    Vector e = normal * ((value - 1) / normal.dot(k * normal));
+    Vector force = surface.support(e);
+    for (int step = 0; step < max_steps; ++step) {
+        const Vector gradient = k * e - trial + force;
+        if (gradient.norm() <= 4 * epsilon * trial.norm()) return force;
+        const Matrix hessian = k + surface.support_slope(e);
+        const Vector change = -hessian.ldlt().solve(gradient);
+        const S descent = change.dot(gradient);
+        const S phi = potential(e, force);
+        const S noise = 8 * epsilon * (std::abs(phi) + e.norm() * trial.norm());
+        S part = 1;
+        Vector next = e + change;
+        Vector next_force = surface.support(next);
+        for (int halving = 0; halving < max_halvings; ++halving) {
+            if (potential(next, next_force) <= phi + S(1e-4) * part * descent + noise) break;
+            part /= 2;
+            next = e + part * change;
+            next_force = surface.support(next);
+        }
+        const bool settled = (next - e).norm() <= epsilon * e.norm();
+        e = next;
+        force = next_force;
+        if (settled) break;
+    }
+    // where the surface is curved so sharply that round-off of e moves the support point
+    const Vector elastic = trial - k * e;
+    return (elastic - force).norm() > 64 * epsilon * trial.norm() ? elastic / surface.value(elastic)
+                                                                  : force;
+}
+
+} // namespace ductile

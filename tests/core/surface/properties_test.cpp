@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+//
+// What holds for every yield surface.
+#include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#include "cases.hpp"
+#include "ductile/surface/return_map.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+struct NotASurface {
+    using Scalar = double;
+    static constexpr int dimension = 2;
+    using Vector = Eigen::Vector2d;
+    using Matrix = Eigen::Matrix2d;
+    double value(const Vector&) const { return 0; } // may throw
+    Vector normal(const Vector&) const noexcept { return Vector::Zero(); }
+    Vector support(const Vector&) const noexcept { return Vector::Zero(); }
+    Vector project(const Vector& f, const Matrix&) const noexcept { return f; }
+};
+static_assert(!YieldSurface<NotASurface>);
+static_assert(!YieldSurface<double>);
+static_assert(!CurvedSurface<IndependentAxes<double, 2>>); // its dissipation has corners
+static_assert(CurvedSurface<BiaxialRectangle<float>>);
+
+/// A few evaluations of order one, each with a few operations.
+template <class S>
+constexpr S round_off = 64 * std::numeric_limits<S>::epsilon();
+
+template <class S>
+void check_all() {
+    const std::string scalar = std::is_same_v<S, float> ? " (float): " : ": ";
+    for_every_surface<S>([&](const std::string& surface_name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        using Vector = typename T::Vector;
+        using Matrix = typename T::Matrix;
+        const auto name = [&](const char* property) { return surface_name + scalar + property; };
+        constexpr S tolerance = round_off<S>;
+
+        rc::prop(name("the value is a gauge"), [&] {
+            const auto f = any_direction<Vector>();
+            const auto g = any_vector<Vector>();
+            const S s = any_number(S(0.01), S(100));
+            const S value = surface.value(f);
+            RC_ASSERT(value > 0);
+            RC_ASSERT(std::abs(surface.value(s * f) - s * value) <= tolerance * s * value);
+            RC_ASSERT(std::abs(surface.value(-f) - value) <= tolerance * value);
+            const S sum = value + surface.value(g); // convex: a point between is no farther out
+            RC_ASSERT(surface.value(f + g) <= sum * (1 + tolerance));
+        });
+
+        rc::prop(name("a sign of one force does not matter"), [&] {
+            const auto f = any_vector<Vector>();
+            Vector mirrored = f;
+            const int axis = *rc::gen::inRange(0, T::dimension);
+            mirrored[axis] = -mirrored[axis];
+            RC_ASSERT(std::abs(surface.value(mirrored) - surface.value(f)) <= tolerance);
+        });
+
+        rc::prop(name("flow dissipates, at the rate of the gauge"), [&] {
+            const auto f = any_direction<Vector>();
+            const S value = surface.value(f);
+            const Vector normal = surface.normal(f);
+            RC_ASSERT(normal.allFinite());
+            RC_ASSERT(std::abs(normal.dot(f) - value) <= tolerance * value);
+            const Vector outside = surface.normal(3 * f); // the same along the ray
+            RC_ASSERT((outside - normal).norm() <= 4 * tolerance * normal.norm());
+        });
+
+        rc::prop(name("the normal supports the surface"), [&] {
+            const auto f = any_direction<Vector>();
+            const auto g = any_vector<Vector>();
+            RC_ASSERT(surface.normal(f).dot(g) <= surface.value(g) + tolerance);
+        });
+
+        rc::prop(name("the support of a flow dissipates most"), [&] {
+            const auto flow = any_direction<Vector>();
+            const auto g = any_direction<Vector>();
+            const Vector force = surface.support(flow);
+            // an axis without flow may carry any force, and a box then chooses none
+            RC_ASSERT(std::abs(surface.value(force) - 1) <= tolerance);
+            const S dissipated = force.dot(flow);
+            RC_ASSERT(dissipated > 0);
+            RC_ASSERT(g.dot(flow) / surface.value(g) <= dissipated * (1 + tolerance));
+        });
+
+        rc::prop(name("a force inside stays"), [&] {
+            const auto ray = any_direction<Vector>();
+            const Vector f = ray * (any_number(S(0), S(1)) / surface.value(ray));
+            const auto stiffness = any_stiffness<Matrix>();
+            RC_ASSERT(surface.project(f, stiffness) == f);
+            RC_ASSERT(project_radially(surface, f) == f);
+        });
+
+        rc::prop(name("projection lands on the surface, and stays"), [&] {
+            const auto ray = any_direction<Vector>();
+            const S beyond = std::pow(S(10), any_number(S(-3), S(3)));
+            const Vector f = ray * ((1 + beyond) / surface.value(ray));
+            const auto stiffness = any_stiffness<Matrix>();
+            const Vector on = surface.project(f, stiffness);
+            RC_ASSERT(std::abs(surface.value(on) - 1) <= on_surface<S>);
+            RC_ASSERT(surface.project(on, stiffness) == on);
+            const Vector drawn = project_radially(surface, f);
+            RC_ASSERT(std::abs(surface.value(drawn) - 1) <= on_surface<S>);
+            RC_ASSERT(project_radially(surface, drawn) == drawn);
+        });
+
+        rc::prop(name("projection finds the closest force, so that flow is associated"), [&] {
+            const auto ray = any_direction<Vector>();
+            const S beyond = std::pow(S(10), any_number(S(-1), S(2)));
+            const Vector f = ray * ((1 + beyond) / surface.value(ray));
+            const auto stiffness = any_stiffness<Matrix>();
+            const Vector on = surface.project(f, stiffness);
+            const Vector flow = stiffness.ldlt().solve(f - on);
+            // in the normal cone: no admissible force dissipates more in this flow. The flow itself
+            // carries the round-off of f - on through a stiffness of the condition 100
+            const S noise = 100 * tolerance * flow.norm() * (1 + beyond);
+            RC_ASSERT(surface.support(flow).dot(flow) <= on.dot(flow) + noise);
+        });
+    });
+}
+
+} // namespace
+
+TEST_CASE("yield surfaces keep what their concept promises, in double", "[surface]") {
+    check_all<double>();
+}
+
+TEST_CASE("yield surfaces keep what their concept promises, in float", "[surface]") {
+    check_all<float>();
+}
+
+TEST_CASE("the normal is the gradient of the value", "[surface]") {
+    for_every_surface<double>([](const std::string& name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        using Vector = typename T::Vector;
+        rc::prop(name, [&] {
+            const auto f = any_direction<Vector>();
+            constexpr double step = 1e-6;
+            // second differences reach 1e2 (edges of the box excluded): error of step² × third, and
+            // round-off 1e-16/step
+            constexpr double tolerance = 1e-6;
+            Vector difference;
+            for (int i = 0; i < T::dimension; ++i) {
+                const Vector shift = Vector::Unit(i) * step;
+                const double ahead = (surface.value(f + shift) - surface.value(f)) / step;
+                const double behind = (surface.value(f) - surface.value(f - shift)) / step;
+                RC_PRE(std::abs(ahead - behind) < 1e-3); // not at a corner, nor next to one
+                difference[i] = (ahead + behind) / 2;
+            }
+            RC_ASSERT((surface.normal(f) - difference).norm() <= tolerance);
+        });
+    });
+}
+
+TEST_CASE("the slope of the support is its derivative", "[surface]") {
+    for_every_surface<double>([](const std::string& name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        if constexpr (CurvedSurface<T>) {
+            using Vector = typename T::Vector;
+            using Matrix = typename T::Matrix;
+            rc::prop(name, [&] {
+                const auto flow = any_direction<Vector>();
+                constexpr double step = 1e-6;
+                const Matrix slope = surface.support_slope(flow);
+                RC_PRE(slope.norm() < 100); // the neutral axis not at the very edge of the section
+                RC_ASSERT((slope - slope.transpose()).norm() <= 1e-12 * (1 + slope.norm()));
+                // Euler, homogeneous of degree 0
+                RC_ASSERT((slope * flow).norm() <= 1e-12 * (1 + slope.norm()));
+                for (int i = 0; i < T::dimension; ++i) {
+                    const Vector shift = Vector::Unit(i) * step;
+                    const Matrix next = surface.support_slope(flow + shift);
+                    const Matrix last = surface.support_slope(flow - shift);
+                    RC_PRE((next - last).norm() < 1e-2); // the plates of an I meet in a jump
+                    const Vector difference =
+                        (surface.support(flow + shift) - surface.support(flow - shift)) /
+                        (2 * step);
+                    RC_ASSERT((difference - slope.col(i)).norm() <= 1e-5);
+                }
+            });
+        }
+    });
+}
+
+TEST_CASE("float agrees with double", "[surface]") {
+    // 7 digits, less those lost to the square root by which the thin tube ends in its corner
+    constexpr double tolerance = 2e-5;
+    const auto check = [&](const char* name, const auto& single, const auto& twice) {
+        using Vector = typename std::decay_t<decltype(single)>::Vector;
+        rc::prop(name, [&] {
+            const auto f = any_direction<Vector>();
+            const auto wide = f.template cast<double>().eval();
+            RC_ASSERT(std::abs(double(single.value(f)) - twice.value(wide)) <= tolerance);
+            const auto normal = single.normal(f).template cast<double>().eval();
+            RC_ASSERT((normal - twice.normal(wide)).norm() <= tolerance * (1 + normal.norm()) * 50);
+        });
+    };
+    check("circle", CircleAxialBending<float>(), CircleAxialBending<double>());
+    check("I", IAxialBending<float>(i_200<float>, BendingAxis::strong),
+          IAxialBending<double>(i_200<double>, BendingAxis::strong));
+    check("biaxial", BiaxialRectangle<float>(), BiaxialRectangle<double>());
+}
+
+TEST_CASE("no force and no flow are not divided by", "[surface]") {
+    for_every_surface<double>([](const std::string& name, const auto& surface) {
+        using Vector = typename std::decay_t<decltype(surface)>::Vector;
+        CAPTURE(name);
+        CHECK(surface.value(Vector::Zero()) == 0);
+        CHECK(surface.normal(Vector::Zero()) == Vector::Zero());
+        CHECK(surface.support(Vector::Zero()) == Vector::Zero());
+    });
+}
+
+TEST_CASE("huge and tiny forces are met as well", "[surface]") {
+    for_every_surface<double>([](const std::string& name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        using Vector = typename T::Vector;
+        using Matrix = typename T::Matrix;
+        CAPTURE(name);
+        const Vector ray = Vector::Constant(0.3);
+        for (const double size : {1e-100, 1e-12, 1e12, 1e100}) {
+            CAPTURE(size);
+            CHECK(surface.value(size * ray) == Approx(size * surface.value(ray)).epsilon(1e-13));
+            CHECK((surface.normal(size * ray) - surface.normal(ray)).norm() < 1e-12);
+        }
+        // from far away in the unit metric, the closest point is the support of the direction
+        const Vector far = surface.project(1e9 * ray, Matrix::Identity());
+        CHECK((far - surface.support(ray)).norm() < 1e-6);
+    });
+}
+
+TEST_CASE("a change of units or of the order of the moments changes nothing", "[surface]") {
+    using Surface = Scaled<BiaxialRectangle<double>>;
+    rc::prop("N, N m against kN, kN mm; x against y", [] {
+        const Eigen::Vector3d capacity{2.5e5, 3.1e4, 1.2e4};
+        const Eigen::Vector3d units{1e-3, 1, 1}; // kN, kN mm
+        const Surface si(BiaxialRectangle<double>(), {.capacity = capacity});
+        const Surface other(BiaxialRectangle<double>(), {.capacity = capacity.cwiseProduct(units)});
+        const Eigen::Vector3d swapped_capacity{capacity[0], capacity[2], capacity[1]};
+        const Surface swapped(BiaxialRectangle<double>(), {.capacity = swapped_capacity});
+
+        const Eigen::Vector3d f = 3 * capacity.cwiseProduct(any_direction<Eigen::Vector3d>());
+        const auto stiffness = any_stiffness<Eigen::Matrix3d>();
+        const Eigen::Matrix3d k = capacity.asDiagonal() * stiffness * capacity.asDiagonal();
+        const Eigen::Vector3d on = si.project(f, k);
+
+        const Eigen::Vector3d g = units.cwiseProduct(f);
+        RC_ASSERT(std::abs(other.value(g) - si.value(f)) <= 1e-13);
+        const Eigen::Vector3d on_g = other.project(g, units.asDiagonal() * k * units.asDiagonal());
+        RC_ASSERT((on_g - units.cwiseProduct(on)).cwiseQuotient(g.cwiseAbs() + units).norm() <=
+                  1e-9);
+
+        Eigen::Matrix3d exchange;
+        exchange << 1, 0, 0, 0, 0, 1, 0, 1, 0;
+        RC_ASSERT(std::abs(swapped.value(exchange * f) - si.value(f)) <= 1e-13);
+        const Eigen::Vector3d on_s = swapped.project(exchange * f, exchange * k * exchange);
+        RC_ASSERT((on_s - exchange * on).norm() <= 1e-9 * on.norm());
+    });
+}
