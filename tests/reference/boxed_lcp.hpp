@@ -107,30 +107,32 @@ class BoxedLcp {
     void relax(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
                const Vector<S>& upper) {
         while (!free_.empty()) {
-            Vector<S> change = factor_.solve(-(a(free_, Eigen::all) * lambda_ + g(free_)));
-            // once more on what is left: the chains here are ill conditioned, ~N⁴
-            const Vector<S> reached = lambda_(free_) + change;
-            Vector<S> refined = lambda_;
-            refined(free_) = reached;
-            change += factor_.solve(-(a(free_, Eigen::all) * refined + g(free_)));
+            // from the other rows alone, not as a change of λ, which would leave the round-off of what
+            // λ was; refined once, because chains are ill conditioned, ~N⁴
+            Vector<S> reached = lambda_;
+            reached(free_).setZero();
+            const Vector<S> solved = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
+            reached(free_) = solved;
+            const Vector<S> left = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
+            reached(free_) += left;
 
             S share = 1;
-            for (std::size_t k = 0; k < free_.size(); ++k) {
-                share = std::min(share, share_to_bound(free_[k], change[Eigen::Index(k)], lower,
-                                                       upper));
+            for (const Eigen::Index i : free_) {
+                share = std::min(share, share_to_bound(i, reached[i] - lambda_[i], lower, upper));
             }
-            std::vector<Eigen::Index> staying;
-            for (std::size_t k = 0; k < free_.size(); ++k) {
-                const Eigen::Index i = free_[k];
-                const S step = change[Eigen::Index(k)];
-                const bool blocks = share < 1 && share_to_bound(i, step, lower, upper) <= share;
+            if (share == 1) {
+                for (const Eigen::Index i : free_) {
+                    lambda_[i] = std::clamp(reached[i], lower[i], upper[i]);
+                }
+                return;
+            }
+            std::erase_if(free_, [&](Eigen::Index i) {
+                const S step = reached[i] - lambda_[i];
+                const bool blocks = share_to_bound(i, step, lower, upper) <= share;
                 lambda_[i] = blocks ? (step > 0 ? upper[i] : lower[i])
                                     : std::clamp(lambda_[i] + share * step, lower[i], upper[i]);
-                if (!blocks) staying.push_back(i);
-            }
-            const bool whole = staying.size() == free_.size();
-            free_ = std::move(staying);
-            if (whole) return;
+                return blocks;
+            });
             if (!factorise(a)) throw std::runtime_error("BoxedLcp: the free set became singular");
         }
     }

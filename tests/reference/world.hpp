@@ -214,11 +214,8 @@ class World {
     };
 
     static Motion<S> motion(S position, S velocity, S inverse_mass) {
-        Motion<S> m{position, velocity};
-        if constexpr (requires { m.mass; }) {
-            m.mass = inverse_mass > 0 ? 1 / inverse_mass : std::numeric_limits<S>::infinity();
-        }
-        return m;
+        const S mass = inverse_mass > 0 ? 1 / inverse_mass : std::numeric_limits<S>::infinity();
+        return {position, velocity, mass};
     }
 
     [[nodiscard]] Point<S> centre(Body body) const {

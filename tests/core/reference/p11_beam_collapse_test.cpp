@@ -17,7 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <type_traits>
 
 #include "reference/beam.hpp"
 
@@ -76,17 +76,17 @@ S speed_after(const BeamParameters<S>& parameters, int steps, Load&& load) {
 }
 
 /// Still at 0.999 of `collapse` for 50 steps, moving at 1.001 at once. Below, all velocities are
-/// round-off of what the load would give a free segment in one step; above, 0.1 % of the load moves
-/// the whole beam.
+/// round-off of what the load would give the beam in one step (times N⁴, the condition of a chain);
+/// above, 0.1 % of the load moves the whole beam, 3/2 of that at the hinge.
 template <class S = double, class Load>
 void check_collapse(const BeamParameters<S>& parameters, double collapse, Load&& load) {
     const double kick = collapse * dt / mass;
-    const double round_off = std::is_same_v<S, float> ? 1e-5 : 1e-10;
+    const double round_off = std::is_same_v<S, float> ? 3e-5 : 1e-10;
     const auto scaled = [&](double factor) {
         return [&load, factor](Beam<S>& beam) -> Vector<S> { return load(beam) * S(factor); };
     };
     CHECK(speed_after(parameters, 50, scaled(0.999)) < round_off * kick);
-    CHECK(speed_after(parameters, 1, scaled(1.001)) > 1e-4 * kick);
+    CHECK(speed_after(parameters, 1, scaled(1.001)) > 5e-4 * kick);
 }
 
 } // namespace
