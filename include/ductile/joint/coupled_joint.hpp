@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+//
+// Up to six plastic axes that share one yield surface: a joint that bends about two axes, twists, shears
+// and stretches, and flows in all of them together.
+//
+//   before the solve   prepare(motion, dt)   -> one RowLimits per axis
+//   after the solve    commit(reaction, dt)  -> CoupledStep
+//
+// Symbols (vectors with one entry per axis of the surface; "x | y": translational | rotational axis)
+//   q, q_p, q_e  position, plastic rest position, elastic part q - q_p      [m | rad]
+//   u, u'        velocity at the start and end of the step                  [m/s | rad/s]
+//   f            forces of the rows over the step, λ/dt                     [N | N m]
+//   M            effective mass of the rows, (J m⁻¹ Jᵀ)⁻¹                   [kg | kg m²]
+//   γ            gauge of the surface, 1 where it flows                     [-]
+//   p            equivalent plastic travel, dp = dD/R(p)                    [m | rad of the law]
+//   D            dissipated work                                            [J]
+//
+// Rows. A velocity solver enforces independent bounds, so the surface is mapped onto a box around the
+// force predicted for this step, whose corner the solver finds and whose slips are the associated flow
+// (row_box.hpp, where the error of the mapping is measured). The surface grows with the law,
+// γ(f) R(0)/R(p) <= 1. Each row is rigid or elastic as that of a one-axis joint, whose account, break
+// and certificate these are as well; see one_axis_joint.hpp.
+//
+// Finite rotation: the angular entries of q are sums of increments of the rotation vector in the
+// joint's frame (rotation.hpp), never Euler angles; a joint may turn many times.
+//
+// Break. Life is counted by p. A step that would use up more than is left has its bounds lowered
+// before the solve; what it still did in excess is CoupledStep::release, to be handed back along
+// CoupledStep::direction.
+//
+// Limit cases: one axis is OneAxisJoint; a surface of independent axes is as many of them with one life.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <utility>
+
+#include "ductile/fracture/fracture.hpp"
+#include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/coupled_state.hpp"
+#include "ductile/joint/elastic_row.hpp"
+#include "ductile/law/law.hpp"
+#include "ductile/surface/row_box.hpp"
+#include "ductile/surface/surface.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// Not thread-safe: one joint belongs to one thread at a time. After construction nothing allocates or
+/// throws. Cost of `prepare`: 1 to 5 µs, by the surface.
+template <YieldSurface Surface, StrengthLaw Law,
+          FractureCriterion Criterion = TravelLimit<typename Surface::Scalar>>
+    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+class CoupledJoint {
+  public:
+    using Scalar = typename Surface::Scalar;
+    static constexpr int dimension = Surface::dimension;
+    using Vector = typename Surface::Vector;
+    using Matrix = typename Surface::Matrix;
+    using Rows = std::array<RowLimits<Scalar>, std::size_t(dimension)>;
+    using Motion = CoupledMotion<Scalar, dimension>;
+    using Reaction = CoupledReaction<Scalar, dimension>;
+    using Step = CoupledStep<Scalar, dimension>;
+    using State = CoupledState<Scalar, dimension, typename Criterion::State>;
+    using Parameters = CoupledParameters<Scalar, dimension>;
+
+    /// `law`: strength over the equivalent travel, in the unit of the axis it is told for; the surface
+    /// is that at R(0).
+    /// @throws std::invalid_argument where a parameter is out of range.
+    explicit CoupledJoint(Surface surface, Law law, Criterion criterion = Criterion(),
+                          Parameters parameters = {})
+        : surface_(std::move(surface)),
+          law_(std::move(law)),
+          criterion_(std::move(criterion)),
+          parameters_(std::move(parameters)) {
+        parameters_.validate();
+        first_strength_ = check::positive("CoupledJoint.law.value(0)", law_.value(0), "N or N m");
+    }
+
+    [[nodiscard]] const Surface& surface() const noexcept { return surface_; }
+    [[nodiscard]] const Law& law() const noexcept { return law_; }
+    [[nodiscard]] const Criterion& criterion() const noexcept { return criterion_; }
+    [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
+    [[nodiscard]] const State& state() const noexcept { return state_; }
+    void restore(const State& state) noexcept { state_ = state; }
+
+    /// γ of the last step's forces on the present surface: 1 where it flows [-].
+    [[nodiscard]] Scalar utilisation() const noexcept {
+        return surface_.value(state_.force) / growth(0);
+    }
+    /// What broke the joint, or is the nearest to do so.
+    [[nodiscard]] CriterionKind governing() const noexcept {
+        return criterion_.governing(state_.criterion);
+    }
+
+    /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
+    [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept {
+        start_ = motion.velocity;
+        elastic_ = motion.position - state_.plastic_offset;
+        if (state_.broken) {
+            rows_.fill({.lower = 0, .upper = 0});
+            return rows_;
+        }
+        bound(motion, dt);
+        for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
+        return rows_;
+    }
+
+    /// Books the step that `prepare` opened; same `dt` [s].
+    Step commit(const Reaction& reaction, Scalar dt) noexcept {
+        Step step;
+        if (state_.broken) {
+            step.outcome = Outcome::broken;
+            return step;
+        }
+        Scalar flowed = 0;
+        bool at_bound = false;
+        for (int i = 0; i < dimension; ++i) {
+            const Booked booked = book(i, reaction, dt);
+            flowed += booked.flow;
+            step.direction[i] = booked.travel;
+            step.elastic += booked.elastic;
+            step.other_work += booked.other;
+            step.residual = std::max(step.residual, booked.residual);
+            at_bound = at_bound || booked.at_bound;
+        }
+        flow(step, flowed, dt);
+        settle(step, reaction, at_bound);
+        return step;
+    }
+
+  private:
+    /// What one row did in a step [J], and how far it flowed [m | rad].
+    struct Booked {
+        Scalar flow = 0, elastic = 0, other = 0, residual = 0, travel = 0;
+        bool at_bound = false;
+    };
+
+    /// The surface, grown by a factor.
+    struct Grown {
+        using Scalar = CoupledJoint::Scalar;
+        static constexpr int dimension = CoupledJoint::dimension;
+        using Vector = CoupledJoint::Vector;
+        using Matrix = CoupledJoint::Matrix;
+
+        [[nodiscard]] Scalar value(const Vector& f) const noexcept { return surface.value(f) / by; }
+        [[nodiscard]] Vector normal(const Vector& f) const noexcept {
+            return surface.normal(f) / by;
+        }
+        [[nodiscard]] Vector support(const Vector& flow) const noexcept {
+            return surface.support(flow) * by;
+        }
+        [[nodiscard]] Vector project(const Vector& f, const Matrix& stiffness) const noexcept {
+            return surface.project(Vector(f / by), stiffness) * by;
+        }
+
+        const Surface& surface;
+        Scalar by;
+    };
+
+    static constexpr Scalar bound_tolerance = Scalar(4e-6); // as OneAxisJoint
+
+    [[nodiscard]] bool rigid(int i) const noexcept {
+        return parameters_.stiffness[i] == std::numeric_limits<Scalar>::infinity();
+    }
+
+    /// R(p + ahead)/R(0), softened by the criterion.
+    [[nodiscard]] Scalar growth(Scalar ahead) const noexcept {
+        return law_.value(state_.plastic_travel + ahead) / first_strength_ *
+               criterion_.strength_factor(state_.criterion, ahead);
+    }
+
+    // ---- before the solve -------------------------------------------------------------------------
+
+    void bound(const Motion& motion, Scalar dt) noexcept {
+        Matrix compliance = motion.mass.inverse();
+        for (int i = 0; i < dimension; ++i) {
+            if (!rigid(i)) compliance(i, i) += 1 / (parameters_.stiffness[i] * dt * dt);
+        }
+        const Matrix impedance = compliance.inverse() / dt;
+        const Grown now{surface_, growth(0)};
+        const Vector predicted = predicted_force(now, state_.force, start_, state_.start_velocity,
+                                                 impedance);
+        const bool flows = now.value(predicted) >= 1 - bound_tolerance;
+        const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
+        const Scalar power = std::abs(predicted.dot(start_));
+        grown_ = growth(power * rate / 2); // at the midpoint of the travel ahead
+        const auto box = box_along(Grown{surface_, grown_}, Vector(predicted * (grown_ / now.by)));
+
+        // the travel of the step, predicted from below, so that a step that can break does break
+        const Scalar before = std::abs(predicted.dot(state_.start_velocity));
+        const Scalar lost = std::max(before - power, Scalar(0));
+        const Scalar slowed = state_.flowing ? std::max(power - lost, Scalar(0)) : Scalar(0);
+        const Scalar travel = (power + slowed) / 2 * rate;
+        left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
+        share_ = left_ < travel ? left_ / travel : Scalar(1);
+        lower_ = box.lower * share_;
+        upper_ = box.upper * share_;
+        tolerance_ = bound_tolerance * std::max(upper_.cwiseAbs().maxCoeff(),
+                                                lower_.cwiseAbs().maxCoeff());
+    }
+
+    [[nodiscard]] RowLimits<Scalar> row(int i, Scalar mass, Scalar dt) noexcept {
+        RowLimits<Scalar> limits{.lower = lower_[i], .upper = upper_[i]};
+        const Scalar k = parameters_.stiffness[i];
+        if (rigid(i)) {
+            limits.bias = -elastic_[i] / std::max(parameters_.drift_time, 5 * dt);
+            return limits;
+        }
+        implicit_[i] = implicit_share(k, mass, dt);
+        if (implicit_[i] > 0) {
+            limits.bias = -elastic_[i] / (implicit_[i] * dt);
+            limits.compliance = 1 / (implicit_[i] * k * dt * dt);
+        } else {
+            limits.lower = limits.upper = std::clamp(-k * elastic_[i], lower_[i], upper_[i]);
+        }
+        return limits;
+    }
+
+    // ---- after the solve --------------------------------------------------------------------------
+
+    [[nodiscard]] Booked book(int i, const Reaction& reaction, Scalar dt) const noexcept {
+        const RowLimits<Scalar>& limits = rows_[std::size_t(i)];
+        const Scalar f = reaction.force[i];
+        const bool at_upper = f >= upper_[i] - tolerance_, at_lower = f <= lower_[i] + tolerance_;
+        const Scalar travel = (start_[i] + reaction.velocity[i]) / 2 * dt;
+        const Scalar work = -f * travel;
+        Booked booked;
+        booked.at_bound = at_upper || at_lower;
+        if (rigid(i) || limits.lower != limits.upper) {
+            const Scalar excess = reaction.velocity[i] + limits.compliance * f * dt - limits.bias;
+            booked.residual = at_upper   ? std::max(excess, Scalar(0))
+                              : at_lower ? std::max(-excess, Scalar(0))
+                                         : std::abs(excess);
+        }
+        if (rigid(i)) {
+            const bool slips = (at_lower && travel > 0) || (at_upper && travel < 0);
+            const bool stops = !booked.at_bound && work > 0 && (state_.flowing || kicked(i));
+            // a row may also be driven by the flow of the others
+            (slips || stops ? booked.flow : booked.other) = work;
+            booked.travel = slips || stops ? travel : Scalar(0);
+            return booked;
+        }
+        const Scalar k = parameters_.stiffness[i];
+        const Scalar trial = reaction.position[i] - state_.plastic_offset[i];
+        const Scalar strained = std::clamp(trial, -upper_[i] / (share_ * k), -lower_[i] / (share_ * k));
+        booked.travel = trial - strained;
+        booked.elastic = k * (strained * strained - elastic_[i] * elastic_[i]) / 2;
+        const Scalar rest = work - booked.elastic;
+        const Scalar slipped = std::abs(k * strained * booked.travel);
+        const Scalar flow = booked.travel != 0
+                                ? (1 - implicit_[i]) * slipped +
+                                      implicit_[i] * std::max(rest, Scalar(0))
+                                : Scalar(0);
+        booked.flow = flow;
+        booked.other = rest - flow;
+        return booked;
+    }
+
+    /// True where somebody changed the velocity between the steps, well above solver noise.
+    [[nodiscard]] bool kicked(int i) const noexcept {
+        return std::abs(start_[i] - state_.velocity[i]) > allowed_residual(start_);
+    }
+    [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
+        const Scalar speed = std::max(start_.cwiseAbs().maxCoeff(), velocity.cwiseAbs().maxCoeff());
+        return parameters_.absolute_residual + parameters_.relative_residual * speed;
+    }
+
+    /// Uses up life for the work of flow of all rows together.
+    void flow(Step& step, Scalar work, Scalar dt) noexcept {
+        if (!(work > 0)) {
+            step.other_work += work;
+            step.direction.setZero();
+            return;
+        }
+        const Scalar strength = first_strength_ * grown_;
+        Scalar travel = work / strength;
+        const bool last = travel >= left_ * (1 - exhausted_share<Scalar>);
+        if (last) travel = left_;
+        step.plastic_work = strength * travel;
+        state_.plastic_travel += travel;
+        criterion_.update(state_.criterion,
+                          {travel, state_.plastic_travel, strength, step.plastic_work, dt});
+        state_.broken = last || criterion_.broken(state_.criterion);
+        const Scalar rest = work - step.plastic_work;
+        (state_.broken ? step.release : step.other_work) += rest;
+    }
+
+    void settle(Step& step, const Reaction& reaction, bool at_bound) noexcept {
+        for (int i = 0; i < dimension; ++i) {
+            if (step.direction[i] == 0) continue;
+            state_.plastic_offset[i] = rigid(i) ? reaction.position[i]
+                                                : state_.plastic_offset[i] + step.direction[i];
+        }
+        if (state_.broken) {
+            step.lost = state_.stored + step.elastic;
+            step.elastic -= step.lost;
+        }
+        state_.plastic_work += step.plastic_work;
+        state_.stored += step.elastic;
+        state_.other_work += step.other_work;
+        state_.lost += step.lost;
+        state_.residual_max = std::max(state_.residual_max, step.residual);
+        state_.start_velocity = start_;
+        state_.velocity = reaction.velocity;
+        state_.force = reaction.force;
+        state_.flowing = at_bound;
+        if (state_.broken) {
+            step.outcome = Outcome::broken;
+        } else if (step.residual > allowed_residual(reaction.velocity)) {
+            step.outcome = Outcome::unreliable;
+        } else if (step.plastic_work > 0 &&
+                   (at_bound || start_.cwiseAbs().maxCoeff() > parameters_.absolute_residual)) {
+            step.outcome = Outcome::yielding;
+        }
+    }
+
+    Surface surface_;
+    Law law_;
+    Criterion criterion_;
+    Parameters parameters_;
+    Scalar first_strength_ = 0; ///< R(0)
+    State state_;
+
+    // between prepare and commit
+    Rows rows_{};
+    Vector start_ = Vector::Zero();   ///< u
+    Vector elastic_ = Vector::Zero(); ///< q_e at the start
+    Vector lower_ = Vector::Zero();
+    Vector upper_ = Vector::Zero();
+    Vector implicit_ = Vector::Ones(); ///< θ of the elastic rows
+    Scalar grown_ = 1;                 ///< R/R(0) of this step
+    Scalar tolerance_ = 0;
+    Scalar left_ = 0;  ///< travel left before a break
+    Scalar share_ = 1; ///< of the strength that the bounds allow
+};
+
+} // namespace ductile

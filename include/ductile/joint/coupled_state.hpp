@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// What goes into a coupled joint, what it remembers between steps, what one step of it did, and its
+// numerical parameters. Vectors have one entry per axis of its yield surface, in that order.
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+#include <limits>
+#include <string>
+
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// The rows at the start of a step, before this step's external impulses.
+template <std::floating_point S, int N>
+struct CoupledMotion {
+    Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
+    Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u [m/s | rad/s]
+    /// M, symmetric, positive definite [kg | kg m²]; only its error by factors spoils the prediction
+    Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
+};
+
+/// What the engine did to the rows in the step.
+template <std::floating_point S, int N>
+struct CoupledReaction {
+    Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero();    ///< λ/dt [N | N m]
+    Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u' [m/s | rad/s]
+    Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
+};
+
+/// What one committed step did; the work taken is
+///   plastic_work + elastic + other_work + release + lost [J].
+template <std::floating_point S, int N>
+struct CoupledStep {
+    Outcome outcome = Outcome::elastic;
+    S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
+    S elastic = 0;      ///< change of what is stored [J]
+    S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
+    S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
+    S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
+    S residual = 0;     ///< largest violation of a row's complementarity, >= 0 [m/s | rad/s]
+    Eigen::Matrix<S, N, 1> direction = Eigen::Matrix<S, N, 1>::Zero(); ///< flow [m | rad]
+};
+
+/// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
+template <std::floating_point S, int N, class CriterionState>
+struct CoupledState {
+    Eigen::Matrix<S, N, 1> plastic_offset = Eigen::Matrix<S, N, 1>::Zero(); ///< q_p [m | rad]
+    Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero(); ///< of the last step [N | N m]
+    Eigen::Matrix<S, N, 1> start_velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u of the last step
+    Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero();       ///< u' of the last step
+    S plastic_travel = 0; ///< p, equivalent, never decreases [m | rad of the law]
+    S plastic_work = 0;   ///< D, never decreases [J]
+    S stored = 0;         ///< elastic energy [J]
+    S other_work = 0;     ///< [J]
+    S lost = 0;           ///< [J]
+    S residual_max = 0;   ///< [m/s | rad/s]
+    CriterionState criterion{};
+    bool flowing = false; ///< a row ended the last step at its bound
+    bool broken = false;
+
+    bool operator==(const CoupledState&) const = default;
+};
+
+template <std::floating_point S, int N>
+struct CoupledParameters {
+    /// k of each axis [N/m | N m/rad], > 0; infinity: rigid below yield.
+    Eigen::Matrix<S, N, 1> stiffness =
+        Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
+    S drift_time = S(0.02);        ///< as OneAxisParameters [s], > 0
+    S absolute_residual = S(1e-3); ///< [m/s | rad/s], > 0
+    S relative_residual = S(1e-2); ///< [-], in [0, 1]
+
+    /// @throws std::invalid_argument where a parameter is out of range.
+    void validate() const {
+        for (int i = 0; i < N; ++i) {
+            check::positive_or_infinite("CoupledJoint.stiffness[" + std::to_string(i) + "]",
+                                        stiffness[i], "N/m or N m/rad");
+        }
+        check::positive("CoupledJoint.drift_time", drift_time, "s");
+        check::positive("CoupledJoint.absolute_residual", absolute_residual, "m/s or rad/s");
+        check::between("CoupledJoint.relative_residual", relative_residual, S(0), S(1), "", true);
+    }
+};
+
+} // namespace ductile
