@@ -51,12 +51,19 @@ using Run = std::function<std::vector<Quantity>(double dt)>;
     return sum;
 }
 
+/// Order at which an error fell over `halvings` halvings.
+[[nodiscard]] inline double observed_order(double coarse, double fine, int halvings) {
+    return std::log2(std::abs(coarse / fine)) / halvings;
+}
+
 /// Observed order of every quantity over `halvings` halvings of dt.
 [[nodiscard]] inline std::vector<double> observed_orders(const Run& run, double dt, int steps,
                                                          int halvings = 3) {
     std::vector<double> order = errors_over_octave(run, dt, steps);
     const std::vector<double> fine = errors_over_octave(run, std::ldexp(dt, -halvings), steps);
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = std::log2(order[i] / fine[i]) / halvings;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        order[i] = observed_order(order[i], fine[i], halvings);
+    }
     return order;
 }
 

@@ -103,6 +103,9 @@ class World {
         point_rows_.push_back({{a, where - centre(a)}, {b, where - centre(b)}, direction});
     }
 
+    /// From now on the rows are not told what mass they move, as by an engine that cannot say.
+    void withhold_mass() { mass_known_ = false; }
+
     /// A plastic row: velocity Σ coefficient v. The joint stays the caller's and must outlive the world.
     template <class Joint>
     std::size_t add_row(const std::vector<Term<S>>& terms, Joint& joint) {
@@ -213,7 +216,8 @@ class World {
         Step<S> step;
     };
 
-    static Motion<S> motion(S position, S velocity, S inverse_mass) {
+    [[nodiscard]] Motion<S> motion(S position, S velocity, S inverse_mass) const {
+        if (!mass_known_) return {position, velocity};
         const S mass = inverse_mass > 0 ? 1 / inverse_mass : std::numeric_limits<S>::infinity();
         return {position, velocity, mass};
     }
@@ -327,6 +331,7 @@ class World {
     }
 
     Kinematics kinematics_;
+    bool mass_known_ = true;
     std::vector<S> mass_;
     std::vector<PlacedBody> bodies_;
     std::vector<std::vector<Term<S>>> fixed_rows_;
