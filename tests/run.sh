@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing, builds, runs every test.
+# Installs what is missing, builds, runs every test; then compiles every public header alone with clang.
 #   tests/run.sh [PRESET ...]     presets of CMakePresets.json; default: release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -12,3 +12,7 @@ for preset in "${@:-release}"; do
     cmake --build --preset "$preset"
     ctest --preset "$preset"
 done
+
+echo "== headers with clang"
+cmake --preset clang -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=OFF -DDUCTILE_BENCH=OFF >/dev/null
+cmake --build --preset clang --target headers

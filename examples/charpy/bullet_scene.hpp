@@ -133,6 +133,12 @@ class BulletScene {
         }
         return false;
     }
+    /// True where a hinge says that the last step's solve should not be believed.
+    [[nodiscard]] bool unreliable() {
+        return std::any_of(plastic_.begin(), plastic_.end(), [](const auto& hinge) {
+            return hinge->outcome() == ductile::Outcome::unreliable;
+        });
+    }
     [[nodiscard]] double residual_max() {
         double worst = 0;
         for (auto& hinge : plastic_) worst = std::max(worst, hinge->residual_max());

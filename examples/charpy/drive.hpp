@@ -68,6 +68,7 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
             at_strike = ledger;
             next_sample = time;
         }
+        if (struck && scene.unreliable()) ++r.unreliable_steps;
         if (time >= next_sample) {
             next_sample = time + (struck ? limits.sample_interval : limits.swing_interval);
             sample(dt);

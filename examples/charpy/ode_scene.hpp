@@ -130,6 +130,12 @@ class OdeScene {
         return std::any_of(plastic_.begin(), plastic_.end(),
                            [](const auto& hinge) { return hinge->broken(); });
     }
+    /// True where a hinge says that the last step's solve should not be believed.
+    [[nodiscard]] bool unreliable() const {
+        return std::any_of(plastic_.begin(), plastic_.end(), [](const auto& hinge) {
+            return hinge->outcome() == ductile::Outcome::unreliable;
+        });
+    }
     [[nodiscard]] double residual_max() const {
         double worst = 0;
         for (const auto& hinge : plastic_) worst = std::max(worst, hinge->residual_max());

@@ -39,6 +39,7 @@ namespace charpy {
             {"integration_J", r.integration},
             {"unexplained_J", r.unexplained},
             {"broken", r.broken},
+            {"unreliable_steps", r.unreliable_steps},
             {"residual_max", r.residual_max}};
 }
 
@@ -76,7 +77,8 @@ inline constexpr std::string_view history_header =
     const double error = work / expected.plastic_work - 1;
     std::string text = std::abs(error) <= 0.01 ? fmt::format("right ({:+.2f} %)", 100 * error)
                                                : fmt::format("off ({:+.1f} %)", 100 * error);
-    if (number("residual_max") > 1) text += ", solver not converged";
+    const long unreliable = r.at("unreliable_steps").get<long>();
+    if (unreliable > 0) text += fmt::format(", {} steps not converged", unreliable);
     return text;
 }
 

@@ -35,6 +35,7 @@ concept Simulation = requires(T simulation, const T constant, double dt) {
     { simulation.joint_travel() } -> std::same_as<double>; ///< plastic rotation, all joints [rad]
     { constant.rotation() } -> std::same_as<double>;  ///< bend of the specimen's middle [rad]
     { simulation.broken() } -> std::same_as<bool>;
+    { simulation.unreliable() } -> std::same_as<bool>;
     { simulation.residual_max() } -> std::same_as<double>; ///< certificate [rad/s]
 };
 
@@ -76,7 +77,8 @@ struct Result {
     double integration = 0;      ///< the engine's own drift, since first contact [J]
     double unexplained = 0;      ///< over the whole run [J]
     bool broken = false;
-    double residual_max = 0; ///< [rad/s]
+    long unreliable_steps = 0; ///< steps after the strike that a hinge says not to believe
+    double residual_max = 0;   ///< of the plastic rows [rad/s]
     std::vector<Sample> history;
 };
 

@@ -28,8 +28,9 @@ namespace {
 constexpr bool single = Scene::precision == "float";
 
 /// In single precision Bullet's direct solver gives up on many steps and falls back to its iterative
-/// one: energies are then off by some per cent, and the certificate must say so.
-constexpr double certain = 1; // [rad/s]
+/// one: energies are then off by some per cent, and the certificate says so, which a test below asks
+/// for. Bounds meant for a converged solve do not apply to it.
+constexpr bool converges = !single;
 
 Result run(const Scenario& scenario, const std::string& solver,
            Method method = Method::plastic_hinge) {
@@ -69,19 +70,24 @@ TEST_CASE("with adaptive steps the energies are right in fewer than 1500 steps",
     CHECK(r.steps < 1500);
     CHECK_FALSE(r.broken);
     CHECK(std::abs(r.unexplained) < (single ? 1e-2 : 1e-3));
-    if (solver == solvers.front()) CHECK(r.residual_max < 1e-2); // the direct solver converges
+    if (solver == solvers.front() && converges) CHECK(r.unreliable_steps == 0);
 }
 
-TEST_CASE("what is wrong is never silent: the certificate of the hinge shows it", "[charpy]") {
-    const double dt = GENERATE(1e-4, 0.99e-4, 0.8e-4);
+TEST_CASE("what is wrong is never silent", "[charpy]") {
+    const double dt = GENERATE(2e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4);
+    const int parts = GENERATE(2, 4);
     const std::string solver = GENERATE(from_range(solvers));
-    INFO(solver << ", dt = " << dt);
-    const Result r = run(fixed(dt), solver);
-    if (std::abs(r.plastic_work / 122.016 - 1) > 0.02) CHECK(r.residual_max > certain);
+    INFO(solver << ", dt = " << dt << ", parts " << parts);
+    Scenario scenario = fixed(dt);
+    scenario.parts = parts;
+    const Result r = run(scenario, solver);
+    INFO("plastic work " << r.plastic_work << ", steps not converged " << r.unreliable_steps);
+    const bool wrong = std::abs(r.plastic_work / 122.016 - 1) > 0.02;
+    CHECK((!wrong || r.unreliable_steps > 0));
 }
 
 TEST_CASE("plastic work does not scatter over the seed's five steps", "[charpy]") {
-    if (single) return; // see `certain`
+    if (!converges) return;
     // where the seed's own energies were 100, 110, 90, 130 and 150 J
     std::vector<double> work;
     for (const double dt : {1.001e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4}) {
@@ -101,7 +107,7 @@ TEST_CASE("at small steps the hammer loses what hinge and halves take", "[charpy
 }
 
 TEST_CASE("a break at 1.5 rad takes 96 J at every step", "[charpy]") {
-    const double longest = single ? 5e-4 : 1e-3; // see `certain`
+    const double longest = converges ? 1e-3 : 5e-4;
     Scenario scenario = fixed(GENERATE(2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3));
     if (scenario.dt > longest) return;
     scenario.max_plastic_rotation = 1.5;
@@ -118,7 +124,7 @@ TEST_CASE("friction takes more and is booked as friction", "[charpy]") {
     scenario.friction = 0.3;
     const Result with = run(scenario, solvers.front());
     CHECK(with.friction_work > 10);
-    const double work = single ? 0.02 : 0.01, share = single ? 0.1 : 0.05; // see `certain`
+    const double work = converges ? 0.01 : 0.02, share = converges ? 0.05 : 0.1;
     CHECK(with.plastic_work == Approx(without.plastic_work).epsilon(work));
     CHECK(with.hammer_loss - without.hammer_loss == Approx(with.friction_work).epsilon(share));
 }

@@ -26,6 +26,10 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
@@ -79,9 +83,11 @@ class OneAxisConstraint : public PlasticConstraint {
     /// Energy dissipated by plastic flow [J].
     [[nodiscard]] double absorbed_energy() override { return settled().state().plastic_work; }
     [[nodiscard]] bool broken() { return settled().state().broken; }
+    /// Unreliable where the solver left the plastic row or one of the five rigid ones unsolved.
     [[nodiscard]] Outcome outcome() {
         settle();
-        return last_.outcome;
+        return rigid_unsolved_ && last_.outcome != Outcome::broken ? Outcome::unreliable
+                                                                   : last_.outcome;
     }
     /// Certificate: violation of the plastic row in the last tick, and the largest so far
     /// [m/s | rad/s].
@@ -90,6 +96,11 @@ class OneAxisConstraint : public PlasticConstraint {
         return last_.residual;
     }
     [[nodiscard]] double residual_max() { return settled().state().residual_max; }
+    /// Largest violation of the rigid rows in the last tick [m/s | rad/s].
+    [[nodiscard]] double rigid_residual() {
+        settle();
+        return rigid_residual_;
+    }
 
     [[nodiscard]] const Joint& joint() { return settled(); }
     [[nodiscard]] const BreakRelease<double>& release() override {
@@ -150,22 +161,23 @@ class OneAxisConstraint : public PlasticConstraint {
     /// Position of A relative to B [m | rad]; a kind that wraps unwraps it near `predicted`.
     [[nodiscard]] virtual double measure(const Geometry& geometry, double predicted) const = 0;
     /// Fills the five rigid rows; `rate` turns an error [m | rad] into a velocity.
-    virtual void write_rigid(btConstraintInfo2& info, const Geometry& geometry,
-                             btScalar rate) const = 0;
+    virtual void write_rigid(btConstraintInfo2& info, const Geometry& geometry, btScalar rate) = 0;
     /// True where the plastic row turns, false where it slides.
     [[nodiscard]] virtual bool turns() const noexcept = 0;
 
     /// Writes row `row`: a force along, or a moment about, `direction`, with target velocity `bias`.
-    static void write_force_row(btConstraintInfo2& info, int row, const Geometry& geometry,
-                                const btVector3& direction, btScalar bias) noexcept {
+    void write_force_row(btConstraintInfo2& info, int row, const Geometry& geometry,
+                         const btVector3& direction, btScalar bias) noexcept {
+        rows_[std::size_t(row)] = {direction, bias, true};
         write(info.m_J1linearAxis, info, row, direction);
         write(info.m_J2linearAxis, info, row, -direction);
         write(info.m_J1angularAxis, info, row, geometry.arm_a.cross(direction));
         write(info.m_J2angularAxis, info, row, -geometry.arm_b.cross(direction));
         info.m_constraintError[row * info.rowskip] = bias;
     }
-    static void write_moment_row(btConstraintInfo2& info, int row, const btVector3& direction,
-                                 btScalar bias) noexcept {
+    void write_moment_row(btConstraintInfo2& info, int row, const btVector3& direction,
+                          btScalar bias) noexcept {
+        rows_[std::size_t(row)] = {direction, bias, false};
         write(info.m_J1angularAxis, info, row, direction);
         write(info.m_J2angularAxis, info, row, -direction);
         info.m_constraintError[row * info.rowskip] = bias;
@@ -182,6 +194,15 @@ class OneAxisConstraint : public PlasticConstraint {
     }
 
   private:
+    static constexpr std::size_t rigid_rows = 5;
+
+    /// What a row of this tick asked for.
+    struct Row {
+        btVector3 direction{0, 0, 0};
+        btScalar bias = 0;
+        bool pushes = false; ///< a force row, not a moment row
+    };
+
     /// Commits at the end of each internal tick.
     struct CommitAction final : btActionInterface {
         explicit CommitAction(OneAxisConstraint& owner) : owner_(owner) {}
@@ -220,13 +241,13 @@ class OneAxisConstraint : public PlasticConstraint {
         return to_core(geometry_.axis).dot(turns() ? t.tail<3>() : t.head<3>());
     }
 
-    void write_rigid_rows(btConstraintInfo2& info) const {
+    void write_rigid_rows(btConstraintInfo2& info) {
         const btScalar erp = rigid_erp_ < 0 ? info.erp : rigid_erp_;
         write_rigid(info, geometry_, erp * info.fps);
     }
 
     void write_plastic_row(btConstraintInfo2& info) {
-        constexpr int row = 5;
+        constexpr int row = int(rigid_rows);
         position_ = measure(geometry_, position_);
         const RowLimits<double> limits = joint_.prepare({position_, row_velocity()}, dt_);
         const auto bias = btScalar(limits.bias);
@@ -248,6 +269,7 @@ class OneAxisConstraint : public PlasticConstraint {
     void settle() {
         if (!pending_) return;
         pending_ = false;
+        certify_rigid_rows();
         // the velocity belongs to the row that was solved, the position to where the bodies are now
         const double velocity = row_velocity();
         force_ = double(internalGetAppliedImpulse()) / dt_;
@@ -257,6 +279,25 @@ class OneAxisConstraint : public PlasticConstraint {
         if (last_.outcome == Outcome::broken) {
             setEnabled(false);
             if (last_.release > 0) hand_back(last_.release);
+        }
+    }
+
+    /// A solved rigid row moves at its target velocity, whatever else happens.
+    void certify_rigid_rows() noexcept {
+        const Vector6<double> t = twist();
+        const double moving = velocity_at(m_rbA, to_core(geometry_.arm_a)).norm();
+        const double turning = to_core(m_rbA.getAngularVelocity()).norm();
+        rigid_residual_ = 0;
+        rigid_unsolved_ = false;
+        for (std::size_t i = 0; i < rigid_rows; ++i) {
+            const Vector3<double> relative = rows_[i].pushes ? t.head<3>() : t.tail<3>();
+            const double residual =
+                std::abs(to_core(rows_[i].direction).dot(relative) - double(rows_[i].bias));
+            const double allowed =
+                joint_.parameters().absolute_residual +
+                joint_.parameters().relative_residual * (rows_[i].pushes ? moving : turning);
+            rigid_residual_ = std::max(rigid_residual_, residual);
+            rigid_unsolved_ = rigid_unsolved_ || residual > allowed;
         }
     }
 
@@ -282,6 +323,9 @@ class OneAxisConstraint : public PlasticConstraint {
     double dt_ = 0;
     double position_ = 0;
     double force_ = 0;
+    std::array<Row, rigid_rows + 1> rows_;
+    double rigid_residual_ = 0;
+    bool rigid_unsolved_ = false;
     btScalar rigid_erp_ = -1; ///< negative: the world's
     bool pending_ = false;
 };

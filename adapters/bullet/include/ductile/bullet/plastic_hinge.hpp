@@ -60,7 +60,7 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
         return unwrap(std::atan2(double(relative[1][0]), double(relative[0][0])), predicted);
     }
 
-    void write_rigid(Info& info, const Geometry& geometry, btScalar rate) const override {
+    void write_rigid(Info& info, const Geometry& geometry, btScalar rate) override {
         const btVector3 gap = geometry.frame_b.getOrigin() - geometry.frame_a.getOrigin();
         const btMatrix3x3& basis = geometry.frame_b.getBasis();
         const btVector3 tilt = geometry.frame_a.getBasis().getColumn(2).cross(geometry.axis);

@@ -50,7 +50,7 @@ class PlasticSlider final : public OneAxisConstraint<Joint> {
         return double(geometry.axis.dot(offset(geometry)));
     }
 
-    void write_rigid(Info& info, const Geometry& geometry, btScalar rate) const override {
+    void write_rigid(Info& info, const Geometry& geometry, btScalar rate) override {
         const btMatrix3x3& basis = geometry.frame_b.getBasis();
         const btVector3 turned = turn(geometry);
         for (int i = 0; i < 3; ++i) {

@@ -20,6 +20,8 @@
 
 #include <ode/ode.h>
 
+#include <array>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -63,11 +65,21 @@ class OneAxisConstraint : public PlasticConstraint {
     /// Energy dissipated by plastic flow [J].
     [[nodiscard]] double absorbed_energy() const override { return joint_.state().plastic_work; }
     [[nodiscard]] bool broken() const { return joint_.state().broken; }
-    [[nodiscard]] Outcome outcome() const { return last_.outcome; }
+    /// Unreliable where the solver left the plastic row or one of the rigid ones unsolved.
+    [[nodiscard]] Outcome outcome() const {
+        const auto& p = joint_.parameters();
+        const bool unsolved = rigid_residual_.head<3>().norm() >
+                                  p.absolute_residual + p.relative_residual * speed_[0] ||
+                              rigid_residual_.tail<3>().norm() >
+                                  p.absolute_residual + p.relative_residual * speed_[1];
+        return unsolved && last_.outcome != Outcome::broken ? Outcome::unreliable : last_.outcome;
+    }
     /// Certificate: violation of the plastic row in the last step, and the largest so far
     /// [m/s | rad/s].
     [[nodiscard]] double residual() const { return last_.residual; }
     [[nodiscard]] double residual_max() const { return joint_.state().residual_max; }
+    /// Violation of the rigid rows in the last step [m/s | rad/s]; known for hinges only.
+    [[nodiscard]] double rigid_residual() const { return rigid_residual_.cwiseAbs().maxCoeff(); }
 
     [[nodiscard]] const Joint& joint() const { return joint_; }
     [[nodiscard]] const BreakRelease<double>& release() const override { return release_; }
@@ -79,6 +91,7 @@ class OneAxisConstraint : public PlasticConstraint {
         if (joint_.state().broken) return;
         locate();
         position_ = measure(position_);
+        rigid_target_ = rigid_target(dt);
         const RowLimits<double> limits = joint_.prepare({position_, row_velocity()}, dt);
         set_motor(dReal(limits.bias), dReal(limits.upper));
     }
@@ -87,6 +100,7 @@ class OneAxisConstraint : public PlasticConstraint {
     void commit(double dt) override {
         if (joint_.state().broken) return;
         const double velocity = row_velocity();
+        certify_rigid_rows();
         force_ = row_force();
         position_ = measure(position_ + velocity * dt);
         last_ = joint_.commit({force_, velocity, position_}, dt);
@@ -134,6 +148,11 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] virtual Vector3<double> point() const = 0;
     /// True where the plastic row turns, false where it slides.
     [[nodiscard]] virtual bool turns() const noexcept = 0;
+    /// Velocities that the rigid rows ask for in a step of `dt` [s], linear and angular, world axes; NaN
+    /// where they are not known.
+    [[nodiscard]] virtual Vector6<double> rigid_target(double /*dt*/) const {
+        return Vector6<double>::Constant(std::numeric_limits<double>::quiet_NaN());
+    }
     /// Sets motor velocity [m/s | rad/s] and strength [N | N m].
     virtual void set_motor(dReal velocity, dReal strength) = 0;
 
@@ -160,6 +179,18 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] double row_velocity() const {
         const Vector6<double> t = twist();
         return axis_.dot(turns() ? t.tail<3>() : t.head<3>());
+    }
+
+    /// A solved rigid row moves at its target velocity, whatever else happens.
+    void certify_rigid_rows() {
+        speed_ = {(linear_velocity(a_) + angular_velocity(a_).cross(arm_a_)).norm(),
+                  angular_velocity(a_).norm()};
+        rigid_residual_.setZero();
+        if (rigid_target_.hasNaN()) return;
+        rigid_residual_ = twist() - rigid_target_;
+        const int plastic = turns() ? 3 : 0;
+        const Vector3<double> part = rigid_residual_.segment<3>(plastic);
+        rigid_residual_.segment<3>(plastic) = part - axis_ * axis_.dot(part);
     }
 
     /// λ/dt of the plastic row: the feedback less what the five rigid rows put into it.
@@ -190,6 +221,9 @@ class OneAxisConstraint : public PlasticConstraint {
     Vector3<double> axis_ = Vector3<double>::Zero();
     Vector3<double> arm_a_ = Vector3<double>::Zero();
     Vector3<double> arm_b_ = Vector3<double>::Zero();
+    Vector6<double> rigid_target_ = Vector6<double>::Zero();
+    Vector6<double> rigid_residual_ = Vector6<double>::Zero();
+    std::array<double, 2> speed_{}; ///< of A at the joint [m/s], and its turning [rad/s]
     Step<double> last_;
     BreakRelease<double> release_;
     double position_ = 0;

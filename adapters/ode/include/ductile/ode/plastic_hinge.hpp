@@ -37,11 +37,13 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
     /// hinge's rest position.
     /// @throws std::invalid_argument where `a` is null.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
-        : Base(dJointCreateHinge(world, nullptr), a, b, std::move(joint)) {
+        : Base(dJointCreateHinge(world, nullptr), a, b, std::move(joint)), world_(world) {
         const auto& [anchor, axis] = frame;
         dJointSetHingeAnchor(Base::id(), dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
         dJointSetHingeAxis(Base::id(), dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
         dJointSetHingeParam(Base::id(), dParamCFM, 0); // the plastic row is exact
+        axis_in_b_ = this->axis();
+        if (b != nullptr) axis_in_b_ = matrix_to_core(dBodyGetRotation(b)).transpose() * axis_in_b_;
         Base::start();
     }
 
@@ -67,10 +69,23 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
         dJointGetHingeAnchor(Base::id(), result);
         return to_core(result);
     }
+    /// ODE pulls anchors and axes together by the world's ERP a step.
+    [[nodiscard]] Vector6<double> rigid_target(double dt) const override {
+        dVector3 other;
+        dJointGetHingeAnchor2(Base::id(), other);
+        Vector3<double> axis_b = axis_in_b_;
+        if (Base::b() != nullptr) axis_b = matrix_to_core(dBodyGetRotation(Base::b())) * axis_in_b_;
+        Vector6<double> target;
+        target << to_core(other) - point(), axis().cross(axis_b);
+        return double(dWorldGetERP(world_)) / dt * target;
+    }
     void set_motor(dReal velocity, dReal strength) override {
         dJointSetHingeParam(Base::id(), dParamVel, velocity);
         dJointSetHingeParam(Base::id(), dParamFMax, strength);
     }
+
+    dWorldID world_;
+    Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
 };
 
 } // namespace ductile::ode
