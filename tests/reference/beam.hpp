@@ -2,8 +2,8 @@
 //
 // A straight uniform beam along x as a chain of N equal rigid segments: pins hold the segments
 // together, and a plastic hinge sits at every inner joint and at every clamped end. Joints carry
-// rotation only. The right end is always free to slide along the beam: rigid segments could not turn
-// otherwise. Deflections and loads are positive along y.
+// rotation only. The right end is always free to slide along the beam: rigid segments could not
+// turn otherwise. Deflections and loads are positive along y.
 //
 // Symbols
 //   L    length                     [m]
@@ -44,7 +44,8 @@ template <std::floating_point S>
 class Beam {
   public:
     explicit Beam(const BeamParameters<S>& p) : p_(p), world_(p.kinematics) {
-        for (int i = 0; i < p_.segments; ++i) add_segment(i + 1 == p_.segments ? p_.tip_mass : S(0));
+        for (int i = 0; i < p_.segments; ++i)
+            add_segment(i + 1 == p_.segments ? p_.tip_mass : S(0));
         support(0, p_.left);
         for (int i = 1; i < p_.segments; ++i) {
             world_.add_pin(segment(i - 1), segment(i), at(i));
@@ -117,8 +118,8 @@ class Beam {
         const S rod = p_.mass_per_length * l;
         const S shift = end_mass / (rod + end_mass) * l / 2; // of the centre, towards the mass
         const S centre = (S(segments_.size()) + S(0.5)) * l + shift;
-        const S inertia = rod * (l * l / 12 + shift * shift) +
-                          end_mass * (l / 2 - shift) * (l / 2 - shift);
+        const S inertia =
+            rod * (l * l / 12 + shift * shift) + end_mass * (l / 2 - shift) * (l / 2 - shift);
         segments_.push_back(world_.add_body(rod + end_mass, inertia, {centre, S(0)}));
         centre_.push_back(centre);
     }

@@ -8,12 +8,12 @@
 // semidefinite, singular as soon as a structure is statically indeterminate: λ is then not unique,
 // but w and the velocities are.
 //
-// Method. A set F of free rows solves A_FF λ_F = -(g + A λ_rest)_F; a row that meets its bound on the
-// way leaves F, and the row outside F that violates its condition most enters. A row enters only where
-// w ≠ 0, and w vanishes for every row that depends on F, so A_FF stays regular although A is not.
-// The objective falls at every entry also where several rows sit exactly on their bounds (the ties of
-// symmetric problems: such a row leaves F in a step of length zero, the entering one never does), so
-// no set comes back.
+// Method. A set F of free rows solves A_FF λ_F = -(g + A λ_rest)_F; a row that meets its bound on
+// the way leaves F, and the row outside F that violates its condition most enters. A row enters
+// only where w ≠ 0, and w vanishes for every row that depends on F, so A_FF stays regular although
+// A is not. The objective falls at every entry also where several rows sit exactly on their bounds
+// (the ties of symmetric problems: such a row leaves F in a step of length zero, the entering one
+// never does), so no set comes back.
 //
 // Certificate. Every solution is checked on its own terms, w against λ, and std::runtime_error is
 // thrown where a condition is violated by more than `tolerance` of the largest velocity involved.
@@ -85,7 +85,8 @@ class BoxedLcp {
             free_.push_back(entering);
             if (!factorise(a)) throw std::runtime_error("BoxedLcp: an entering row is dependent");
         }
-        throw std::runtime_error("BoxedLcp: no solution after " + std::to_string(most) + " entries");
+        throw std::runtime_error("BoxedLcp: no solution after " + std::to_string(most) +
+                                 " entries");
     }
 
     /// w of the last solve [m/s | rad/s].
@@ -107,8 +108,8 @@ class BoxedLcp {
     void relax(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
                const Vector<S>& upper) {
         while (!free_.empty()) {
-            // from the other rows alone, not as a change of λ, which would leave the round-off of what
-            // λ was; refined once, because chains are ill conditioned, ~N⁴
+            // from the other rows alone, not as a change of λ, which would leave the round-off of
+            // what λ was; refined once, because chains are ill conditioned, ~N⁴
             Vector<S> reached = lambda_;
             reached(free_).setZero();
             const Vector<S> solved = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));

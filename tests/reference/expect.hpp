@@ -21,8 +21,8 @@ struct Sweep {
     int halvings = 3;
 };
 
-/// Exact quantities hold to 1e-9 and events to ± dt at the coarsest and finest step; the others fall
-/// with an order of at least 0.9 or 1.8.
+/// Exact quantities hold to 1e-9 and events to ± dt at the coarsest and finest step; the others
+/// fall with an order of at least 0.9 or 1.8.
 inline void expect_trends(const std::string& problem, const Run& run, const Sweep& sweep = {}) {
     constexpr double exact = 1e-9, first = 0.9, second = 1.8;
     const std::vector<double> order = observed_orders(run, sweep.dt, sweep.steps, sweep.halvings);

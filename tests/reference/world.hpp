@@ -16,8 +16,8 @@
 // assume. `finite`: pins follow their bodies, and the gap that a step leaves in them is closed
 // by moving, not by velocity, so no energy comes in.
 //
-// Work. Supplied energy is counted as load dt · (v + v')/2, as the joints count theirs, so the ledger
-// closes to round-off at any dt.
+// Work. Supplied energy is counted as load dt · (v + v')/2, as the joints count theirs, so the
+// ledger closes to round-off at any dt.
 //
 // Symbols ("x | y": sliding | turning)
 //   M     mass of a degree of freedom, diagonal  [kg | kg m²]
@@ -106,12 +106,15 @@ class World {
     /// From now on the rows are not told what mass they move, as by an engine that cannot say.
     void withhold_mass() { mass_known_ = false; }
 
-    /// A plastic row: velocity Σ coefficient v. The joint stays the caller's and must outlive the world.
+    /// A plastic row: velocity Σ coefficient v. The joint stays the caller's and must outlive the
+    /// world.
     template <class Joint>
     std::size_t add_row(const std::vector<Term<S>>& terms, Joint& joint) {
-        rows_.push_back(
-            {terms, [&joint](const Motion<S>& m, S dt) { return joint.prepare(m, dt); },
-             [&joint](const Reaction<S>& r, S dt) { return joint.commit(r, dt); }, {}, {}});
+        rows_.push_back({terms,
+                         [&joint](const Motion<S>& m, S dt) { return joint.prepare(m, dt); },
+                         [&joint](const Reaction<S>& r, S dt) { return joint.commit(r, dt); },
+                         {},
+                         {}});
         return rows_.size() - 1;
     }
     /// A plastic hinge that turns with the angle of b less that of a.
@@ -146,8 +149,8 @@ class World {
         Vector<S> bias(n), lower(n), upper(n);
         Matrix<S> a = coupling_;
         for (Eigen::Index i = 0; i < n; ++i) {
-            const RowLimits<S> limits =
-                rows_[std::size_t(i)].prepare(motion(positions[i], start_rows[i], coupling_(i, i)), dt);
+            const RowLimits<S> limits = rows_[std::size_t(i)].prepare(
+                motion(positions[i], start_rows[i], coupling_(i, i)), dt);
             bias[i] = limits.bias;
             lower[i] = limits.lower * dt;
             upper[i] = limits.upper * dt;
@@ -250,7 +253,8 @@ class World {
         const Point<S> arm = turned(point);
         rigid(row, point.body.x) += sign * direction.x();
         rigid(row, point.body.y()) += sign * direction.y();
-        rigid(row, point.body.angle()) += sign * (arm.x() * direction.y() - arm.y() * direction.x());
+        rigid(row, point.body.angle()) +=
+            sign * (arm.x() * direction.y() - arm.y() * direction.x());
     }
 
     [[nodiscard]] Matrix<S> rigid_jacobian() const {

@@ -2,8 +2,8 @@
 //
 // The solver of the reference integrator against brute force: every way to put n rows at a bound or
 // between them is tried. What verifies the core must itself be verified.
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <Eigen/QR>
 #include <cmath>
@@ -100,7 +100,8 @@ TEST_CASE("the boxed LCP refuses what has no solution", "[reference][lcp]") {
     // two rigid rows on the same degree of freedom with different targets
     const Matrix<double> a = Matrix<double>::Ones(2, 2);
     const Vector<double> g = Vector<double>::LinSpaced(2, 0, 1);
-    const Vector<double> open = Vector<double>::Constant(2, std::numeric_limits<double>::infinity());
+    const Vector<double> open =
+        Vector<double>::Constant(2, std::numeric_limits<double>::infinity());
     BoxedLcp<double> lcp;
     CHECK_THROWS_AS(lcp.solve(a, g, -open, open), std::runtime_error);
     const Vector<double> none = Vector<double>::Constant(2, std::nan(""));

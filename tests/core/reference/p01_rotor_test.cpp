@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P01. A rotor stopped by a rigid-plastic hinge: against the ground, through many turns, and between two
-// free bodies on a tilted axis. α = M_p/I, t = ω0/α, θ = ω0²/(2α), E = I ω0²/2.
+// P01. A rotor stopped by a rigid-plastic hinge: against the ground, through many turns, and
+// between two free bodies on a tilted axis. α = M_p/I, t = ω0/α, θ = ω0²/(2α), E = I ω0²/2.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -56,8 +56,8 @@ TEST_CASE("P01 two bodies share the momentum, whichever way their axis points",
           "[reference][P01]") {
     const double dt = 1.0 / 240;
     const PairEnd tilted = couple({}, Eigen::Vector3d(1, 2, 2) / 3, dt);
-    for (const Eigen::Vector3d& axis :
-         {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-2.0 / 7, 6.0 / 7, 3.0 / 7)}) {
+    for (const Eigen::Vector3d& axis : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, -1),
+                                        Eigen::Vector3d(-2.0 / 7, 6.0 / 7, 3.0 / 7)}) {
         const PairEnd end = couple({}, axis, dt);
         CHECK(end.joint.plastic_offset == Approx(tilted.joint.plastic_offset).epsilon(1e-9));
         CHECK(end.joint.plastic_work == Approx(tilted.joint.plastic_work).epsilon(1e-9));

@@ -4,14 +4,16 @@
 // above. A closed energy ledger proves nothing here; only a converged solve keeps a beam of many
 // hinges still.
 //
-// Closed forms: at joint z = x/L the yield conditions of the three beams under a load w per length give
+// Closed forms: at joint z = x/L the yield conditions of the three beams under a load w per length
+// give
 //   pinned   w L²/M_p = 2/(z (1 - z))
 //   propped  w L²/M_p = 2 (1 + z)/(z (1 - z)),   z from the pin
 //   fixed    w L²/M_p = 4/(z (1 - z))
 // and the least over the joints governs. Under a point load at a from the left, b from the right:
 // P = M_p (1 + c_l b/L + c_r a/L) L/(a b), c = 1 at a clamped end, 0 at a pinned one.
 //
-// Source: Neal (1977), The Plastic Methods of Structural Analysis; loads of N segments derived here.
+// Source: Neal (1977), The Plastic Methods of Structural Analysis; loads of N segments derived
+// here.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -42,8 +44,12 @@ constexpr Ends fixed_fixed{"fixed-fixed", Support::clamped, Support::clamped};
 
 template <class S = double>
 BeamParameters<S> beam(const Ends& ends, int segments) {
-    return {.length = S(L), .mass_per_length = S(mass / L), .plastic_moment = S(Mp),
-            .segments = segments, .left = ends.left, .right = ends.right};
+    return {.length = S(L),
+            .mass_per_length = S(mass / L),
+            .plastic_moment = S(Mp),
+            .segments = segments,
+            .left = ends.left,
+            .right = ends.right};
 }
 
 /// w L²/M_p of N segments; clamped ends carry c z M_p and c (1 - z) M_p at z from the left.
@@ -70,7 +76,8 @@ S speed_after(const BeamParameters<S>& parameters, int steps, Load&& load) {
     const Vector<S> forces = load(beam);
     for (int i = 0; i < steps; ++i) beam.world().step(S(dt), forces);
     S most = 0;
-    for (int i = 0; i <= parameters.segments; ++i) most = std::max(most, std::abs(beam.velocity(i)));
+    for (int i = 0; i <= parameters.segments; ++i)
+        most = std::max(most, std::abs(beam.velocity(i)));
     CHECK(double(beam.residual()) <= 1e-3);
     return most;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P12. Portal frames, fixed feet, V at mid-beam and H at the eaves in proportion: of the beam, sway and
-// combined mechanisms the weakest governs, and the frame is still just below it.
+// P12. Portal frames, fixed feet, V at mid-beam and H at the eaves in proportion: of the beam, sway
+// and combined mechanisms the weakest governs, and the frame is still just below it.
 //
 //   combined   λ_c (H h + V L/2) = Σ M_p θ over feet (θ), mid-beam (2θ) and far knee (2θ)
 //
@@ -21,14 +21,15 @@ using namespace ductile::reference;
 namespace {
 
 struct Portal {
-    double height = 4, span = 8;             // [m]
+    double height = 4, span = 8;               // [m]
     double column_moment = 0, beam_moment = 0; // [N m]
-    double vertical = 0, horizontal = 0;     // [N]
+    double vertical = 0, horizontal = 0;       // [N]
     double column_mass = 300, beam_mass = 600; // [kg]
 };
 
-/// Two columns and two halves of the beam. A knee of two members is a small body of its own with a hinge
-/// to each, so that the weaker one decides; `plain_knees` puts the weaker hinge there directly.
+/// Two columns and two halves of the beam. A knee of two members is a small body of its own with a
+/// hinge to each, so that the weaker one decides; `plain_knees` puts the weaker hinge there
+/// directly.
 class Frame {
   public:
     Frame(const Portal& p, bool plain_knees) : p_(p) {
@@ -92,10 +93,10 @@ class Frame {
     std::size_t near_knee_ = 0;
 };
 
-constexpr Portal even{.column_moment = 100e3, .beam_moment = 100e3, .vertical = 60e3,
-                      .horizontal = 40e3};
-constexpr Portal strong_beam{.column_moment = 90e3, .beam_moment = 150e3, .vertical = 90e3,
-                             .horizontal = 35e3};
+constexpr Portal even{
+    .column_moment = 100e3, .beam_moment = 100e3, .vertical = 60e3, .horizontal = 40e3};
+constexpr Portal strong_beam{
+    .column_moment = 90e3, .beam_moment = 150e3, .vertical = 90e3, .horizontal = 35e3};
 constexpr double dt = 1e-3;
 
 } // namespace
@@ -127,8 +128,8 @@ TEST_CASE("P12 a portal is still just below its collapse factor and moves just a
 }
 
 TEST_CASE("P12 the combined mechanism starts with its own acceleration", "[reference][P12]") {
-    // θ'' = (λ (H h + V L/2) - 6 M_p)/16000, mid-beam sinks by L/2 θ''. Balance of the two columns and of
-    // the beam's sway, H = 66 kN: the near knee carries 84 kN m.
+    // θ'' = (λ (H h + V L/2) - 6 M_p)/16000, mid-beam sinks by L/2 θ''. Balance of the two columns
+    // and of the beam's sway, H = 66 kN: the near knee carries 84 kN m.
     Frame frame(even, true);
     const double rate = -frame.sway_rate(1.1 * 1.5, 1, dt) / dt; // it sways to the right
     CHECK(rate == Approx(3.75).epsilon(1e-9));
@@ -137,8 +138,8 @@ TEST_CASE("P12 the combined mechanism starts with its own acceleration", "[refer
 }
 
 TEST_CASE("P12 far above collapse the inertia makes the near knee yield too", "[reference][P12]") {
-    // 1.5 λ_c. One mechanism alone (18.75 rad/s²) would ask 180 kN m of the near knee. With all five hinges
-    // and two freedoms, columns θ and beam halves φ > θ, virtual work gives
+    // 1.5 λ_c. One mechanism alone (18.75 rad/s²) would ask 180 kN m of the near knee. With all
+    // five hinges and two freedoms, columns θ and beam halves φ > θ, virtual work gives
     //   12800 θ'' = λ H h - 2 M_p,   3200 φ'' = λ V L/2 - 4 M_p
     Frame frame(even, true);
     const double rate = -frame.sway_rate(1.5 * 1.5, 1, dt) / dt;

@@ -21,8 +21,7 @@ double shortfall(double speed, int segments, double dt) {
 
 } // namespace
 
-TEST_CASE("P13 a struck cantilever comes to rest where its N segments should",
-          "[reference][P13]") {
+TEST_CASE("P13 a struck cantilever comes to rest where its N segments should", "[reference][P13]") {
     for (const ParkesCase& c : parkes_cases) {
         const double dt = c.answers.front().stop / 4000;
         for (const ParkesAnswer& exact : c.answers) {
@@ -45,13 +44,12 @@ TEST_CASE("P13 the error of the tip falls with the step", "[reference][P13]") {
             // light segments under a heavy mass pass their first hinges in less than these steps
             const int most = std::string(c.name) == "c" ? 2 : 5;
             if (exact.segments > most || exact.segments == 4) continue;
-            expect_trends(
-                "P13" + std::string(c.name) + ", N = " + std::to_string(exact.segments),
-                [&](double dt) {
-                    std::vector<Quantity> all = p13_cantilever(c.parameters, exact, dt);
-                    return std::vector<Quantity>{all[0], all[3], all[4]};
-                },
-                {.dt = 8e-4 * c.answers.front().stop});
+            expect_trends("P13" + std::string(c.name) + ", N = " + std::to_string(exact.segments),
+                          [&](double dt) {
+                              std::vector<Quantity> all = p13_cantilever(c.parameters, exact, dt);
+                              return std::vector<Quantity>{all[0], all[3], all[4]};
+                          },
+                          {.dt = 8e-4 * c.answers.front().stop});
         }
     }
 }
@@ -68,8 +66,7 @@ TEST_CASE("P13 five segments give the exact discrete figures", "[reference][P13]
 
 TEST_CASE("P13 finite rotation moves the tip by less than a thousandth", "[reference][P13]") {
     // exact for the large-angle chain: tip y 0.05377271, root 0.04077867
-    const BeamEnd end =
-        strike_cantilever(parkes_cases[0].parameters, 5, 2e-6, Kinematics::finite);
+    const BeamEnd end = strike_cantilever(parkes_cases[0].parameters, 5, 2e-6, Kinematics::finite);
     CHECK(end.deflection == Approx(0.05377271).epsilon(3e-4));
     CHECK(end.root == Approx(0.04077867).epsilon(3e-4));
 }

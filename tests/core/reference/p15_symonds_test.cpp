@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P15. A beam thrown against its supports, and one under a pressure pulse. The problem is symmetric,
-// so its hinges yield and stop in exact ties.
+// P15. A beam thrown against its supports, and one under a pressure pulse. The problem is
+// symmetric, so its hinges yield and stop in exact ties.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -35,20 +35,20 @@ TEST_CASE("P15a the error of the centre falls with the step", "[reference][P15]"
         for (const ThrowAnswer& exact : thrown_beams) {
             if (exact.per_half > 2) continue;
             const bool pinned = ends == Support::pinned;
-            expect_trends(
-                std::string("P15a ") + (pinned ? "pinned" : "clamped"),
-                [&](double dt) {
-                    std::vector<Quantity> all = p15_thrown(ends, exact, dt);
-                    return std::vector<Quantity>{all[0], all[2]};
-                },
-                {.dt = 8e-4 * (pinned ? 0.04 : 0.02), .steps = 16});
+            expect_trends(std::string("P15a ") + (pinned ? "pinned" : "clamped"),
+                          [&](double dt) {
+                              std::vector<Quantity> all = p15_thrown(ends, exact, dt);
+                              return std::vector<Quantity>{all[0], all[2]};
+                          },
+                          {.dt = 8e-4 * (pinned ? 0.04 : 0.02), .steps = 16});
         }
     }
 }
 
-TEST_CASE("P15b from rest to rest a pulse of twice the collapse load is exact at any step that "
-          "divides it",
-          "[reference][P15]") {
+TEST_CASE(
+    "P15b from rest to rest a pulse of twice the collapse load is exact at any step that "
+    "divides it",
+    "[reference][P15]") {
     // centre 3 p0 τ² (η - 1)/(4μ) = 0.015 m, at rest at η τ = 0.02 s
     for (const int per_half : {1, 2, 4, 10}) {
         for (const double dt : {1e-2, 1e-3, 1e-4}) {

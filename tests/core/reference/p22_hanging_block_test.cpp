@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P22. The seed's block of 6000 kg on a yielding bar of 80 kN, g = 10, dt = 1/60. In its table the bar acts
-// from step 2 on; velocities are downwards positive here.
+// P22. The seed's block of 6000 kg on a yielding bar of 80 kN, g = 10, dt = 1/60. In its table the
+// bar acts from step 2 on; velocities are downwards positive here.
 //
 // Source: Nikula (2017), Handling of plasticity in physics engine, table of the hanging block.
 #include <catch2/catch.hpp>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P24. A column that leans or falls (P-Δ): critical speed, static push, and the same with an elastic hinge.
+// P24. A column that leans or falls (P-Δ): critical speed, static push, and the same with an
+// elastic hinge.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -34,14 +35,15 @@ TEST_CASE("P24a the critical state is where the weight's moment is the hinge's",
           "[reference][P24]") {
     const Column column;
     CHECK(column.weight_moment(0.205313002) == Approx(column.plastic_moment).epsilon(1e-8));
-    const double energy = column.plastic_moment * 0.205313002 -
-                          column.mass * column.gravity * column.length *
-                              (1 - std::cos(0.205313002));
+    const double energy = column.plastic_moment * 0.205313002 - column.mass * column.gravity *
+                                                                    column.length *
+                                                                    (1 - std::cos(0.205313002));
     CHECK(std::sqrt(2 * energy / column.inertia()) == Approx(critical_speed).epsilon(1e-8));
 }
 
 TEST_CASE("P24a below the critical speed the column stops and leans", "[reference][P24]") {
-    expect_trends("P24a, 0.9", [](double dt) { return p24_stops(0.9, 0.115589856, 0.8174509, dt); });
+    expect_trends("P24a, 0.9",
+                  [](double dt) { return p24_stops(0.9, 0.115589856, 0.8174509, dt); });
     expect_trends("P24a, 0.99",
                   [](double dt) { return p24_stops(0.99, 0.176223625, 1.472913, dt); });
     // engine figures at 1/240 s
@@ -50,13 +52,11 @@ TEST_CASE("P24a below the critical speed the column stops and leans", "[referenc
 }
 
 TEST_CASE("P24a above the critical speed the column falls", "[reference][P24]") {
-    expect_trends("P24a, 1.01",
-                  [](double dt) { return p24_falls(1.01, 2.1412003, 4.061807, dt); });
+    expect_trends("P24a, 1.01", [](double dt) { return p24_falls(1.01, 2.1412003, 4.061807, dt); });
     expect_trends("P24a, 1.1", [](double dt) { return p24_falls(1.1, 2.14724, 2.773873, dt); });
 }
 
-TEST_CASE("P24a a leaning column holds against a push up to its static limit",
-          "[reference][P24]") {
+TEST_CASE("P24a a leaning column holds against a push up to its static limit", "[reference][P24]") {
     // F = (M_p - W L sin θ)/(L cos θ)
     for (const auto& [theta, force] :
          {std::pair{0.05, 1511.593}, std::pair{0.1, 1025.759}, std::pair{0.2, 52.09224}}) {
@@ -87,8 +87,8 @@ TEST_CASE("P24b damped, the column comes to rest in its final lean", "[reference
     for (int i = 0; i < 20000; ++i) {
         const double rate = world.velocity()[base];
         turned = turned || rate < 0;
-        const double moment = column.weight_moment(world.displacement()[base]) -
-                              (turned ? damping * rate : 0.0);
+        const double moment =
+            column.weight_moment(world.displacement()[base]) - (turned ? damping * rate : 0.0);
         world.step(dt, Vector<double>::Constant(1, moment));
     }
     CHECK(world.displacement()[base] == Approx(0.10547248).epsilon(1e-4));

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Beams of N rigid segments that are struck or pushed and come to rest: P13 (Parkes' cantilever), P15
-// (Symonds' beam). Small displacements.
+// Beams of N rigid segments that are struck or pushed and come to rest: P13 (Parkes' cantilever),
+// P15 (Symonds' beam). Small displacements.
 //
-// Answers for N equal segments are event-driven solutions with piecewise constant accelerations, good
-// to the digits given; the continuum is the limit of many segments and is approached slowly.
+// Answers for N equal segments are event-driven solutions with piecewise constant accelerations,
+// good to the digits given; the continuum is the limit of many segments and is approached slowly.
 //
-// Source: Parkes (1955), Proc. R. Soc. A 228, 462-476; Symonds (1953), as in Jones (2012), Structural
-// Impact, chapter 3.
+// Source: Parkes (1955), Proc. R. Soc. A 228, 462-476; Symonds (1953), as in Jones (2012),
+// Structural Impact, chapter 3.
 #pragma once
 
 #include <cmath>
@@ -53,7 +53,7 @@ template <class LoadAt>
     return end;
 }
 
-// ---- P13 ------------------------------------------------------------------------------------------------
+// ---- P13 ----------------------------------------------------------------------------------------
 
 struct Parkes {
     double tip_mass = 1, speed = 4;
@@ -63,10 +63,14 @@ struct Parkes {
 /// The impulse G V0 acts on the tip at t = 0.
 [[nodiscard]] inline BeamEnd strike_cantilever(const Parkes& p, int segments, double dt,
                                                Kinematics kinematics = Kinematics::small) {
-    Beam<double> beam({.length = p.length, .mass_per_length = p.mass_per_length,
-                       .plastic_moment = p.plastic_moment, .segments = segments,
-                       .left = Support::clamped, .right = Support::free,
-                       .tip_mass = p.tip_mass, .kinematics = kinematics});
+    Beam<double> beam({.length = p.length,
+                       .mass_per_length = p.mass_per_length,
+                       .plastic_moment = p.plastic_moment,
+                       .segments = segments,
+                       .left = Support::clamped,
+                       .right = Support::free,
+                       .tip_mass = p.tip_mass,
+                       .kinematics = kinematics});
     Vector<double> impulse = beam.world().no_load();
     beam.add_force(impulse, p.length, p.tip_mass * p.speed);
     beam.world().strike(impulse);
@@ -87,36 +91,39 @@ struct ParkesCase {
     std::vector<ParkesAnswer> answers;
 };
 inline const std::vector<ParkesCase> parkes_cases{
-    {"a", {.tip_mass = 1, .speed = 4}, {
-        {1, 0.048, 0.048, 0.04, 4.8},
-        {2, 0.0530286227, 0.0453604712, 0.0416, 6.19354839},
-        {3, 0.0533768799, 0.0429069058, 0.0415704769, 6.70807453},
-        {4, 0.0534942596, 0.0414763964, 0.0415524099, 6.99089727},
-        {5, 0.0538005828, 0.0407743046, 0.0416446137, 7.1718616},
-        {8, 0.0535874791, 0.0388522198, 0.0414861287, 7.46151177},
-        {10, 0.0534009366, 0.0381141855, 0.0413852604, 7.56333089},
-        {20, 0.0526932364, 0.0363373977, 0.0410403021, 7.77553951}}},
-    {"b", {.tip_mass = 0.2, .speed = 10}, {
-        {1, 0.0230769231, 0.0230769231, 0.02, 2.30769231},
-        {2, 0.0300469102, 0.0213346263, 0.0218867925, 4.06779661},
-        {3, 0.0316046375, 0.0197093831, 0.0219488798, 5.09433962},
-        {4, 0.0325943536, 0.018955462, 0.0220898421, 5.80812446},
-        {5, 0.0334691545, 0.0186226252, 0.022291082, 6.33973711},
-        {8, 0.0338201573, 0.0170514169, 0.0221341086, 7.3483813},
-        {10, 0.0339444434, 0.0165942053, 0.0220949714, 7.75990762},
-        {20, 0.0334099967, 0.0151120012, 0.0216824174, 8.73868016}}},
-    {"c", {.tip_mass = 20, .speed = 1}, {
-        {1, 0.0967741935, 0.0967741935, 0.2, 9.67741935},
-        {2, 0.0973153957, 0.0962024446, 0.200544959, 9.85626283},
-        {3, 0.0973009119, 0.0957139986, 0.200526109, 9.90462216},
-        {4, 0.0972810832, 0.0954009505, 0.200504103, 9.92834454},
-        {5, 0.0973014475, 0.0952309281, 0.200524376, 9.94259618},
-        {8, 0.0972463551, 0.0948326988, 0.200465728, 9.96404535},
-        {10, 0.0972074611, 0.094670834, 0.200424885, 9.97121558},
-        {20, 0.0970948452, 0.094299185, 0.200307039, 9.98558705}}}};
+    {"a",
+     {.tip_mass = 1, .speed = 4},
+     {{1, 0.048, 0.048, 0.04, 4.8},
+      {2, 0.0530286227, 0.0453604712, 0.0416, 6.19354839},
+      {3, 0.0533768799, 0.0429069058, 0.0415704769, 6.70807453},
+      {4, 0.0534942596, 0.0414763964, 0.0415524099, 6.99089727},
+      {5, 0.0538005828, 0.0407743046, 0.0416446137, 7.1718616},
+      {8, 0.0535874791, 0.0388522198, 0.0414861287, 7.46151177},
+      {10, 0.0534009366, 0.0381141855, 0.0413852604, 7.56333089},
+      {20, 0.0526932364, 0.0363373977, 0.0410403021, 7.77553951}}},
+    {"b",
+     {.tip_mass = 0.2, .speed = 10},
+     {{1, 0.0230769231, 0.0230769231, 0.02, 2.30769231},
+      {2, 0.0300469102, 0.0213346263, 0.0218867925, 4.06779661},
+      {3, 0.0316046375, 0.0197093831, 0.0219488798, 5.09433962},
+      {4, 0.0325943536, 0.018955462, 0.0220898421, 5.80812446},
+      {5, 0.0334691545, 0.0186226252, 0.022291082, 6.33973711},
+      {8, 0.0338201573, 0.0170514169, 0.0221341086, 7.3483813},
+      {10, 0.0339444434, 0.0165942053, 0.0220949714, 7.75990762},
+      {20, 0.0334099967, 0.0151120012, 0.0216824174, 8.73868016}}},
+    {"c",
+     {.tip_mass = 20, .speed = 1},
+     {{1, 0.0967741935, 0.0967741935, 0.2, 9.67741935},
+      {2, 0.0973153957, 0.0962024446, 0.200544959, 9.85626283},
+      {3, 0.0973009119, 0.0957139986, 0.200526109, 9.90462216},
+      {4, 0.0972810832, 0.0954009505, 0.200504103, 9.92834454},
+      {5, 0.0973014475, 0.0952309281, 0.200524376, 9.94259618},
+      {8, 0.0972463551, 0.0948326988, 0.200465728, 9.96404535},
+      {10, 0.0972074611, 0.094670834, 0.200424885, 9.97121558},
+      {20, 0.0970948452, 0.094299185, 0.200307039, 9.98558705}}}};
 
-[[nodiscard]] inline std::vector<Quantity> p13_cantilever(const Parkes& p, const ParkesAnswer& exact,
-                                                          double dt) {
+[[nodiscard]] inline std::vector<Quantity> p13_cantilever(const Parkes& p,
+                                                          const ParkesAnswer& exact, double dt) {
     const BeamEnd end = strike_cantilever(p, exact.segments, dt);
     return {{"tip", "m", end.deflection, exact.tip, Trend::first_order},
             {"root", "rad", end.root, exact.root, Trend::first_order},
@@ -125,7 +132,7 @@ inline const std::vector<ParkesCase> parkes_cases{
             {"unexplained energy", "J", end.ledger, 0, Trend::exact}};
 }
 
-// ---- P15 ------------------------------------------------------------------------------------------------
+// ---- P15 ----------------------------------------------------------------------------------------
 
 struct Symonds {
     double half_length = 1, mass_per_length = 2, plastic_moment = 100;
@@ -136,9 +143,12 @@ struct Symonds {
         return 2 * plastic_moment / (half_length * half_length);
     }
     [[nodiscard]] BeamParameters<double> beam(int segments_per_half) const {
-        return {.length = 2 * half_length, .mass_per_length = mass_per_length,
-                .plastic_moment = plastic_moment, .segments = 2 * segments_per_half,
-                .left = ends, .right = ends};
+        return {.length = 2 * half_length,
+                .mass_per_length = mass_per_length,
+                .plastic_moment = plastic_moment,
+                .segments = 2 * segments_per_half,
+                .left = ends,
+                .right = ends};
     }
 };
 
@@ -178,11 +188,11 @@ inline constexpr ThrowAnswer thrown_beams[] = {
                                                       double dt) {
     const BeamEnd end = throw_beam({.ends = ends}, exact.per_half, 4, dt);
     const bool pinned = ends == Support::pinned;
-    return {{"centre", "m", end.deflection, pinned ? exact.pinned : exact.clamped,
-             Trend::first_order},
-            {"stop", "s", end.time, pinned ? exact.pinned_stop : exact.clamped_stop,
-             Trend::first_order},
-            {"unexplained energy", "J", end.ledger, 0, Trend::exact}};
+    return {
+        {"centre", "m", end.deflection, pinned ? exact.pinned : exact.clamped, Trend::first_order},
+        {"stop", "s", end.time, pinned ? exact.pinned_stop : exact.clamped_stop,
+         Trend::first_order},
+        {"unexplained energy", "J", end.ledger, 0, Trend::exact}};
 }
 
 /// Exact centre after 6 p_c for 4 ms.

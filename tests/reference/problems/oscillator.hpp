@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A mass on an elastic-plastic row: P03 (free), P04 (load held), P05 (pulses), P06 (imposed motion), P07
-// (kinematic and isotropic hardening). Where the step resolves the spring the row is the
-// symplectic one, second order in every peak.
+// A mass on an elastic-plastic row: P03 (free), P04 (load held), P05 (pulses), P06 (imposed
+// motion), P07 (kinematic and isotropic hardening). Where the step resolves the spring the row is
+// the symplectic one, second order in every peak.
 //
-// Source of the chart: Biggs (1964), Introduction to Structural Dynamics, figures 2.23-2.26; the numbers
-// here are exact piecewise integrations.
+// Source of the chart: Biggs (1964), Introduction to Structural Dynamics, figures 2.23-2.26; the
+// numbers here are exact piecewise integrations.
 #pragma once
 
 #include <algorithm>
@@ -48,11 +48,12 @@ class Oscillator {
     [[nodiscard]] double position() { return world_.displacement()[degree_]; }
     [[nodiscard]] double velocity() { return world_.velocity()[degree_]; }
     [[nodiscard]] const auto& state() const { return joint_.state(); }
-    /// `start` [J] and what was supplied, less what moves, is stored or was taken; as a share of it all.
+    /// `start` [J] and what was supplied, less what moves, is stored or was taken; as a share of it
+    /// all.
     [[nodiscard]] double unexplained(double start) {
         const double given = start + world_.supplied();
-        const double found = world_.kinetic_energy() + state().stored + state().plastic_work +
-                             state().other_work;
+        const double found =
+            world_.kinetic_energy() + state().stored + state().plastic_work + state().other_work;
         return (given - found) / (std::abs(given) + found);
     }
 
@@ -97,7 +98,7 @@ inline constexpr auto no_force = [](double) { return 0.0; };
     return Perfect<double>({.strength = strength});
 }
 
-// ---- P03 -----------------------------------------------------------------------------------------------
+// ---- P03 ----------------------------------------------------------------------------------------
 
 /// I = 0.5 kg m², k = 200 N m/rad, M_y = 10 N m, ω0 = 3 rad/s:
 /// θ_max = θ_y + (E0 - k θ_y²/2)/M_y = 0.25, of which 0.2 stay; then elastic between 0.15 and 0.25.
@@ -110,14 +111,13 @@ inline constexpr auto no_force = [](double) { return 0.0; };
             {"set", "rad", body.state().plastic_offset, 0.2, Trend::second_order},
             {"plastic work", "J", body.state().plastic_work, 2, Trend::second_order},
             {"swing back", "rad", turns.at(1).position, 0.15, Trend::second_order},
-            {"period after", "s", turns.at(2).time - turns.at(0).time, period,
-             Trend::second_order},
+            {"period after", "s", turns.at(2).time - turns.at(0).time, period, Trend::second_order},
             {"unexplained energy", "-", body.unexplained(2.25), 0, Trend::exact}};
 }
 
-// ---- P04 -----------------------------------------------------------------------------------------------
+// ---- P04 ----------------------------------------------------------------------------------------
 
-/// m = 100 kg, k = 4e4 N/m, R = 2 kN, F held: μ = 1/(2 (1 - F/R)), then a swing of (R - F)/k about
+/// m = 100 kg, k = 4e4 N/m, R = 2 kN, F held: μ = 1/(2 (1 - F/R)) by energy, then a swing about
 /// u_p + F/k.
 [[nodiscard]] inline std::vector<Quantity> p04_step_load(double ratio, double dt) {
     constexpr double m = 100, k = 4e4, R = 2000, yield = R / k;
@@ -132,7 +132,7 @@ inline constexpr auto no_force = [](double) { return 0.0; };
             {"unexplained energy", "-", body.unexplained(0), 0, Trend::exact}};
 }
 
-// ---- P05 -----------------------------------------------------------------------------------------------
+// ---- P05 ----------------------------------------------------------------------------------------
 
 struct Pulse {
     bool triangular = false;
@@ -142,9 +142,9 @@ struct Pulse {
     double time_per_period = 0;     ///< t_max/T
 };
 
-/// m = 50 kg, T = 0.2 s, F = 4 kN; any other instance of the chart is the same in other units. The step
-/// is fitted into the pulse, whose impulse would else be wrong by up to F dt/2. From rest the motion
-/// leads by half a step, so the time of the peak is first order.
+/// m = 50 kg, T = 0.2 s, F = 4 kN; any other instance of the chart is the same in other units. The
+/// step is fitted into the pulse, whose impulse would else be wrong by up to F dt/2. From rest the
+/// motion leads by half a step, so the time of the peak is first order.
 [[nodiscard]] inline std::vector<Quantity> p05_pulse(const Pulse& pulse, double dt) {
     constexpr double m = 50, T = 0.2, F = 4000;
     const double k = m * std::pow(2 * std::numbers::pi / T, 2);
@@ -164,9 +164,10 @@ struct Pulse {
             {"unexplained energy", "-", body.unexplained(0), 0, Trend::exact}};
 }
 
-// ---- P07 -----------------------------------------------------------------------------------------------
+// ---- P07 ----------------------------------------------------------------------------------------
 
-/// Tangent α k after yield, so H = α k/(1 - α); from energy and the two frequencies √(k/m), √(α k/m):
+/// Tangent α k after yield, so H = α k/(1 - α); from energy and the two frequencies √(k/m), √(α
+/// k/m):
 ///   first peak    m v0²/2 = k u_y²/2 + R x + α k x²/2, u1 = u_y + x, F1 = R + α k x
 ///   second peak   2 F1 u_y - 2 k u_y² + (F1 - 2R) y - α k y²/2 = 0, u2 = u1 - 2 u_y - y
 /// of which (1 - α) x and (1 - α) y are plastic. After it |F| < R: elastic for ever.
@@ -190,8 +191,7 @@ struct Bilinear {
     [[nodiscard]] double first_time() const {
         const double to_yield = std::asin(yield() * frequency() / speed) / frequency();
         const double left = std::sqrt(speed * speed - std::pow(frequency() * yield(), 2));
-        return to_yield +
-               std::atan(left * slow_frequency() * mass / strength) / slow_frequency();
+        return to_yield + std::atan(left * slow_frequency() * mass / strength) / slow_frequency();
     }
     /// y
     [[nodiscard]] double second() const {
@@ -225,8 +225,7 @@ struct Bilinear {
             {"time of second", "s", turns.at(1).time, b.second_time(), Trend::second_order},
             {"set", "m", state.plastic_offset, b.set(), Trend::second_order},
             {"plastic travel", "m", state.plastic_travel, b.travel(), Trend::second_order},
-            {"plastic work", "J", state.plastic_work, b.strength * b.travel(),
-             Trend::second_order},
+            {"plastic work", "J", state.plastic_work, b.strength * b.travel(), Trend::second_order},
             {"unexplained energy", "-", body.unexplained(b.energy()), 0, Trend::exact}};
 }
 
@@ -238,12 +237,12 @@ struct Bilinear {
     body.set_velocity(b.speed);
     const std::vector<Peak> turns = peaks(body, dt, 2.5, no_force);
     const double amplitude = b.first_force() / b.stiffness;
-    return {{"first peak", "m", turns.at(0).position, b.first_peak(), Trend::second_order},
-            {"set", "m", body.state().plastic_offset, (1 - b.share) * b.first(),
-             Trend::second_order},
-            {"amplitude after", "m", (turns.at(2).position - turns.at(1).position) / 2, amplitude,
-             Trend::second_order},
-            {"unexplained energy", "-", body.unexplained(b.energy()), 0, Trend::exact}};
+    return {
+        {"first peak", "m", turns.at(0).position, b.first_peak(), Trend::second_order},
+        {"set", "m", body.state().plastic_offset, (1 - b.share) * b.first(), Trend::second_order},
+        {"amplitude after", "m", (turns.at(2).position - turns.at(1).position) / 2, amplitude,
+         Trend::second_order},
+        {"unexplained energy", "-", body.unexplained(b.energy()), 0, Trend::exact}};
 }
 
 } // namespace ductile::reference

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// P24. A mass on a column with a plastic hinge at its base: below a critical initial speed it stops and
-// leans, above it falls.
+// P24. A mass on a column with a plastic hinge at its base: below a critical initial speed it stops
+// and leans, above it falls.
 //
 //   rigid-plastic   I ω0²/2 = M_p θ - m g L (1 - cos θ) where it stops;  sin θ_c = M_p/(m g L)
 //
@@ -43,7 +43,8 @@ struct ColumnEnd {
     double speed = 0;   ///< there [rad/s]
 };
 
-/// From the vertical at `speed` until it turns back or lies flat; weight taken at the start of each step.
+/// From the vertical at `speed` until it turns back or lies flat; weight taken at the start of each
+/// step.
 [[nodiscard]] inline ColumnEnd swing(const Column& column, double speed, double dt) {
     World<double> world;
     auto joint = column.hinge();

@@ -3,8 +3,8 @@
 // Problems of one or two rotors and masses on rigid-plastic rows, from an initial speed to rest or
 // to the break: P01, P02, P22, P25, P27. Formulas stand by each function.
 //
-// A row that stops from speed u inside an engine that moves with the new velocity ends u dt/2 short:
-// that is the geometric rest position. The work-conjugate travel and the energy are exact.
+// A row that stops from speed u inside an engine that moves with the new velocity ends u dt/2
+// short: that is the geometric rest position. The work-conjugate travel and the energy are exact.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ template <std::floating_point S = double>
 /// Below this a body that was moving is at rest [m/s | rad/s].
 inline constexpr double at_rest = 1e-9;
 
-// ---- P01 and P02: one rotor against the ground -----------------------------------------------------
+// ---- P01 and P02: one rotor against the ground --------------------------------------------------
 
 struct Rotor {
     double inertia = 2, moment = 40, speed = 10;
@@ -80,7 +80,7 @@ struct RotorEnd {
              Trend::within_step}};
 }
 
-// ---- P01c and P02c: two free coaxial bodies ----------------------------------------------------------
+// ---- P01c and P02c: two free coaxial bodies -----------------------------------------------------
 
 struct Pair {
     double inertia1 = 2, inertia2 = 3, moment = 12, speed1 = 10;
@@ -92,8 +92,8 @@ struct PairEnd {
     double time = 0, speed1 = 0, speed2 = 0, angle1 = 0, angle2 = 0;
 };
 
-/// Until they turn together or the joint breaks. The bodies are spheres free to turn about any axis; two
-/// rigid rows keep them coaxial on `axis`.
+/// Until they turn together or the joint breaks. The bodies are spheres free to turn about any
+/// axis; two rigid rows keep them coaxial on `axis`.
 [[nodiscard]] inline PairEnd couple(const Pair& pair, const Eigen::Vector3d& axis, double dt) {
     World<double> world;
     PerfectJoint<double> joint = perfect_joint(pair.moment, pair.limit);
@@ -147,7 +147,7 @@ struct PairEnd {
             {"break", "s", end.time, 0.4, Trend::within_step}};
 }
 
-// ---- P22 and P25: a weight on a yielding bar --------------------------------------------------------
+// ---- P22 and P25: a weight on a yielding bar ----------------------------------------------------
 
 struct Weight {
     double mass = 0, strength = 0, gravity = 0;
@@ -177,7 +177,7 @@ struct WeightEnd {
         world.step(dt, load);
         ++steps;
     }
-    return {joint.state(),      steps * dt, world.velocity()[block], world.displacement()[block],
+    return {joint.state(),    steps * dt, world.velocity()[block], world.displacement()[block],
             world.supplied(), steps};
 }
 
@@ -199,21 +199,21 @@ struct WeightEnd {
             {"stop", "s", end.time, weight.speed / weight.deceleration(), Trend::within_step}};
 }
 
-/// v = √(V1² - 2 a s_max) at the break; the rest of that step is free fall.
+/// v = √(V1² - 2 a s_max) at the break; what it fell freely in the rest of that step is taken off.
 [[nodiscard]] inline std::vector<Quantity> p25_break(double dt) {
     const Weight weight = dropped(0.3);
     const WeightEnd end = crush(weight, dt);
     const double residual =
         std::sqrt(weight.speed * weight.speed - 2 * weight.deceleration() * weight.limit);
     const double time = (weight.speed - residual) / weight.deceleration();
-    return {{"speed", "m/s", end.speed, residual + weight.gravity * (end.time - time),
-             Trend::second_order},
-            {"plastic work", "J", end.joint.plastic_work, weight.strength * weight.limit,
-             Trend::exact},
-            {"break", "s", end.time, time, Trend::within_step}};
+    return {
+        {"residual speed", "m/s", end.speed - weight.gravity * (end.time - time), residual,
+         Trend::second_order},
+        {"plastic work", "J", end.joint.plastic_work, weight.strength * weight.limit, Trend::exact},
+        {"break", "s", end.time, time, Trend::within_step}};
 }
 
-// ---- P27: two rotors in series ------------------------------------------------------------------------
+// ---- P27: two rotors in series ------------------------------------------------------------------
 
 struct SeriesEnd {
     PerfectJoint<double>::State inner, outer;
