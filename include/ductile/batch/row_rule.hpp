@@ -175,7 +175,7 @@ inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step,
     const Mask<S> outcome = (breaks & code(Outcome::broken)) | (~breaks & whole);
     const Mask<S> status = outcome | (at_bound & flowing_bit);
 
-    return {.state = {.offset = select(flows, position, old.offset),
+    return {.state = {.offset = select(intact & (at_bound | stops), position, old.offset),
                       .travel = old.travel + travel,
                       .plastic_work = old.plastic_work + plastic,
                       .other_work = old.other_work + only(intact, other),

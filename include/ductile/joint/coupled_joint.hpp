@@ -129,6 +129,8 @@ class CoupledJoint {
             step.other_work += booked.other;
             step.residual = std::max(step.residual, booked.residual);
             at_bound = at_bound || booked.at_bound;
+            if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
+            if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
         }
         flow(step, flowed, dt);
         settle(step, reaction, at_bound);
@@ -140,6 +142,7 @@ class CoupledJoint {
     struct Booked {
         Scalar flow = 0, elastic = 0, other = 0, residual = 0, travel = 0;
         bool at_bound = false;
+        bool moved = false; ///< a rigid row that goes on from where it is
     };
 
     /// The surface, grown by a factor.
@@ -245,6 +248,7 @@ class CoupledJoint {
             // a row may also be driven by the flow of the others
             (slips || stops ? booked.flow : booked.other) = work;
             booked.travel = slips || stops ? travel : Scalar(0);
+            booked.moved = booked.at_bound || stops;
             return booked;
         }
         const Scalar k = parameters_.stiffness[i];
@@ -293,11 +297,6 @@ class CoupledJoint {
     }
 
     void settle(Step& step, const Reaction& reaction, bool at_bound) noexcept {
-        for (int i = 0; i < dimension; ++i) {
-            if (step.direction[i] == 0) continue;
-            state_.plastic_offset[i] = rigid(i) ? reaction.position[i]
-                                                : state_.plastic_offset[i] + step.direction[i];
-        }
         if (state_.broken) {
             step.lost = state_.stored + step.elastic;
             step.elastic -= step.lost;

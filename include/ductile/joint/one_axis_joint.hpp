@@ -275,15 +275,16 @@ class OneAxisJoint {
 
     void commit_rigid(Step<Scalar>& step, const Taken& taken) noexcept {
         const Scalar direction = std::copysign(Scalar(1), taken.travel);
+        const bool stops = !taken.at_bound() && taken.work > 0 && (state_.flowing || kicked());
         if (flows_with_bound(taken)) {
             flow(step, taken, taken.work, taken.travel * share_);
-            state_.plastic_offset = taken.position;
-        } else if (!taken.at_bound() && taken.work > 0 && (state_.flowing || kicked())) {
+        } else if (stops) {
             flow(step, taken, taken.work, direction * taken.work / resistance(direction));
-            state_.plastic_offset = taken.position;
         } else {
             step.other_work = taken.work;
         }
+        // a row at its bound moved as it liked, also where it turned round within the step
+        if (taken.at_bound() || stops) state_.plastic_offset = taken.position;
     }
 
     /// At a bound, and moving the way that bound resists.
