@@ -58,13 +58,13 @@ struct OneAxisParameters {
     S relative_residual = S(1e-2); ///< [-], in [0, 1]
 };
 
-/// For adapters that map rigid-plastic rows only.
+/// For adapters and batches that have rigid-plastic rows only.
 /// @throws std::invalid_argument where the stiffness is finite.
 template <std::floating_point S>
 void require_rigid(S stiffness) {
     if (stiffness != std::numeric_limits<S>::infinity()) {
         check::fail("OneAxisJoint.stiffness", stiffness, "N/m or N m/rad",
-                    "infinite: this adapter has no elastic rows");
+                    "infinite: elastic rows are not mapped here");
     }
 }
 

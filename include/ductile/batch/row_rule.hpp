@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+//
+// The rule of one rigid-plastic row without a branch: every case is computed and the right one
+// selected, so that a compiler can run it on as many joints at once as a register holds. Same
+// operations in the same order as OneAxisJoint, where the derivation is; with floating-point
+// contraction off (-ffp-contract=off) the results are the same bit for bit.
+//
+// A quotient whose case is not selected is taken with the divisor 1, so that no division by zero
+// raises a floating-point exception.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "ductile/batch/status.hpp"
+
+namespace ductile::batch_detail {
+
+/// A flag as wide as the scalar, all bits set or none: mixed widths in a loop cost shuffles.
+template <std::floating_point S>
+using Mask = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
+
+template <std::floating_point S>
+constexpr Mask<S> mask(bool flag) noexcept {
+    return Mask<S>(0) - Mask<S>(flag);
+}
+
+/// a where `choice` is set, else b. On the bits, because a conditional would let g++ thread the
+/// cases into branches again.
+template <std::floating_point S>
+constexpr S select(Mask<S> choice, S a, S b) noexcept {
+    return std::bit_cast<S>((choice & std::bit_cast<Mask<S>>(a)) |
+                            (~choice & std::bit_cast<Mask<S>>(b)));
+}
+/// a where `choice` is set, else +0.
+template <std::floating_point S>
+constexpr S only(Mask<S> choice, S a) noexcept {
+    return std::bit_cast<S>(choice & std::bit_cast<Mask<S>>(a));
+}
+/// std::max(a, b).
+template <std::floating_point S>
+constexpr S larger(S a, S b) noexcept {
+    return select(mask<S>(a < b), b, a);
+}
+
+/// Numbers that all joints share in a step.
+template <std::floating_point S>
+struct StepNumbers {
+    S dt;
+    S drift_time; ///< not shorter than five steps [s]
+    S absolute_residual;
+    S relative_residual;
+};
+
+/// Strength of one joint.
+template <std::floating_point S>
+struct RowLaw {
+    S strength;
+    S hardening;
+    S limit;
+
+    constexpr S value(S travel) const noexcept { return strength + hardening * travel; }
+    /// R half a step ahead.
+    constexpr S midpoint(S travel, S speed, S dt) const noexcept {
+        return value(travel + speed * dt / 2);
+    }
+    constexpr S remaining(S travel) const noexcept {
+        return only(mask<S>(travel < limit), limit - travel);
+    }
+};
+
+/// A force this close to its bound, as a share of the larger one, is at it.
+template <std::floating_point S>
+inline constexpr S bound_tolerance = S(4e-6);
+/// Less travel than this share of what is left counts as all of it.
+template <std::floating_point S>
+inline constexpr S used_up_share = 1 - 16 * std::numeric_limits<S>::epsilon();
+
+template <std::floating_point S>
+struct Prepared {
+    S lower, upper, bias, start_velocity;
+};
+
+template <std::floating_point S>
+inline Prepared<S> prepare_row(const RowLaw<S>& law, const StepNumbers<S>& step, S position,
+                               S velocity, S offset, S travel, S start, Mask<S> status) noexcept {
+    const Mask<S> intact = mask<S>((status & outcome_bits) != Mask<S>(Outcome::broken));
+    const Mask<S> flowing = mask<S>((status & flowing_bit) != 0);
+    const S speed = std::abs(velocity);
+    const S lost = larger(std::abs(start) - speed, S(0));
+    const S slowed = only(flowing, larger(speed - lost, S(0)));
+    const S ahead = (speed + slowed) / 2 * step.dt;
+    const S left = law.remaining(travel);
+    const Mask<S> ends = mask<S>(left < ahead);
+    const S share = select(ends, left, S(1)) / select(ends, ahead, S(1));
+    // half a step ahead on the side of the flow, as it stands on the other
+    const S along = law.midpoint(travel, speed, step.dt) * share;
+    const S against = law.value(travel) * share;
+    const Mask<S> back = mask<S>(velocity < 0);
+    const S bias = (offset - position) / step.drift_time;
+    return {only(intact, -select(back, against, along)), only(intact, select(back, along, against)),
+            only(intact, bias), select(intact, velocity, start)};
+}
+
+/// What commit reads and writes of one joint's state.
+template <std::floating_point S>
+struct RowState {
+    S offset, travel, plastic_work, other_work, velocity, residual_max;
+    Mask<S> status;
+};
+
+template <std::floating_point S>
+struct Committed {
+    RowState<S> state;
+    S release, residual;
+};
+
+template <std::floating_point S>
+inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force,
+                               S velocity, S position, S upper, S bias, S start,
+                               const RowState<S>& old) noexcept {
+    const Mask<S> intact = mask<S>((old.status & outcome_bits) != Mask<S>(Outcome::broken));
+    const Mask<S> was_flowing = mask<S>((old.status & flowing_bit) != 0);
+    const S start_speed = std::abs(start);
+    const S tolerated = step.absolute_residual + step.relative_residual * start_speed;
+    const Mask<S> kicked = mask<S>(std::abs(start - old.velocity) > tolerated);
+    // the bounds again, from the upper one
+    const Mask<S> back = mask<S>(start < 0);
+    const S ahead = law.midpoint(old.travel, start_speed, step.dt);
+    const S behind = law.value(old.travel);
+    const S share = upper / select(back, ahead, behind);
+    const S lower = -share * select(back, behind, ahead);
+    const S near = bound_tolerance<S> * larger(upper, -lower);
+    const Mask<S> at_upper = mask<S>(force >= upper - near);
+    const Mask<S> at_lower = mask<S>(force <= lower + near);
+    const Mask<S> at_bound = at_upper | at_lower;
+
+    const S moved = (start + velocity) / 2 * step.dt;
+    const S work = -force * step.dt * (start + velocity) / 2;
+    const Mask<S> slips = (at_lower & mask<S>(moved > 0)) | (at_upper & mask<S>(moved < 0));
+    const Mask<S> stops = ~at_bound & (was_flowing | kicked) & mask<S>(work > 0);
+    const Mask<S> flows = intact & (slips | stops);
+    const S taken = only(flows, work);
+    const S strength = select(mask<S>(moved < 0) ^ back, behind, ahead);
+    const S left = law.remaining(old.travel);
+    // at a bound what the row moved, by the share of the strength that the bound allows; where it came
+    // to rest inside, what its work amounts to
+    const S slipped = std::abs(moved) * share;
+    const S wanted = only(flows, select(at_bound, slipped, taken / strength));
+    const Mask<S> used_up = mask<S>(wanted >= left * used_up_share<S>);
+    const S travel = select(flows & used_up, left, wanted);
+    const Mask<S> breaks =
+        flows & (used_up | mask<S>(old.travel + travel >= law.limit * used_up_share<S>));
+    const S plastic = (law.value(old.travel) + law.hardening * travel / 2) * travel;
+    const S rest = taken - plastic;
+    const S release = only(breaks, larger(rest, S(0)));
+    const S other = select(flows, rest - release, work);
+
+    const S excess = velocity - bias;
+    const S against = larger(select(at_upper, excess, -excess), S(0));
+    const S residual = only(intact, select(at_bound, against, std::abs(excess)));
+    const S speed = larger(start_speed, std::abs(velocity));
+    const Mask<S> unreliable =
+        mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
+    const Mask<S> yields =
+        mask<S>(plastic > 0) & (at_bound | mask<S>(start_speed > step.absolute_residual));
+
+    constexpr auto code = [](Outcome outcome) { return Mask<S>(outcome); };
+    const Mask<S> whole =
+        (unreliable & code(Outcome::unreliable)) | (~unreliable & yields & code(Outcome::yielding));
+    const Mask<S> outcome = (breaks & code(Outcome::broken)) | (~breaks & whole);
+    const Mask<S> status = outcome | (at_bound & flowing_bit);
+
+    return {.state = {.offset = select(flows, position, old.offset),
+                      .travel = old.travel + travel,
+                      .plastic_work = old.plastic_work + plastic,
+                      .other_work = old.other_work + only(intact, other),
+                      .velocity = select(intact, velocity, old.velocity),
+                      .residual_max = larger(old.residual_max, residual),
+                      .status = (intact & status) | (~intact & old.status)},
+            .release = release,
+            .residual = residual};
+}
+
+static_assert(unsigned(Outcome::elastic) == 0); // the code left where no mask is set
+
+} // namespace ductile::batch_detail
