@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Checks a problem's quantities against what REFERENCE says of them, as Catch assertions.
+// Checks a problem's quantities against their exact values and trends, as Catch assertions.
 #pragma once
 
 #include <catch2/catch.hpp>

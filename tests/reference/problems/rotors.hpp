@@ -42,6 +42,7 @@ struct Rotor {
 struct RotorEnd {
     PerfectJoint<double>::State joint;
     double time = 0, speed = 0, angle = 0;
+    double unexplained = 0; ///< loss of kinetic energy less what the joint took [J]
 };
 
 /// Until it stops or breaks.
@@ -56,7 +57,10 @@ struct RotorEnd {
         world.step(dt);
         ++steps;
     }
-    return {joint.state(), steps * dt, world.velocity()[wheel], world.displacement()[wheel]};
+    const double speed = world.velocity()[wheel];
+    const double lost = rotor.inertia * (rotor.speed * rotor.speed - speed * speed) / 2;
+    const double taken = joint.state().plastic_work + joint.state().other_work;
+    return {joint.state(), steps * dt, speed, world.displacement()[wheel], lost - taken};
 }
 
 /// P01: t = ω0/α, θ = ω0²/(2α), E = I ω0²/2 with α = M_p/I.
@@ -66,6 +70,7 @@ struct RotorEnd {
     return {{"angle", "rad", end.joint.plastic_offset, theta, Trend::first_order},
             {"plastic rotation", "rad", end.joint.plastic_travel, theta, Trend::exact},
             {"plastic work", "J", end.joint.plastic_work, rotor.moment * theta, Trend::exact},
+            {"unexplained energy", "J", end.unexplained, 0, Trend::exact},
             {"stop", "s", end.time, rotor.speed / rotor.deceleration(), Trend::within_step}};
 }
 
@@ -76,6 +81,7 @@ struct RotorEnd {
         std::sqrt(rotor.speed * rotor.speed - 2 * rotor.deceleration() * rotor.limit);
     return {{"residual speed", "rad/s", end.speed, residual, Trend::exact},
             {"plastic work", "J", end.joint.plastic_work, rotor.moment * rotor.limit, Trend::exact},
+            {"unexplained energy", "J", end.unexplained, 0, Trend::exact},
             {"break", "s", end.time, (rotor.speed - residual) / rotor.deceleration(),
              Trend::within_step}};
 }
