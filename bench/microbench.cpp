@@ -4,6 +4,7 @@
 //
 //   scalar  an array of OneAxisJoint, one after the other
 //   batch   OneAxisBatch over arrays
+//   six     an array of CoupledJoint: six axes on one ellipsoid
 //   copy    memcpy that reads and writes as many bytes as the batch's two calls do together: what
 //           the memory allows. memcpy streams past the cache where an ordinary loop first has to
 //           read the lines it is going to write, so the copy is a hard baseline.
@@ -27,8 +28,10 @@
 
 #include "ductile/batch/batch_storage.hpp"
 #include "ductile/batch/one_axis_batch.hpp"
+#include "ductile/joint/coupled_joint.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/surface/ellipsoid.hpp"
 
 using namespace ductile;
 
@@ -132,9 +135,45 @@ void copy(benchmark::State& state) {
     report(state, joints, bytes);
 }
 
+template <class S>
+void six(benchmark::State& state) {
+    using Surface = Ellipsoid<S, 6>;
+    using Joint = CoupledJoint<Surface, Perfect<S>>;
+    using Vector = typename Joint::Vector;
+    const auto joints = std::size_t(state.range(0));
+    const BatchStorage<S> memory = scene<S>(joints, long(state.range(1)));
+    const Vector capacity = Vector::Constant(S(strength));
+    std::vector<Joint> bank(joints, Joint(Surface({.capacity = capacity}),
+                                          Perfect<S>({.strength = S(strength)}),
+                                          TravelLimit<S>({.limit = S(limit)})));
+    std::vector<typename Joint::Rows> rows(joints);
+    std::vector<typename Joint::Step> steps(joints);
+    for (auto _ : state) {
+        for (std::size_t i = 0; i < joints; ++i) {
+            rows[i] = bank[i].prepare({Vector::Zero(), Vector::Constant(memory.velocity[i])}, S(step));
+        }
+        benchmark::ClobberMemory();
+        for (std::size_t i = 0; i < joints; ++i) {
+            const bool flows = memory.velocity[i] != 0;
+            const S against = memory.velocity[i] > 0 ? rows[i][0].lower : rows[i][0].upper;
+            steps[i] = bank[i].commit({Vector::Constant(flows ? against : S(0.1 * strength)),
+                                       Vector::Constant(memory.velocity_after[i]), Vector::Zero()},
+                                      S(step));
+        }
+        benchmark::ClobberMemory();
+    }
+    report(state, joints, 0);
+}
+
 void sizes(benchmark::internal::Benchmark* bench) {
     bench->ArgNames({"joints", "yielding%"});
     for (const long joints : {100, 1000, 10000, 100000, 1000000}) {
+        for (const long yielding : {0, 1, 100}) bench->Args({joints, yielding});
+    }
+}
+void few_sizes(benchmark::internal::Benchmark* bench) {
+    bench->ArgNames({"joints", "yielding%"});
+    for (const long joints : {100, 10000}) {
         for (const long yielding : {0, 1, 100}) bench->Args({joints, yielding});
     }
 }
@@ -147,6 +186,8 @@ BENCHMARK(scalar<float>)->Apply(sizes);
 BENCHMARK(scalar<double>)->Apply(sizes);
 BENCHMARK(batch<float>)->Apply(sizes);
 BENCHMARK(batch<double>)->Apply(sizes);
+BENCHMARK(six<float>)->Apply(few_sizes);
+BENCHMARK(six<double>)->Apply(few_sizes);
 BENCHMARK(copy<float>)->Apply(copy_sizes);
 BENCHMARK(copy<double>)->Apply(copy_sizes);
 
