@@ -43,7 +43,7 @@ constexpr double strength = 40;
 constexpr double limit = 1e30;
 
 template <class S>
-inline constexpr std::size_t batch_bytes_read = 17 * sizeof(S) + 2;
+inline constexpr std::size_t batch_bytes_read = 18 * sizeof(S) + 2;
 template <class S>
 inline constexpr std::size_t batch_bytes_written = 12 * sizeof(S) + 1;
 

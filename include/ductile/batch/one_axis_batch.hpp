@@ -7,17 +7,17 @@
 //   after the solve    batch.commit(dt)    reads reaction, rows and state, writes state and step
 //
 // The loops have no branch, no call and no alias, so g++ and clang++ run them on a whole register
-// of joints at -O3. Results are those of OneAxisJoint, bit for bit where the compiler fuses no
-// products (-ffp-contract=off).
+// of joints at -O3. Results are those of OneAxisJoint to round-off; they are the same operations in
+// another order.
 //
 // Bytes per joint, with s = sizeof(S) and shared parameters; a PerJoint parameter adds s to the
 // reads of each call:
 //
 //   prepare   reads 5 s + 1    writes 4 s        float  21 + 16, double  41 + 32
-//   commit    reads 12 s + 1   writes 8 s + 1    float  49 + 33, double  97 + 65
+//   commit    reads 13 s + 1   writes 8 s + 1    float  53 + 33, double 105 + 65
 //
-// A call is O(n) and bound by memory beyond the cache. In it, registers of 16 bytes are bound by the
-// number of instructions: build for the processor (-march=x86-64-v3 or native) where that counts.
+// A call is O(n). Registers of 16 bytes are bound by the number of instructions, 4 ns per joint and
+// step in float, also beyond the cache: build for the processor (-march=x86-64-v3 or native) where that counts.
 // SSE2 alone cannot compare 64-bit masks, so double needs -march=x86-64-v2 to vectorise.
 #pragma once
 
@@ -83,7 +83,8 @@ void prepare_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& nu
 template <std::floating_point S, class Law>
 void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
                  const Law& law, const S* __restrict force, const S* __restrict velocity,
-                 const S* __restrict position, const S* __restrict upper, const S* __restrict bias,
+                 const S* __restrict position, const S* __restrict lower,
+                 const S* __restrict upper, const S* __restrict bias,
                  const S* __restrict start, S* __restrict offset, S* __restrict travel,
                  S* __restrict plastic_work, S* __restrict other_work, S* __restrict last_velocity,
                  S* __restrict residual_max, Mask<S>* __restrict status, S* __restrict release,
@@ -98,7 +99,7 @@ void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& num
         const RowState<S> old{offset[i],        travel[i],       plastic_work[i], other_work[i],
                               last_velocity[i], residual_max[i], status[n]};
         const Committed<S> now = commit_row<S>(row, step, force[i], velocity[i], position[i],
-                                               upper[i], bias[i], start[i], old);
+                                               lower[i], upper[i], bias[i], start[i], old);
         offset[i] = now.state.offset;
         travel[i] = now.state.travel;
         plastic_work[i] = now.state.plastic_work;
@@ -162,7 +163,7 @@ class OneAxisBatch {
             batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
             batch_detail::commit_rows<Scalar>(
                 from, joints, numbers(dt), law_, reaction.force.data(), reaction.velocity.data(),
-                reaction.position.data(), rows.upper.data(), rows.bias.data(),
+                reaction.position.data(), rows.lower.data(), rows.upper.data(), rows.bias.data(),
                 state.start_velocity.data(), state.plastic_offset.data(),
                 state.plastic_travel.data(), state.plastic_work.data(), state.other_work.data(),
                 state.velocity.data(), state.residual_max.data(), status.data(),

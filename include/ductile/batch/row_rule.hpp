@@ -3,7 +3,7 @@
 // The rule of one rigid-plastic row without a branch: every case is computed and the right one
 // selected, so that a compiler can run it on as many joints at once as a register holds. Same
 // operations in the same order as OneAxisJoint, where the derivation is; with floating-point
-// contraction off (-ffp-contract=off) the results are the same bit for bit.
+// contraction off (-ffp-contract=off) they do not depend on the compiler.
 //
 // A quotient whose case is not selected is taken with the divisor 1, so that no division by zero
 // raises a floating-point exception.
@@ -121,19 +121,17 @@ struct Committed {
 
 template <std::floating_point S>
 inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force,
-                               S velocity, S position, S upper, S bias, S start,
+                               S velocity, S position, S lower, S upper, S bias,
+                               S start,
                                const RowState<S>& old) noexcept {
     const Mask<S> intact = mask<S>((old.status & outcome_bits) != Mask<S>(Outcome::broken));
     const Mask<S> was_flowing = mask<S>((old.status & flowing_bit) != 0);
     const S start_speed = std::abs(start);
     const S tolerated = step.absolute_residual + step.relative_residual * start_speed;
     const Mask<S> kicked = mask<S>(std::abs(start - old.velocity) > tolerated);
-    // the bounds again, from the upper one
     const Mask<S> back = mask<S>(start < 0);
     const S ahead = law.midpoint(old.travel, start_speed, step.dt);
     const S behind = law.value(old.travel);
-    const S share = upper / select(back, ahead, behind);
-    const S lower = -share * select(back, behind, ahead);
     const S near = bound_tolerance<S> * larger(upper, -lower);
     const Mask<S> at_upper = mask<S>(force >= upper - near);
     const Mask<S> at_lower = mask<S>(force <= lower + near);
@@ -147,10 +145,9 @@ inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step,
     const S taken = only(flows, work);
     const S strength = select(mask<S>(moved < 0) ^ back, behind, ahead);
     const S left = law.remaining(old.travel);
-    // at a bound what the row moved, by the share of the strength that the bound allows; where it came
-    // to rest inside, what its work amounts to
-    const S slipped = std::abs(moved) * share;
-    const S wanted = only(flows, select(at_bound, slipped, taken / strength));
+    // what the work amounts to; a force beyond its bound flows no further than the bound
+    const S bounded = select(at_upper, upper, select(at_lower, lower, force));
+    const S wanted = only(flows, std::abs(bounded * moved) / strength);
     const Mask<S> used_up = mask<S>(wanted >= left * used_up_share<S>);
     const S travel = select(flows & used_up, left, wanted);
     const Mask<S> breaks =
