@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The rule of one rigid-plastic row without a branch: every case is computed and the right one
-// selected, so that a compiler can run it on as many joints at once as a register holds. Same
-// operations in the same order as OneAxisJoint, where the derivation is; with floating-point
-// contraction off (-ffp-contract=off) they do not depend on the compiler.
+// selected, so that a compiler can run it on as many joints at once as a register holds. The rule is
+// that of OneAxisJoint, where the derivation is; with floating-point
+// contraction off (-ffp-contract=off) results do not depend on the compiler.
 //
 // A quotient whose case is not selected is taken with the divisor 1, so that no division by zero
 // raises a floating-point exception.
