@@ -23,6 +23,7 @@ class Rig {
   public:
     using Hinge = bullet::PlasticHinge<>;
     using Slider = bullet::PlasticSlider<>;
+    using HardeningHinge = bullet::PlasticHinge<OneAxisJoint<Linear<double>>>;
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
@@ -47,6 +48,7 @@ class Rig {
         meter_.reset();
         for (auto& hinge : hinges_) hinge->remove_from(*world_);
         for (auto& slider : sliders_) slider->remove_from(*world_);
+        if (hardening_) hardening_->remove_from(*world_);
         if (contact_ != nullptr) dispatcher_.releaseManifold(contact_);
         for (auto& body : bodies_) world_->removeRigidBody(body.get());
     }
@@ -71,6 +73,16 @@ class Rig {
                                        : std::make_unique<Hinge>(*a, local(*a, frame), joint));
         hinges_.back()->add_to(*world_);
         return *hinges_.back();
+    }
+    /// To the static world, R = strength + hardening p.
+    auto& hardening_hinge(Body a, const V3& anchor, const V3& axis, double strength,
+                          double hardening) {
+        const btTransform frame = frame_along(anchor, axis);
+        hardening_ = std::make_unique<HardeningHinge>(
+            *a, local(*a, frame),
+            OneAxisJoint(Linear<double>({.strength = strength, .hardening = hardening})));
+        hardening_->add_to(*world_);
+        return *hardening_;
     }
     Slider& slider(Body a, Body b, const V3& axis, Joint joint) {
         const btTransform frame = frame_along(bullet::to_core(a->getCenterOfMassPosition()), axis);
@@ -143,6 +155,7 @@ class Rig {
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Slider>> sliders_;
+    std::unique_ptr<HardeningHinge> hardening_;
     std::unique_ptr<bullet::EnergyMeter> meter_;
     btPersistentManifold* contact_ = nullptr;
     double contact_distance_ = 0;

@@ -65,6 +65,22 @@ TEST_CASE("a spinning rotor stops on its hinge", "[contract]") {
     CHECK(hinge.residual_max() < 1e-3);
 }
 
+TEST_CASE("a hinge that hardens stops both ways after the same travel", "[contract]") {
+    // I = 2 kg m², R = 40 + 30 p: 40 p + 15 p² = 100 J
+    const auto solver = GENERATE(from_range(Rig::solvers()));
+    const double spin = GENERATE(10.0, -10.0);
+    INFO(solver << ", spin " << spin);
+    Rig rig(solver, none);
+    auto rotor = rig.body(1, sphere(2), none, none, {0, 0, spin});
+    auto& hinge = rig.hardening_hinge(rotor, none, {0, 0, 1}, 40, 30);
+    for (int i = 0; i < 2000; ++i) rig.step(1e-3);
+    const double travel = (-40 + std::sqrt(1600 + 60 * 100)) / 30;
+    // the strength at the predicted midpoint: second order in the step
+    CHECK(hinge.plastic_rotation() == Approx(travel).epsilon(1e-4));
+    CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-4));
+    CHECK(std::abs(hinge.rotation()) == Approx(travel).margin(1.5 * 10 * 1e-3 / 2));
+}
+
 TEST_CASE("two coaxial rotors come to a common speed", "[contract]") {
     // I = 2 and 3 kg m², M_p = 12 N m: common 4 rad/s, 60 J, relative turn 5 rad less ω₀ dt/2
     const auto solver = GENERATE(from_range(Rig::solvers()));

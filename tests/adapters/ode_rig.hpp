@@ -20,6 +20,7 @@ class Rig {
   public:
     using Hinge = ode::PlasticHinge<>;
     using Slider = ode::PlasticSlider<>;
+    using HardeningHinge = ode::PlasticHinge<OneAxisJoint<Linear<double>>>;
     using Body = dBodyID;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
@@ -34,6 +35,7 @@ class Rig {
     ~Rig() {
         hinges_.clear();
         sliders_.clear();
+        hardening_.reset();
         dJointGroupDestroy(contacts_);
         dWorldDestroy(world_);
         dCloseODE();
@@ -61,6 +63,14 @@ class Rig {
         hinges_.push_back(std::make_unique<Hinge>(
             world_, a, b, ode::HingeFrame{.anchor = anchor, .axis = axis}, joint));
         return added(*hinges_.back());
+    }
+    /// To the static world, R = strength + hardening p.
+    auto& hardening_hinge(Body a, const V3& anchor, const V3& axis, double strength,
+                          double hardening) {
+        hardening_ = std::make_unique<HardeningHinge>(
+            world_, a, nullptr, ode::HingeFrame{.anchor = anchor, .axis = axis},
+            OneAxisJoint(Linear<double>({.strength = strength, .hardening = hardening})));
+        return added(*hardening_);
     }
     Slider& slider(Body a, Body b, const V3& axis, Joint joint) {
         sliders_.push_back(std::make_unique<Slider>(world_, a, b, axis, joint));
@@ -130,6 +140,7 @@ class Rig {
     ode::EnergyMeter meter_{world_};
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Slider>> sliders_;
+    std::unique_ptr<HardeningHinge> hardening_;
     Body lower_ = nullptr;
     Body upper_ = nullptr;
     double contact_distance_ = 0;

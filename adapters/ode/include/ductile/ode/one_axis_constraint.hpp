@@ -23,10 +23,12 @@
 #include <array>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/joint/pair.hpp"
+#include "ductile/law/back_force.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/world.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -44,6 +46,10 @@ class PlasticConstraint : public SteppedConstraint {
 
 template <class Joint>
 class OneAxisConstraint : public PlasticConstraint {
+    using BackForce = std::remove_cvref_t<decltype(std::declval<const Joint&>().law().back())>;
+    static_assert(std::is_same_v<BackForce, NoBackForce<typename Joint::Scalar>>,
+                  "ODE's motors are equally strong both ways: no law with a back force");
+
   public:
     OneAxisConstraint(const OneAxisConstraint&) = delete;
     OneAxisConstraint& operator=(const OneAxisConstraint&) = delete;
@@ -92,8 +98,10 @@ class OneAxisConstraint : public PlasticConstraint {
         locate();
         position_ = measure(position_);
         rigid_target_ = rigid_target(dt);
-        const RowLimits<double> limits = joint_.prepare({position_, row_velocity()}, dt);
-        set_motor(dReal(limits.bias), dReal(limits.upper));
+        const double velocity = row_velocity();
+        const RowLimits<double> limits = joint_.prepare({position_, velocity}, dt);
+        // FMax is one number: that of the side to which the row moves
+        set_motor(dReal(limits.bias), dReal(velocity < 0 ? limits.upper : -limits.lower));
     }
 
     /// Books the step; after a break disables the joint. Called by World::step.
