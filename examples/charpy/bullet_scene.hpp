@@ -62,7 +62,10 @@ class BulletScene {
 
     double step(double dt) {
         using clock = std::chrono::steady_clock;
-        for (btHingeConstraint* motor : motors_) set_motor(*motor, dt);
+        // btHingeConstraint takes an impulse, so its strength has to follow the step
+        for (const Motor& motor : motors_) {
+            motor.joint->enableAngularMotor(true, 0, scalar(motor.moment * dt));
+        }
         for (btTypedConstraint* joint : breakable_) {
             joint->setBreakingImpulseThreshold(scalar(s_.notched_moment() * dt));
         }
@@ -154,6 +157,12 @@ class BulletScene {
         double side; ///< of the part's face
         btPersistentManifold* manifold;
         bool made = false;
+    };
+
+    /// An engine's hinge with its motor as a plastic hinge.
+    struct Motor {
+        btHingeConstraint* joint;
+        double moment; ///< [N m]
     };
 
     static btScalar scalar(double value) { return btScalar(value); }
@@ -385,8 +394,7 @@ class BulletScene {
             }
             case Method::hinge_motor: {
                 auto joint = std::make_unique<btHingeConstraint>(a, b, in_a, in_b, true);
-                motors_.push_back(joint.get());
-                motor_moment_.push_back(moment);
+                motors_.push_back({joint.get(), moment});
                 engine_joints_.push_back(&add_constraint(std::move(joint)));
                 return;
             }
@@ -396,13 +404,6 @@ class BulletScene {
     /// Six axes locked, but for `free` (-1: none).
     static void lock(btGeneric6DofConstraint& joint, int free) {
         for (int axis = 0; axis < 6; ++axis) joint.setLimit(axis, axis == free ? 1 : 0, 0);
-    }
-
-    /// btHingeConstraint takes an impulse, so its strength has to follow the step.
-    void set_motor(btHingeConstraint& motor, double dt) {
-        const auto index = std::size_t(std::find(motors_.begin(), motors_.end(), &motor) -
-                                       motors_.begin());
-        motor.enableAngularMotor(true, 0, scalar(motor_moment_[index] * dt));
     }
 
     [[nodiscard]] btVector3 nose_tip() const { return hammer_->getCenterOfMassTransform() * nose_local_; }
@@ -437,8 +438,7 @@ class BulletScene {
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
     std::vector<std::unique_ptr<Hinge>> plastic_;
     std::unique_ptr<ductile::bullet::EnergyMeter> meter_;
-    std::vector<btHingeConstraint*> motors_;
-    std::vector<double> motor_moment_;
+    std::vector<Motor> motors_;
     std::vector<btTypedConstraint*> breakable_;
     std::vector<btTypedConstraint*> engine_joints_;
     btRigidBody* hammer_ = nullptr;

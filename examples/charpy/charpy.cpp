@@ -47,10 +47,6 @@ struct BadInput : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-bool has_method(const std::string& engine, const std::string& method) {
-    return engine == "bullet" || (method != "zero-limits" && method != "spring2");
-}
-
 std::vector<Run> plan(const Options& o) {
     const std::vector<std::string> engines =
         o.engine == "all" ? std::vector<std::string>{"bullet", "ode"} : std::vector{o.engine};
@@ -66,13 +62,8 @@ std::vector<Run> plan(const Options& o) {
         for (const auto& [method, view] : charpy::method_names) {
             const std::string name(view);
             if (o.method != "all" && o.method != name) continue;
-            if (!has_method(engine, name)) {
-                if (o.method == name && o.engine == engine) {
-                    throw BadInput(fmt::format(
-                        "--method = {}: must be rigid, spring, hinge-motor or plastic-hinge with "
-                        "--engine ode, whose own joints neither break nor have a second kind of spring",
-                        name));
-                }
+            if (!bullet && !charpy::ode_has(method)) {
+                if (o.method == name && o.engine == engine) charpy::require_in_ode(method);
                 continue;
             }
             runs.push_back({engine, bullet ? o.precision : "double", solver, name});

@@ -39,12 +39,7 @@ class OdeScene {
             throw std::invalid_argument("--solver = " + solver +
                                         ": must be direct or quick with --engine ode");
         }
-        if (method == Method::zero_limits || method == Method::spring2) {
-            throw std::invalid_argument(
-                "--method = " + std::string(to_string(method)) +
-                ": must be rigid, spring, hinge-motor or plastic-hinge with --engine ode, whose own "
-                "joints neither break nor have a second kind of spring");
-        }
+        require_in_ode(method);
         stepper_ = std::make_unique<ductile::ode::World>(
             world_, solver == "direct" ? ductile::ode::Solver::direct : ductile::ode::Solver::quick);
         dRandSetSeed(0); // the iterative solver shuffles its rows

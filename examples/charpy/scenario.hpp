@@ -10,9 +10,10 @@
 
 #include <array>
 #include <limits>
-#include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "ductile/ductile.hpp"
 
@@ -34,6 +35,19 @@ inline constexpr std::array<std::pair<Method, std::string_view>, 6> method_names
         if (value == method) return name;
     }
     return "unknown";
+}
+
+/// ODE's own joints neither break nor have a second kind of spring.
+[[nodiscard]] constexpr bool ode_has(Method method) {
+    return method != Method::zero_limits && method != Method::spring2;
+}
+/// @throws std::invalid_argument where ODE has no such method.
+inline void require_in_ode(Method method) {
+    if (ode_has(method)) return;
+    throw std::invalid_argument(
+        "--method = " + std::string(to_string(method)) +
+        ": must be rigid, spring, hinge-motor or plastic-hinge with --engine ode, whose own joints "
+        "neither break nor have a second kind of spring");
 }
 
 /// All lengths [m], masses [kg], angles [rad], stresses [Pa].
