@@ -16,21 +16,25 @@
 //   prepare   reads 5 s + 1    writes 4 s        float  21 + 16, double  41 + 32
 //   commit    reads 13 s + 1   writes 8 s + 1    float  53 + 33, double 105 + 65
 //
-// A call is O(n). Registers of 16 bytes are bound by the number of instructions, 4 ns per joint and
-// step in float, also beyond the cache: build for the processor (-march=x86-64-v3 or native) where that counts.
-// SSE2 alone cannot compare 64-bit masks, so double needs -march=x86-64-v2 to vectorise.
+// A call is O(n), about 25 instructions per joint and step in float on registers of 32 bytes, which
+// are used wherever the processor has them (each_joint.hpp). In the cache it is bound by their number,
+// with registers of 16 bytes beyond it too.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "ductile/batch/arrays.hpp"
 #include "ductile/batch/batch_law.hpp"
+#include "ductile/batch/each_joint.hpp"
 #include "ductile/batch/row_rule.hpp"
 #include "ductile/batch/status.hpp"
+#include "ductile/fracture/event.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -38,10 +42,8 @@ namespace ductile {
 
 namespace batch_detail {
 
-// Two things let the loops vectorise well. `__restrict`, which all compilers know on parameters:
-// without it every call would check 18 arrays against each other; check_arrays has refused
-// overlaps. And the status bytes are widened to masks block by block, in the first cache level:
-// bytes and scalars in one loop would make g++ unroll it to 16 joints and run out of registers.
+// The status bytes are widened to masks block by block, in the first cache level: bytes and scalars
+// in one loop would make g++ unroll it to 16 joints and run out of registers.
 
 inline constexpr std::size_t block = 256;
 
@@ -59,47 +61,46 @@ void narrow(const MaskBlock<S>& wide, std::size_t joints, BatchStatus* __restric
 }
 
 template <std::floating_point S, class Law>
-void prepare_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
-                  const Law& law, const S* __restrict position, const S* __restrict velocity,
-                  const S* __restrict offset, const S* __restrict travel,
-                  const Mask<S>* __restrict status, S* __restrict start, S* __restrict lower,
-                  S* __restrict upper, S* __restrict bias) noexcept {
-    const StepNumbers<S> step = numbers;
-    const auto strength = law.strength();
-    const auto hardening = law.hardening();
-    const auto limit = law.limit();
-    for (std::size_t n = 0; n < joints; ++n) {
-        const std::size_t i = from + n;
-        const RowLaw<S> row{strength[i], hardening[i], limit[i]};
-        const Prepared<S> now = prepare_row<S>(row, step, position[i], velocity[i], offset[i],
-                                               travel[i], start[i], status[n]);
+[[gnu::always_inline]] constexpr RowLaw<S> row_law(const Law& law, std::size_t joint) noexcept {
+    return {law.strength()[joint], law.hardening()[joint], law.limit()[joint]};
+}
+
+template <std::floating_point S, class Law>
+struct PrepareRow {
+    StepNumbers<S> step;
+    Law law;
+
+    /// Joint i, its status in entry n of the block.
+    [[gnu::always_inline]] void operator()(std::size_t i, std::size_t n, const S* position,
+                                           const S* velocity, const S* offset, const S* travel,
+                                           const Mask<S>* status, S* start, S* lower, S* upper,
+                                           S* bias) const noexcept {
+        const Prepared<S> now = prepare_row<S>(row_law<S>(law, i), step, position[i], velocity[i],
+                                               offset[i], travel[i], start[i], status[n]);
         lower[i] = now.lower;
         upper[i] = now.upper;
         bias[i] = now.bias;
         start[i] = now.start_velocity;
     }
-}
+};
 
 template <std::floating_point S, class Law>
-void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& numbers,
-                 const Law& law, const S* __restrict force, const S* __restrict velocity,
-                 const S* __restrict position, const S* __restrict lower,
-                 const S* __restrict upper, const S* __restrict bias,
-                 const S* __restrict start, S* __restrict offset, S* __restrict travel,
-                 S* __restrict plastic_work, S* __restrict other_work, S* __restrict last_velocity,
-                 S* __restrict residual_max, Mask<S>* __restrict status, S* __restrict release,
-                 S* __restrict residual) noexcept {
-    const StepNumbers<S> step = numbers;
-    const auto strength = law.strength();
-    const auto hardening = law.hardening();
-    const auto limit = law.limit();
-    for (std::size_t n = 0; n < joints; ++n) {
-        const std::size_t i = from + n;
-        const RowLaw<S> row{strength[i], hardening[i], limit[i]};
+struct CommitRow {
+    StepNumbers<S> step;
+    Law law;
+
+    /// Joint i, its status in entry n of the block.
+    [[gnu::always_inline]] void operator()(std::size_t i, std::size_t n, const S* force,
+                                           const S* velocity, const S* position, const S* lower,
+                                           const S* upper, const S* bias, const S* start, S* offset,
+                                           S* travel, S* plastic_work, S* other_work,
+                                           S* last_velocity, S* residual_max, Mask<S>* status,
+                                           S* release, S* residual) const noexcept {
         const RowState<S> old{offset[i],        travel[i],       plastic_work[i], other_work[i],
                               last_velocity[i], residual_max[i], status[n]};
-        const Committed<S> now = commit_row<S>(row, step, force[i], velocity[i], position[i],
-                                               lower[i], upper[i], bias[i], start[i], old);
+        const Committed<S> now =
+            commit_row<S>(row_law<S>(law, i), step, force[i], velocity[i], position[i], lower[i],
+                          upper[i], bias[i], start[i], old);
         offset[i] = now.state.offset;
         travel[i] = now.state.travel;
         plastic_work[i] = now.state.plastic_work;
@@ -110,7 +111,7 @@ void commit_rows(std::size_t from, std::size_t joints, const StepNumbers<S>& num
         release[i] = now.release;
         residual[i] = now.residual;
     }
-}
+};
 
 } // namespace batch_detail
 
@@ -142,27 +143,29 @@ class OneAxisBatch {
     /// Rules all rows for a step of `dt` > 0 [s]. Call once per step, before commit.
     void prepare(Scalar dt) noexcept {
         const auto& [motion, rows, reaction, state, step] = arrays_;
+        const batch_detail::PrepareRow<Scalar, Law> rule{numbers(dt), law_};
         for (std::size_t from = 0; from < size(); from += batch_detail::block) {
             const std::size_t joints = std::min(batch_detail::block, size() - from);
             batch_detail::MaskBlock<Scalar> status;
             batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
-            batch_detail::prepare_rows<Scalar>(
-                from, joints, numbers(dt), law_, motion.position.data(), motion.velocity.data(),
-                state.plastic_offset.data(), state.plastic_travel.data(), status.data(),
-                state.start_velocity.data(), rows.lower.data(), rows.upper.data(),
-                rows.bias.data());
+            batch_detail::each_joint(rule, from, joints, motion.position.data(),
+                                     motion.velocity.data(), state.plastic_offset.data(),
+                                     state.plastic_travel.data(), status.data(),
+                                     state.start_velocity.data(), rows.lower.data(),
+                                     rows.upper.data(), rows.bias.data());
         }
     }
 
     /// Books the step that `prepare` opened; same `dt` [s], rows as prepare wrote them.
     void commit(Scalar dt) noexcept {
         const auto& [motion, rows, reaction, state, step] = arrays_;
+        const batch_detail::CommitRow<Scalar, Law> rule{numbers(dt), law_};
         for (std::size_t from = 0; from < size(); from += batch_detail::block) {
             const std::size_t joints = std::min(batch_detail::block, size() - from);
             batch_detail::MaskBlock<Scalar> status;
             batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
-            batch_detail::commit_rows<Scalar>(
-                from, joints, numbers(dt), law_, reaction.force.data(), reaction.velocity.data(),
+            batch_detail::each_joint(
+                rule, from, joints, reaction.force.data(), reaction.velocity.data(),
                 reaction.position.data(), rows.lower.data(), rows.upper.data(), rows.bias.data(),
                 state.start_velocity.data(), state.plastic_offset.data(),
                 state.plastic_travel.data(), state.plastic_work.data(), state.other_work.data(),
@@ -170,9 +173,11 @@ class OneAxisBatch {
                 step.release.data(), step.residual.data());
             batch_detail::narrow<Scalar>(status, joints, state.status.data() + from);
         }
+        time_ += dt;
     }
 
-    /// State of joint i, as OneAxisJoint keeps it. O(1).
+    /// State of joint i, as OneAxisJoint keeps it, but for the time and the force, which a batch
+    /// does not keep: zero. O(1).
     [[nodiscard]] State state(std::size_t i) const noexcept {
         const auto& s = arrays_.state;
         State one;
@@ -194,6 +199,28 @@ class OneAxisBatch {
         return outcome_of(arrays_.state.status[i]);
     }
 
+    /// Sum of dt over all steps of this view [s].
+    [[nodiscard]] double time() const noexcept { return time_; }
+    void set_time(double time) noexcept { time_ = time; }
+
+    /// True in the step in which joint i began to yield.
+    [[nodiscard]] bool first_yield(std::size_t i) const noexcept {
+        return began_to_yield(arrays_.state.status[i]);
+    }
+    /// How joint i broke, where it did in the step last committed. Its time is the end of that
+    /// step.
+    [[nodiscard]] std::optional<FractureEvent<Scalar>> fracture(std::size_t i) const noexcept {
+        const auto& s = arrays_.state;
+        if (!has_just_broken(s.status[i])) return std::nullopt;
+        const Scalar strength = law_.strength()[i] + law_.hardening()[i] * s.plastic_travel[i];
+        const Scalar moved = s.start_velocity[i] + s.velocity[i];
+        return FractureEvent<Scalar>{.criterion = CriterionKind::plastic_travel,
+                                     .time = time_,
+                                     .plastic_travel = s.plastic_travel[i],
+                                     .absorbed_energy = s.plastic_work[i],
+                                     .force = std::copysign(strength, -moved)};
+    }
+
     void restore(std::size_t i, const State& one) noexcept {
         const auto& s = arrays_.state;
         s.plastic_offset[i] = one.plastic_offset;
@@ -209,7 +236,8 @@ class OneAxisBatch {
   private:
     batch_detail::StepNumbers<Scalar> numbers(Scalar dt) const noexcept {
         return {.dt = dt,
-                .drift_time = std::max(parameters_.drift_time, 5 * dt),
+                .half_dt = dt / 2,
+                .drift_rate = 1 / std::max(parameters_.drift_time, 5 * dt),
                 .absolute_residual = parameters_.absolute_residual,
                 .relative_residual = parameters_.relative_residual};
     }
@@ -217,6 +245,7 @@ class OneAxisBatch {
     Law law_;
     BatchArrays<Scalar> arrays_;
     OneAxisParameters<Scalar> parameters_;
+    double time_ = 0; ///< [s]
 };
 
 } // namespace ductile

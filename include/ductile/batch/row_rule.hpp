@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The rule of one rigid-plastic row without a branch: every case is computed and the right one
-// selected, so that a compiler can run it on as many joints at once as a register holds. The rule is
-// that of OneAxisJoint, where the derivation is; with floating-point
-// contraction off (-ffp-contract=off) results do not depend on the compiler.
+// selected, so that a compiler can run it on as many joints at once as a register holds. The rule
+// is that of OneAxisJoint, where the derivation is; with floating-point contraction off
+// (-ffp-contract=off) results do not depend on the compiler.
 //
 // A quotient whose case is not selected is taken with the divisor 1, so that no division by zero
 // raises a floating-point exception.
@@ -47,11 +47,22 @@ constexpr S larger(S a, S b) noexcept {
     return select(mask<S>(a < b), b, a);
 }
 
+template <std::floating_point S>
+constexpr Mask<S> broken(Mask<S> status) noexcept {
+    return mask<S>((status & outcome_bits) == Mask<S>(Outcome::broken));
+}
+/// The bit above the outcome's, spread.
+template <std::floating_point S>
+constexpr Mask<S> flowing(Mask<S> status) noexcept {
+    return Mask<S>(0) - (status / Mask<S>(flowing_bit) & Mask<S>(1));
+}
+
 /// Numbers that all joints share in a step.
 template <std::floating_point S>
 struct StepNumbers {
     S dt;
-    S drift_time; ///< not shorter than five steps [s]
+    S half_dt;
+    S drift_rate; ///< 1/drift_time, which is not shorter than five steps [1/s]
     S absolute_residual;
     S relative_residual;
 };
@@ -65,8 +76,8 @@ struct RowLaw {
 
     constexpr S value(S travel) const noexcept { return strength + hardening * travel; }
     /// R half a step ahead.
-    constexpr S midpoint(S travel, S speed, S dt) const noexcept {
-        return value(travel + speed * dt / 2);
+    constexpr S midpoint(S travel, S speed, S half_dt) const noexcept {
+        return value(travel + speed * half_dt);
     }
     constexpr S remaining(S travel) const noexcept {
         return only(mask<S>(travel < limit), limit - travel);
@@ -86,22 +97,23 @@ struct Prepared {
 };
 
 template <std::floating_point S>
-inline Prepared<S> prepare_row(const RowLaw<S>& law, const StepNumbers<S>& step, S position,
-                               S velocity, S offset, S travel, S start, Mask<S> status) noexcept {
-    const Mask<S> intact = mask<S>((status & outcome_bits) != Mask<S>(Outcome::broken));
-    const Mask<S> flowing = mask<S>((status & flowing_bit) != 0);
+[[gnu::always_inline]] inline Prepared<S> prepare_row(const RowLaw<S>& law,
+                                                      const StepNumbers<S>& step, S position,
+                                                      S velocity, S offset, S travel, S start,
+                                                      Mask<S> status) noexcept {
+    const Mask<S> intact = ~broken<S>(status);
     const S speed = std::abs(velocity);
     const S lost = larger(std::abs(start) - speed, S(0));
-    const S slowed = only(flowing, larger(speed - lost, S(0)));
-    const S ahead = (speed + slowed) / 2 * step.dt;
+    const S slowed = only(flowing<S>(status), larger(speed - lost, S(0)));
+    const S ahead = (speed + slowed) * step.half_dt;
     const S left = law.remaining(travel);
     const Mask<S> ends = mask<S>(left < ahead);
     const S share = select(ends, left, S(1)) / select(ends, ahead, S(1));
     // half a step ahead on the side of the flow, as it stands on the other
-    const S along = law.midpoint(travel, speed, step.dt) * share;
+    const S along = law.midpoint(travel, speed, step.half_dt) * share;
     const S against = law.value(travel) * share;
     const Mask<S> back = mask<S>(velocity < 0);
-    const S bias = (offset - position) / step.drift_time;
+    const S bias = (offset - position) * step.drift_rate;
     return {only(intact, -select(back, against, along)), only(intact, select(back, along, against)),
             only(intact, bias), select(intact, velocity, start)};
 }
@@ -120,69 +132,72 @@ struct Committed {
 };
 
 template <std::floating_point S>
-inline Committed<S> commit_row(const RowLaw<S>& law, const StepNumbers<S>& step, S force,
-                               S velocity, S position, S lower, S upper, S bias,
-                               S start,
-                               const RowState<S>& old) noexcept {
-    const Mask<S> intact = mask<S>((old.status & outcome_bits) != Mask<S>(Outcome::broken));
-    const Mask<S> was_flowing = mask<S>((old.status & flowing_bit) != 0);
+[[gnu::always_inline]] inline Committed<S> commit_row(const RowLaw<S>& law,
+                                                      const StepNumbers<S>& step, S force,
+                                                      S velocity, S position, S lower, S upper,
+                                                      S bias, S start,
+                                                      const RowState<S>& old) noexcept {
+    const Mask<S> intact = ~broken<S>(old.status);
     const S start_speed = std::abs(start);
     const S tolerated = step.absolute_residual + step.relative_residual * start_speed;
     const Mask<S> kicked = mask<S>(std::abs(start - old.velocity) > tolerated);
-    const Mask<S> back = mask<S>(start < 0);
-    const S ahead = law.midpoint(old.travel, start_speed, step.dt);
+    const S ahead = law.midpoint(old.travel, start_speed, step.half_dt);
     const S behind = law.value(old.travel);
     const S near = bound_tolerance<S> * larger(upper, -lower);
     const Mask<S> at_upper = mask<S>(force >= upper - near);
     const Mask<S> at_lower = mask<S>(force <= lower + near);
     const Mask<S> at_bound = at_upper | at_lower;
 
-    const S moved = (start + velocity) / 2 * step.dt;
-    const S work = -force * step.dt * (start + velocity) / 2;
-    const Mask<S> slips = (at_lower & mask<S>(moved > 0)) | (at_upper & mask<S>(moved < 0));
-    const Mask<S> stops = ~at_bound & (was_flowing | kicked) & mask<S>(work > 0);
-    const Mask<S> flows = intact & (slips | stops);
-    const S taken = only(flows, work);
-    const S strength = select(mask<S>(moved < 0) ^ back, behind, ahead);
+    const S moved = (start + velocity) * step.half_dt;
+    const S work = -(force * moved);
+    // a row at its bound flows where it moves the way the bound resists, and so does one brought to
+    // rest: both take work
+    const Mask<S> settles = at_bound | flowing<S>(old.status) | kicked;
+    const Mask<S> flows = intact & settles & mask<S>(work > 0);
+    const S strength =
+        select(mask<S>(moved * start < 0), behind, ahead); // turned round: as it stood
     const S left = law.remaining(old.travel);
     // what the work amounts to; a force beyond its bound flows no further than the bound
     const S bounded = select(at_upper, upper, select(at_lower, lower, force));
     const S wanted = only(flows, std::abs(bounded * moved) / strength);
     const Mask<S> used_up = mask<S>(wanted >= left * used_up_share<S>);
     const S travel = select(flows & used_up, left, wanted);
-    const Mask<S> breaks =
-        flows & (used_up | mask<S>(old.travel + travel >= law.limit * used_up_share<S>));
-    const S plastic = (law.value(old.travel) + law.hardening * travel / 2) * travel;
-    const S rest = taken - plastic;
+    const Mask<S> breaks = flows & mask<S>(old.travel + travel >= law.limit * used_up_share<S>);
+    const S plastic = (behind + law.hardening / 2 * travel) * travel;
+    const S rest = work - plastic; // without flow no travel, and all work is other work
     const S release = only(breaks, larger(rest, S(0)));
-    const S other = select(flows, rest - release, work);
+    const S other = rest - release;
 
     const S excess = velocity - bias;
-    const S against = larger(select(at_upper, excess, -excess), S(0));
-    const S residual = only(intact, select(at_bound, against, std::abs(excess)));
+    const S too_fast = only(at_upper | ~at_lower, excess); // at the lower bound it may be
+    const S too_slow = only(~at_upper, -excess);
+    const S residual = only(intact, larger(too_fast, too_slow));
     const S speed = larger(start_speed, std::abs(velocity));
     const Mask<S> unreliable =
         mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
-    const Mask<S> yields =
-        mask<S>(plastic > 0) & (at_bound | mask<S>(start_speed > step.absolute_residual));
+    const Mask<S> yields = flows & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
-    constexpr auto code = [](Outcome outcome) { return Mask<S>(outcome); };
-    const Mask<S> whole =
-        (unreliable & code(Outcome::unreliable)) | (~unreliable & yields & code(Outcome::yielding));
-    const Mask<S> outcome = (breaks & code(Outcome::broken)) | (~breaks & whole);
-    const Mask<S> status = outcome | (at_bound & flowing_bit);
+    // elastic 0, yielding 1, broken 2, unreliable 3
+    const Mask<S> outcome =
+        ((unreliable | yields) & ~breaks & Mask<S>(1)) | ((unreliable | breaks) & Mask<S>(2));
+    const Mask<S> begins = mask<S>(plastic > 0) & mask<S>(!(old.plastic_work > 0));
+    const Mask<S> status =
+        outcome | (at_bound & flowing_bit) | (begins & first_yield_bit) | (breaks & fracture_bit);
 
-    return {.state = {.offset = select(intact & (at_bound | stops), position, old.offset),
+    return {.state = {.offset = select(intact & (at_bound | flows), position, old.offset),
                       .travel = old.travel + travel,
                       .plastic_work = old.plastic_work + plastic,
                       .other_work = old.other_work + only(intact, other),
                       .velocity = select(intact, velocity, old.velocity),
                       .residual_max = larger(old.residual_max, residual),
-                      .status = (intact & status) | (~intact & old.status)},
+                      .status = (intact & status) |
+                                (~intact & old.status & ~Mask<S>(first_yield_bit | fracture_bit))},
             .release = release,
             .residual = residual};
 }
 
-static_assert(unsigned(Outcome::elastic) == 0); // the code left where no mask is set
+// as commit_row puts outcomes together bit by bit
+static_assert(unsigned(Outcome::elastic) == 0 && unsigned(Outcome::yielding) == 1 &&
+              unsigned(Outcome::broken) == 2 && unsigned(Outcome::unreliable) == 3);
 
 } // namespace ductile::batch_detail

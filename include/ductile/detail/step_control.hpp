@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <concepts>
 #include <limits>
+#include <string_view>
 
 #include "ductile/vocabulary/check.hpp"
 
@@ -67,12 +68,8 @@ class StepControl {
         }
         check::positive_or_infinite("StepControl.plastic_rotation", p_.plastic_rotation, "rad");
         check::positive_or_infinite("StepControl.plastic_elongation", p_.plastic_elongation, "m");
-        if (p_.closing_fraction != S(1)) {
-            check::between("StepControl.closing_fraction", p_.closing_fraction, S(0), S(1), "");
-        }
-        if (p_.gap_fraction != S(1)) {
-            check::between("StepControl.gap_fraction", p_.gap_fraction, S(0), S(1), "");
-        }
+        check_share("StepControl.closing_fraction", p_.closing_fraction);
+        check_share("StepControl.gap_fraction", p_.gap_fraction);
         if (!(p_.steps_per_period >= 2)) {
             check::fail("StepControl.steps_per_period", p_.steps_per_period, "", ">= 2");
         }
@@ -99,6 +96,10 @@ class StepControl {
     }
 
   private:
+    static void check_share(std::string_view field, S share) {
+        if (!(share > 0 && share <= 1)) check::fail(field, share, "", "in (0, 1]");
+    }
+
     /// Longest step over which something that moves at `rate` moves no more than `amount` [s].
     static S limit(S amount, S rate) noexcept {
         return rate > 0 ? amount / rate : std::numeric_limits<S>::infinity();

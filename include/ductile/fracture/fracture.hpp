@@ -34,13 +34,19 @@ enum class CriterionKind : unsigned char {
     brittle_force,
     low_cycle_fatigue,
     softening_damage,
+    exhausted_strength, ///< no criterion: the law itself softened to nothing
     count
 };
 
 [[nodiscard]] constexpr std::string_view to_string(CriterionKind kind) noexcept {
     constexpr std::array<std::string_view, std::size_t(CriterionKind::count)> names{
-        "none",          "plastic travel",    "absorbed energy",
-        "brittle force", "low-cycle fatigue", "softening damage"};
+        "none",
+        "plastic travel",
+        "absorbed energy",
+        "brittle force",
+        "low-cycle fatigue",
+        "softening damage",
+        "exhausted strength"};
     return kind < CriterionKind::count ? names[std::size_t(kind)] : "unknown";
 }
 

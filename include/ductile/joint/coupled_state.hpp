@@ -36,6 +36,8 @@ struct CoupledReaction {
 template <std::floating_point S, int N>
 struct CoupledStep {
     Outcome outcome = Outcome::elastic;
+    bool first_yield = false; ///< the joint began to yield in this step
+    bool fracture = false;    ///< it broke in this step: fracture() of the joint reports how
     S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
     S elastic = 0;      ///< change of what is stored [J]
     S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
@@ -49,7 +51,8 @@ struct CoupledStep {
 template <std::floating_point S, int N, class CriterionState>
 struct CoupledState {
     Eigen::Matrix<S, N, 1> plastic_offset = Eigen::Matrix<S, N, 1>::Zero(); ///< q_p [m | rad]
-    Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero(); ///< of the last step [N | N m]
+    /// of the last step; once broken, just before the break [N | N m]
+    Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero();
     Eigen::Matrix<S, N, 1> start_velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u of the last step
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero();       ///< u' of the last step
     S plastic_travel = 0; ///< p, equivalent, never decreases [m | rad of the law]
@@ -58,7 +61,9 @@ struct CoupledState {
     S other_work = 0;     ///< [J]
     S lost = 0;           ///< [J]
     S residual_max = 0;   ///< [m/s | rad/s]
+    double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     CriterionState criterion{};
+    int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact
     bool flowing = false; ///< a row ended the last step at its bound
     bool broken = false;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A spring as a row: the force -k (q_e + θ u' dt), with θ chosen so that the row is as accurate as the
-// step allows and never unstable.
+// A spring as a row: the force -k (q_e + θ u' dt), with θ chosen so that the row is as accurate as
+// the step allows and never unstable.
 //
 // Symbols
 //   k    stiffness                          [N/m | N m/rad]
@@ -11,14 +11,14 @@
 //
 //   λ = -k dt (q_e + θ dt u')   <=>   u' + C λ = b,   C = 1/(θ k dt²),  b = -q_e/(θ dt)
 //
-// θ = 0 is the symplectic force, which keeps energy and is second order in the peak, stable for a < 4;
-// the row then has a given force, lower = upper. θ = 1 is the implicit one, first order, damped, and
-// stable for every a. For the free oscillator the characteristic equation
+// θ = 0 is the symplectic force, which keeps energy and is second order in the peak, stable for a <
+// 4; the row then has a given force, lower = upper. θ = 1 is the implicit one, first order, damped,
+// and stable for every a. For the free oscillator the characteristic equation
 //   z² - z (1 + 1/(1+θa) - a/(1+θa)) + 1/(1+θa) = 0
 // has |z| <= 1 where 4 + (2θ - 1) a >= 0. The choice
 //   θ(a) = 0 for a <= 1/4 (at least 12 steps per period),  1 for a >= 4,  linear in between
-// satisfies it and is continuous, so that a change of step or mass makes no jump. Limit cases: a → 0
-// keeps energy; a → ∞ tends to the rigid row that returns to q_e = 0 in one step.
+// satisfies it and is continuous, so that a change of step or mass makes no jump. Limit cases: a →
+// 0 keeps energy; a → ∞ tends to the rigid row that returns to q_e = 0 in one step.
 #pragma once
 
 #include <algorithm>
@@ -27,6 +27,7 @@
 
 #include "ductile/law/cyclic.hpp"
 #include "ductile/law/root.hpp"
+#include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
 
@@ -39,9 +40,24 @@ template <std::floating_point S>
     return std::clamp((a - resolved) / (stiff - resolved), S(0), S(1));
 }
 
+/// The row of a spring strained by `elastic` [m | rad] whose force stays within [lower, upper]
+/// [N | N m]; `implicit`: θ.
+template <std::floating_point S>
+[[nodiscard]] constexpr RowLimits<S> spring_row(S stiffness, S elastic, S implicit, S lower,
+                                                S upper, S dt) noexcept {
+    if (implicit > 0) {
+        return {.lower = lower,
+                .upper = upper,
+                .bias = -elastic / (implicit * dt),
+                .compliance = 1 / (implicit * stiffness * dt * dt)};
+    }
+    const S given = std::clamp(-stiffness * elastic, lower, upper);
+    return {.lower = given, .upper = given};
+}
+
 /// Flow that brings a spring's force back to the law's, k (trial - slip) = fade × resistance(slip),
-/// signed; zero inside the elastic range [m | rad]. `trial` is q_e as if nothing had flowed, `fade` what
-/// the law's strength is multiplied by. A few Newton steps; one where the law is linear.
+/// signed; zero inside the elastic range [m | rad]. `trial` is q_e as if nothing had flowed, `fade`
+/// what the law's strength is multiplied by. A few Newton steps; one where the law is linear.
 template <CyclicLaw Law>
 [[nodiscard]] typename Law::Scalar spring_slip(const Law& law, const typename Law::State& state,
                                                typename Law::Scalar stiffness,

@@ -48,33 +48,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <limits>
+#include <optional>
 #include <utility>
 
+#include "ductile/fracture/event.hpp"
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/account.hpp"
 #include "ductile/joint/elastic_row.hpp"
 #include "ductile/joint/one_axis_state.hpp"
 #include "ductile/law/cyclic.hpp"
 #include "ductile/law/hardening.hpp"
 #include "ductile/law/law.hpp"
 #include "ductile/law/perfect.hpp"
-#include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
-
-/// A law as the joint uses it: a strength that follows the accumulated travel becomes isotropic
-/// hardening, a law with a memory of its own stays as it is.
-template <class Law>
-struct CyclicForm {
-    using type = Law;
-};
-template <StrengthLaw Law>
-struct CyclicForm<Law> {
-    using type = IsotropicHardening<Law>;
-};
 
 /// Not thread-safe: one joint belongs to one thread at a time. After construction nothing allocates
 /// or throws, and both calls are O(1).
@@ -90,12 +80,7 @@ class OneAxisJoint {
     /// @throws std::invalid_argument where a parameter is out of range.
     explicit OneAxisJoint(Law law, Criterion criterion = Criterion(), Parameters parameters = {})
         : law_(Cyclic(std::move(law))), criterion_(std::move(criterion)), parameters_(parameters) {
-        check::positive_or_infinite("OneAxisJoint.stiffness", parameters.stiffness, "N/m or N m/rad");
-        check::positive("OneAxisJoint.drift_time", parameters.drift_time, "s");
-        check::positive("OneAxisJoint.absolute_residual", parameters.absolute_residual,
-                        "m/s or rad/s");
-        check::between("OneAxisJoint.relative_residual", parameters.relative_residual, Scalar(0),
-                       Scalar(1), "", true);
+        parameters_.validate();
     }
 
     [[nodiscard]] const Cyclic& law() const noexcept { return law_; }
@@ -103,6 +88,8 @@ class OneAxisJoint {
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
+    /// The velocity that the step left, seen along the axis as it is now: not a kick [m/s | rad/s].
+    void carry(Scalar velocity) noexcept { state_.velocity = velocity; }
 
     /// Force at which the row would flow now towards `direction` = ±1 [N | N m].
     [[nodiscard]] Scalar strength(Scalar direction = 1) const noexcept {
@@ -115,30 +102,36 @@ class OneAxisJoint {
     }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
-        return criterion_.governing(state_.criterion);
+        return state_.broken && !criterion_.broken(state_.criterion)
+                   ? CriterionKind::exhausted_strength
+                   : criterion_.governing(state_.criterion);
+    }
+    /// How the joint broke; nothing while it is intact.
+    [[nodiscard]] std::optional<FractureEvent<Scalar>> fracture() const noexcept {
+        if (!state_.broken) return std::nullopt;
+        return FractureEvent<Scalar>{.criterion = governing(),
+                                     .time = state_.time,
+                                     .plastic_travel = state_.plastic_travel,
+                                     .absorbed_energy = state_.plastic_work,
+                                     .released_energy = state_.lost,
+                                     .force = state_.force};
     }
 
-    /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`. A broken joint asks for no
-    /// force at all.
+    /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) return {.lower = 0, .upper = 0};
         bound(dt);
-        row_ = {.lower = lower_, .upper = upper_};
-        const Scalar k = parameters_.stiffness;
+        RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
         if (rigid()) {
-            row_.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
-            return row_;
-        }
-        implicit_ = implicit_share(k, motion.mass, dt);
-        if (implicit_ > 0) {
-            row_.bias = -elastic_ / (implicit_ * dt);
-            row_.compliance = 1 / (implicit_ * k * dt * dt);
+            row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
         } else {
-            row_.lower = row_.upper = std::clamp(-k * elastic_, lower_, upper_);
+            implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
+            row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
         }
-        return row_;
+        bias_ = row.bias;
+        return row;
     }
 
     /// Books the step that `prepare` opened; same `dt` [s].
@@ -163,7 +156,17 @@ class OneAxisJoint {
         } else {
             commit_elastic(step, taken);
         }
-        settle(step, taken, reaction.velocity);
+        settle(state_, step,
+               StepEnd<Scalar, Scalar>{.start = start_,
+                                       .velocity = reaction.velocity,
+                                       .force = reaction.force,
+                                       .start_speed = std::abs(start_),
+                                       .absolute_residual = parameters_.absolute_residual,
+                                       .allowed_residual = allowed_residual(reaction.velocity),
+                                       .dt = dt,
+                                       .at_bound = taken.at_bound()});
+        if (state_.broken) [[unlikely]]
+            place_break(step, taken);
         return step;
     }
 
@@ -185,6 +188,14 @@ class OneAxisJoint {
 
     [[nodiscard]] bool rigid() const noexcept {
         return parameters_.stiffness == std::numeric_limits<Scalar>::infinity();
+    }
+
+    /// True where the force of an elastic row was given, not solved for.
+    [[nodiscard]] bool given() const noexcept {
+        return !rigid() && (implicit_ == 0 || lower_ == upper_);
+    }
+    [[nodiscard]] Scalar compliance(Scalar dt) const noexcept {
+        return rigid() ? Scalar(0) : 1 / (implicit_ * parameters_.stiffness * dt * dt);
     }
 
     // ---- before the solve ---------------------------------------------------------------------------
@@ -246,9 +257,9 @@ class OneAxisJoint {
 
     [[nodiscard]] Scalar violation(const Reaction<Scalar>& reaction,
                                    const Taken& taken) const noexcept {
-        if (row_.lower == row_.upper && !rigid()) return 0; // the force was given
-        const Scalar excess =
-            reaction.velocity + row_.compliance * reaction.force * taken.dt - row_.bias;
+        if (given()) return 0;
+        const Scalar soft = compliance(taken.dt) * reaction.force * taken.dt;
+        const Scalar excess = reaction.velocity + soft - bias_;
         if (taken.at_upper) return std::max(excess, Scalar(0));
         if (taken.at_lower) return std::max(-excess, Scalar(0));
         return std::abs(excess);
@@ -303,12 +314,13 @@ class OneAxisJoint {
         const Scalar strength = resistance(direction);
         if (slipped != 0) {
             // the geometry of a symplectic row is second order, the work of an implicit one is the
-            // better account; in between as the row itself
+            // better account, in between as the row itself; a law that rests by itself has its own
             state_.plastic_offset += slipped;
+            const Scalar share = RestsByItself<Cyclic> ? Scalar(0) : implicit_;
             const Scalar by_work = strength > tolerance_ ? std::max(rest / strength, Scalar(0))
                                                          : std::abs(slipped);
             flow(step, taken, rest,
-                 direction * ((1 - implicit_) * std::abs(slipped) + implicit_ * by_work));
+                 direction * ((1 - share) * std::abs(slipped) + share * by_work));
         } else if (stopped_in_step(taken)) {
             // a row too stiff for the step: what the yield range cannot hold was flow
             const Scalar yield = strength * strength / (2 * k);
@@ -323,7 +335,7 @@ class OneAxisJoint {
 
     /// An implicit row that came to rest inside its bounds after flow or a kick.
     [[nodiscard]] bool stopped_in_step(const Taken& taken) const noexcept {
-        return row_.lower != row_.upper && !taken.at_bound() && taken.work > 0 &&
+        return !RestsByItself<Cyclic> && !given() && !taken.at_bound() && taken.work > 0 &&
                (state_.flowing || kicked());
     }
 
@@ -347,28 +359,20 @@ class OneAxisJoint {
         step.other_work = rest - step.release;
     }
 
-    /// Carries the step into the state.
-    void settle(Step<Scalar>& step, const Taken& taken, Scalar velocity) noexcept {
-        if (state_.broken) {
-            step.lost = state_.stored + step.elastic;
-            step.elastic -= step.lost;
+    /// Puts time and force of the state to the break within the step that `settle` booked as a
+    /// whole.
+    void place_break(const Step<Scalar>& step, const Taken& taken) noexcept {
+        const bool flowed = step.plastic_work > 0;
+        const Scalar direction = std::copysign(Scalar(1), flowed ? taken.travel : -taken.force);
+        if (flowed) state_.force = -law_.resistance(state_.law, Scalar(0), direction) * fade_;
+        Scalar distance = flowed ? left_ : Scalar(0); // a rigid row is loaded from the start
+        if (!rigid()) {
+            const Scalar stretch = std::abs(state_.force) / parameters_.stiffness;
+            distance += std::max(stretch - direction * elastic_, Scalar(0));
         }
-        state_.plastic_work += step.plastic_work;
-        state_.stored += step.elastic;
-        state_.other_work += step.other_work;
-        state_.lost += step.lost;
-        state_.residual_max = std::max(state_.residual_max, step.residual);
-        state_.start_velocity = start_;
-        state_.velocity = velocity;
-        state_.flowing = taken.at_bound();
-        if (state_.broken) {
-            step.outcome = Outcome::broken;
-        } else if (step.residual > allowed_residual(velocity)) {
-            step.outcome = Outcome::unreliable;
-        } else if (step.plastic_work > 0 &&
-                   (taken.at_bound() || std::abs(start_) > parameters_.absolute_residual)) {
-            step.outcome = Outcome::yielding; // and not the round-off of a flow that has stopped
-        }
+        const Scalar velocity = 2 * taken.travel / taken.dt - start_;
+        state_.time -= taken.dt - time_to_run(distance, direction * start_, direction * velocity,
+                                              flowed ? share_ : Scalar(1), taken.dt);
     }
 
     Cyclic law_;
@@ -377,8 +381,7 @@ class OneAxisJoint {
     State state_;
 
     // between prepare and commit
-    RowLimits<Scalar> row_;
-    Scalar start_ = 0;      ///< u
+    Scalar bias_ = 0, start_ = 0; ///< b, u
     Scalar elastic_ = 0;    ///< q_e at the start
     Scalar flow_lower_ = 0; ///< force along the flow at which it flows back and forth
     Scalar flow_upper_ = 0;

@@ -16,6 +16,8 @@ namespace ductile {
 template <std::floating_point S>
 struct Step {
     Outcome outcome = Outcome::elastic;
+    bool first_yield = false; ///< the joint began to yield in this step
+    bool fracture = false;    ///< it broke in this step: fracture() of the joint reports how
     S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
     S elastic = 0;      ///< change of what is stored, elastic and by a back force [J]
     S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
@@ -36,6 +38,8 @@ struct OneAxisState {
     S start_velocity = 0; ///< u of the last step [m/s | rad/s]
     S velocity = 0;       ///< u' of the last step [m/s | rad/s]
     S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
+    S force = 0;          ///< of the last step; once broken, just before the break [N | N m]
+    double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     LawState law{};
     CriterionState criterion{};
     bool flowing = false; ///< the last step ended at a bound
@@ -56,6 +60,14 @@ struct OneAxisParameters {
     /// [m/s | rad/s], > 0.
     S absolute_residual = S(1e-3);
     S relative_residual = S(1e-2); ///< [-], in [0, 1]
+
+    /// @throws std::invalid_argument where a parameter is out of range.
+    void validate() const {
+        check::positive_or_infinite("OneAxisJoint.stiffness", stiffness, "N/m or N m/rad");
+        check::positive("OneAxisJoint.drift_time", drift_time, "s");
+        check::positive("OneAxisJoint.absolute_residual", absolute_residual, "m/s or rad/s");
+        check::between("OneAxisJoint.relative_residual", relative_residual, S(0), S(1), "", true);
+    }
 };
 
 /// For adapters and batches that have rigid-plastic rows only.

@@ -42,9 +42,9 @@ using Matrix6 = Eigen::Matrix<S, 6, 6>;
 /// One body's part in a joint. Default: a body that cannot move.
 template <std::floating_point S>
 struct BodyAtJoint {
-    S inverse_mass = 0;                                    ///< 1/m [1/kg]
-    Matrix3<S> inverse_inertia = Matrix3<S>::Zero();       ///< I⁻¹, world axes [1/(kg m²)]
-    Vector3<S> arm = Vector3<S>::Zero();                   ///< r, world axes [m]
+    S inverse_mass = 0;                              ///< 1/m [1/kg]
+    Matrix3<S> inverse_inertia = Matrix3<S>::Zero(); ///< I⁻¹, world axes [1/(kg m²)]
+    Vector3<S> arm = Vector3<S>::Zero();             ///< r, world axes [m]
 };
 
 /// Impulse on body A at the joint, world axes; body B takes the opposite.
@@ -87,20 +87,39 @@ template <std::floating_point S>
     return k;
 }
 
-/// Impulse that gives `energy` >= 0 [J] to the motion along `axis` and leaves the other five axes
-/// alone. `twist` is the relative twist (v, ω) of A minus B at the joint, world axes. With the response
-/// h = K⁻¹ e, the momentum along it p = h · twist and the mass m = e · h, the change Δu of the velocity
-/// along the axis does the work p Δu + m Δu²/2, so
+/// h: impulse that changes the velocity along the unit `axis` by one, changes none along the
+/// columns of `held` (unit, at right angles to `axis` and each other), and has no part along any
+/// other direction. Its share along the axis, e·h, is the mass m that the row feels [kg | kg m²].
+/// Not finite where neither body can move.
+///
+///   h = B (Bᵀ K B)⁻¹ (0, ..., 0, 1)ᵀ,   B = (held, e);   with five axes held h = K⁻¹ e
+template <std::floating_point S, class Held>
+[[nodiscard]] Vector6<S> axis_response(const Matrix6<S>& k, const Vector6<S>& axis,
+                                       const Eigen::MatrixBase<Held>& held) noexcept {
+    using Basis = Eigen::Matrix<S, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+    using Square = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+    using Column = Eigen::Matrix<S, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+    const Eigen::Index n = held.cols();
+    Basis basis(6, n + 1);
+    basis.leftCols(n) = held;
+    basis.col(n) = axis;
+    const Square projected = basis.transpose() * k * basis;
+    const Column unit = Column::Unit(n + 1, n);
+    return basis * projected.ldlt().solve(unit);
+}
+
+/// Impulse that gives `energy` >= 0 [J] to the motion along `axis` and leaves alone the axes that
+/// `response` h leaves alone (see axis_response). `twist` is the relative twist (v, ω) of A minus B
+/// at the joint, world axes. With the momentum p = h · twist and the mass m = e · h, the change Δu
+/// of the velocity along the axis does the work p Δu + m Δu²/2, so
 ///
 ///   Δu = sign(p) 2 energy / (|p| + √(p² + 2 m energy)),
 ///
 /// which never turns the motion round. Where the other axes are at rest p = m u, and this is
 /// u'² = u² + 2 energy / m. Zero where neither body can move along the axis.
 template <std::floating_point S>
-[[nodiscard]] JointImpulse<S> release_impulse(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
-                                              const Vector6<S>& axis, const Vector6<S>& twist,
-                                              S energy) noexcept {
-    const Vector6<S> response = inverse_mass_at_joint(a, b).ldlt().solve(axis);
+[[nodiscard]] JointImpulse<S> release_impulse(const Vector6<S>& response, const Vector6<S>& axis,
+                                              const Vector6<S>& twist, S energy) noexcept {
     const S mass = axis.dot(response);
     const S momentum = twist.dot(response);
     const S root = std::sqrt(momentum * momentum + 2 * mass * energy);
@@ -108,6 +127,15 @@ template <std::floating_point S>
     const S change = std::copysign(2 * energy / (std::abs(momentum) + root), momentum);
     const Vector6<S> impulse = response * change;
     return {impulse.template head<3>(), impulse.template tail<3>()};
+}
+
+/// The same for a joint whose other five axes are rigid, h = K⁻¹ e.
+template <std::floating_point S>
+[[nodiscard]] JointImpulse<S> release_impulse(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
+                                              const Vector6<S>& axis, const Vector6<S>& twist,
+                                              S energy) noexcept {
+    const Vector6<S> response = inverse_mass_at_joint(a, b).ldlt().solve(axis);
+    return release_impulse(response, axis, twist, energy);
 }
 
 /// What a break handed back to its two bodies, once, at the end of the breaking step.
@@ -118,14 +146,21 @@ struct BreakRelease {
     VelocityChange<S> b{Vector3<S>::Zero(), Vector3<S>::Zero()};
 };
 
+/// What an impulse on A, and its opposite on B, that gives `energy` [J] back does to the two
+/// bodies.
+template <std::floating_point S>
+[[nodiscard]] BreakRelease<S> break_release(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
+                                            const JointImpulse<S>& impulse, S energy) noexcept {
+    return {energy, velocity_change(a, impulse),
+            velocity_change(b, JointImpulse<S>{-impulse.linear, -impulse.angular})};
+}
+
 /// The velocity changes that give `energy` [J] back along `axis`; see release_impulse.
 template <std::floating_point S>
 [[nodiscard]] BreakRelease<S> break_release(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
                                             const Vector6<S>& axis, const Vector6<S>& twist,
                                             S energy) noexcept {
-    const JointImpulse<S> impulse = release_impulse(a, b, axis, twist, energy);
-    return {energy, velocity_change(a, impulse),
-            velocity_change(b, JointImpulse<S>{-impulse.linear, -impulse.angular})};
+    return break_release(a, b, release_impulse(a, b, axis, twist, energy), energy);
 }
 
 } // namespace ductile

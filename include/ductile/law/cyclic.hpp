@@ -63,6 +63,14 @@ concept CyclicLaw = std::regular<typename T::State> &&
     { law.stored(state) } noexcept -> std::same_as<typename T::Scalar>;
 };
 
+/// A CyclicLaw whose state says where the row rests, so that its flow must be that of the position.
+/// - `plastic_position(state)`: position at which the force would vanish [m | rad]
+template <class T>
+concept RestsByItself = CyclicLaw<T> && requires(const T law, const typename T::State state) {
+    { law.plastic_position(state) }
+    noexcept->std::same_as<typename T::Scalar>;
+};
+
 /// What one move of a HysteresisLaw did. The work done on it is dissipated + the change of `held`.
 template <std::floating_point S>
 struct HysteresisStep {

@@ -71,7 +71,9 @@ class Hardening {
         const Scalar travel = state.plastic_travel + std::abs(increment);
         const Scalar before = stored(state);
         FlowWork<Scalar> work;
-        work.dissipated = mean_strength(state.plastic_travel, travel) * std::abs(increment) +
+        // after much travel the difference of two travels has lost digits that the increment still has;
+        // the mean has not
+        work.dissipated = mean_strength(law_, state.plastic_travel, travel) * std::abs(increment) +
                           back_.dissipated(state.back_force, increment);
         state.plastic_travel = travel;
         state.back_force = back_.shifted(state.back_force, increment);
@@ -98,12 +100,6 @@ class Hardening {
     }
 
   private:
-    /// After much travel `to - from` has lost digits that the increment still has; the mean has
-    /// not.
-    Scalar mean_strength(Scalar from, Scalar to) const noexcept {
-        return to > from ? law_.work(from, to) / (to - from) : law_.value(from);
-    }
-
     Law law_;
     [[no_unique_address]] Back back_;
 };
@@ -113,6 +109,17 @@ using IsotropicHardening = Hardening<Law>;
 
 template <std::floating_point S>
 using KinematicHardening = Hardening<Perfect<S>, Prager<S>>;
+
+/// A law as a joint uses it: a strength that follows the accumulated travel becomes isotropic
+/// hardening, a law with a memory of its own stays as it is.
+template <class Law>
+struct CyclicForm {
+    using type = Law;
+};
+template <StrengthLaw Law>
+struct CyclicForm<Law> {
+    using type = IsotropicHardening<Law>;
+};
 
 static_assert(CyclicLaw<IsotropicHardening<Perfect<float>>>);
 static_assert(CyclicLaw<KinematicHardening<double>>);

@@ -21,6 +21,18 @@
 // Each element is solved exactly along a straight path, so cutting a path without reversals
 // changes nothing. Loop energy between ±u_a: Σ 4 F_i (u_a - F_i/k_i)₊ (plus nothing for k_f).
 //
+// As the law of a joint. Taken out in series, the spring K = Σ k_i + k_f of a first loading leaves
+// a rigid part that flows by q_p = q - F/K, and that depends on the slips alone:
+//
+//   q_p = Σ k_i s_i / K
+//   towards d = ±1 element i slips from b_i = d s_i + F_i/k_i on, so flow by δ has brought d q to x
+//   with
+//     Σ k_i (x - b_i)₊ = K δ,   F = K (d x - q_p - d δ),   dF/dq_p = K (K/Σ_{b_i <= x} k_i - 1)
+//   held beside F²/(2K):   (Σ k_i s_i² - K q_p²)/2
+//
+// Hence this law in a OneAxisJoint of the stiffness K is the elements themselves; with another
+// stiffness k it is they with 1/k - 1/K in series.
+//
 // Limit cases: one element is elastic-perfectly plastic; one element and k_f is Prager's law.
 //
 // Source: Masing (1926), Proc. 2nd Int. Congr. Appl. Mech., 332-335; Iwan (1966), J. Appl. Mech.
@@ -126,7 +138,10 @@ class Iwan {
     [[nodiscard]] const IwanElement<S>& element(std::size_t i) const noexcept {
         return elements_[i];
     }
-    [[nodiscard]] S stiffness() const noexcept { return total_; }
+    [[nodiscard]] S stiffness() const noexcept { return total_; } ///< K [N/m | N m/rad]
+
+    // ---- driven by the position
+    // ---------------------------------------------------------------------
 
     HysteresisStep<S> project(State& state, S position) const noexcept {
         HysteresisStep<S> step{.force = final_ * position};
@@ -161,7 +176,87 @@ class Iwan {
         return twice / 2;
     }
 
+    // ---- as a row that flows, K taken out in series
+    // -------------------------------------------------
+
+    [[nodiscard]] ForceRange<S> prepare(const State& state, S predicted) const noexcept {
+        return {.lower = resistance(state, std::max(-predicted, S(0)) / 2, S(-1)),
+                .upper = resistance(state, std::max(predicted, S(0)) / 2, S(1))};
+    }
+    FlowWork<S> commit(State& state, S increment) const noexcept {
+        const S direction = std::copysign(S(1), increment), before = stored(state);
+        const S end = run(state, std::abs(increment), direction).position;
+        FlowWork<S> work;
+        for (std::size_t i = 0; i < size_; ++i) {
+            const S slipped = std::max(end - onset(state, i, direction), S(0));
+            state.slip[i] += direction * slipped;
+            work.dissipated += elements_[i].slip_force * slipped;
+        }
+        work.stored = stored(state) - before;
+        return work;
+    }
+    [[nodiscard]] S resistance(const State& state, S travel, S direction) const noexcept {
+        const S position = run(state, travel, direction).position;
+        return total_ * (direction * (position - travel) - plastic_position(state));
+    }
+    [[nodiscard]] S tangent(const State& state, S travel, S direction) const noexcept {
+        return total_ * (total_ / run(state, travel, direction).slipping - 1);
+    }
+    /// q_p [m | rad]
+    [[nodiscard]] S plastic_position(const State& state) const noexcept {
+        S sum = 0;
+        for (std::size_t i = 0; i < size_; ++i) sum += elements_[i].stiffness * state.slip[i];
+        return sum / total_;
+    }
+    [[nodiscard]] S stored(const State& state) const noexcept {
+        S twice = 0;
+        const S mean = plastic_position(state);
+        for (std::size_t i = 0; i < size_; ++i) {
+            const S off = state.slip[i] - mean;
+            twice += elements_[i].stiffness * off * off;
+        }
+        return (twice + final_ * mean * mean) / 2; // Σ k_i s_i² - K q_p² without its cancellation
+    }
+
   private:
+    /// Where flow has brought the elements.
+    struct Run {
+        S position; ///< x, along the flow [m | rad]
+        S slipping; ///< Σ k_i of the elements that slip [N/m | N m/rad]
+    };
+
+    /// b_i [m | rad]
+    [[nodiscard]] S onset(const State& state, std::size_t i, S direction) const noexcept {
+        return direction * state.slip[i] + elements_[i].slip_force / elements_[i].stiffness;
+    }
+    /// Solves Σ k_i (x - b_i)₊ = K `travel` piece by piece, from the first onset to the next;
+    /// O(size()²).
+    [[nodiscard]] Run run(const State& state, S travel, S direction) const noexcept {
+        const S infinity = std::numeric_limits<S>::infinity();
+        S position = infinity;
+        for (std::size_t i = 0; i < size_; ++i) {
+            position = std::min(position, onset(state, i, direction));
+        }
+        S left = total_ * travel, slipping = 0;
+        for (std::size_t piece = 0; piece < size_; ++piece) {
+            S next = infinity;
+            slipping = 0;
+            for (std::size_t i = 0; i < size_; ++i) {
+                const S begin = onset(state, i, direction);
+                if (begin <= position) {
+                    slipping += elements_[i].stiffness;
+                } else {
+                    next = std::min(next, begin);
+                }
+            }
+            const S room = slipping * (next - position);
+            if (!(left >= room)) break;
+            left -= room;
+            position = next;
+        }
+        return {position + left / slipping, slipping};
+    }
+
     /// A change of stiffness below this share of the elastic one is round-off of the pairs.
     static constexpr S straight = 64 * std::numeric_limits<S>::epsilon();
 
@@ -192,5 +287,6 @@ class Iwan {
 };
 
 static_assert(HysteresisLaw<Iwan<double, 4>> && HysteresisLaw<Iwan<float, 1>>);
+static_assert(RestsByItself<Iwan<double, 4>> && RestsByItself<Iwan<float, 1>>);
 
 } // namespace ductile

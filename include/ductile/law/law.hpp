@@ -40,6 +40,23 @@ concept ExhaustibleLaw = StrengthLaw<T> && requires(const T law) {
     { law.exhaustion() } noexcept -> std::same_as<typename T::Scalar>;
 };
 
+/// A law that knows its mean: `mean(p0, p1)` is the mean of R from p0 to p1 [N | N m].
+template <class T>
+concept AveragedLaw = StrengthLaw<T> && requires(const T law, typename T::Scalar travel) {
+    { law.mean(travel, travel) } noexcept -> std::same_as<typename T::Scalar>;
+};
+
+/// Mean strength from p0 to p1 >= p0 of any law [N | N m]; by a division where the law does not know it.
+template <StrengthLaw Law>
+[[nodiscard]] typename Law::Scalar mean_strength(const Law& law, typename Law::Scalar from,
+                                                 typename Law::Scalar to) noexcept {
+    if constexpr (AveragedLaw<Law>) {
+        return law.mean(from, to);
+    } else {
+        return to > from ? law.work(from, to) / (to - from) : law.value(from);
+    }
+}
+
 /// p_f of any law [m | rad]; infinity for one that cannot fade.
 template <StrengthLaw Law>
 [[nodiscard]] typename Law::Scalar exhaustion(const Law& law) noexcept {

@@ -39,9 +39,10 @@ class Linear {
 
     [[nodiscard]] S value(S travel) const noexcept { return strength_ + hardening_ * travel; }
     [[nodiscard]] S slope(S /*travel*/) const noexcept { return hardening_; }
-    [[nodiscard]] S work(S from, S to) const noexcept {
-        return (to - from) * (strength_ + hardening_ * (from + to) / 2);
+    [[nodiscard]] S mean(S from, S to) const noexcept {
+        return strength_ + hardening_ * (from + to) / 2;
     }
+    [[nodiscard]] S work(S from, S to) const noexcept { return (to - from) * mean(from, to); }
 
   private:
     S strength_;
@@ -51,7 +52,7 @@ class Linear {
 template <std::floating_point S>
 Linear(const LinearParameters<S>&) -> Linear<S>;
 
-static_assert(StrengthLaw<Linear<double>> && StrengthLaw<Linear<float>>);
+static_assert(AveragedLaw<Linear<double>> && AveragedLaw<Linear<float>>);
 static_assert(!ExhaustibleLaw<Linear<double>>);
 
 } // namespace ductile

@@ -31,6 +31,7 @@ class Perfect {
 
     [[nodiscard]] S value(S /*travel*/) const noexcept { return strength_; }
     [[nodiscard]] S slope(S /*travel*/) const noexcept { return 0; }
+    [[nodiscard]] S mean(S /*from*/, S /*to*/) const noexcept { return strength_; }
     [[nodiscard]] S work(S from, S to) const noexcept { return strength_ * (to - from); }
 
   private:
@@ -40,6 +41,6 @@ class Perfect {
 template <std::floating_point S>
 Perfect(const PerfectParameters<S>&) -> Perfect<S>;
 
-static_assert(StrengthLaw<Perfect<double>> && StrengthLaw<Perfect<float>>);
+static_assert(AveragedLaw<Perfect<double>> && AveragedLaw<Perfect<float>>);
 
 } // namespace ductile

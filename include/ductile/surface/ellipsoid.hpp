@@ -4,19 +4,30 @@
 //
 //   γ(f) = |D⁻¹ f|,  ∇γ = D⁻² f/γ,  support(e) = D² e/|D e|,  D = diag(c)
 //
+// Chord along axis i through a point x = D⁻¹ f: it ends at ±c_i (1 - |x|² + x_i²)^½.
+//
+// Closest point. On the unit sphere the flow is μ x, so that x = t - μ K x, |x| = 1, with the trial
+// t = D⁻¹ f and the stiffness D⁻¹ K D⁻¹: one unknown,
+//
+//   x(μ) = (1 + μ K)⁻¹ t,   1/|x(μ)| = 1
+//
+// In the axes of K, 1/|x| is the power mean of degree -2 of the functions (1 + μ k_i)/|t_i|, hence
+// concave and rising: Newton from μ = 0, x = t, never passes the root and needs no safeguard. Where
+// K is a multiple of 1 it is straight, and the first step exact.
+//
 // Limit cases: N = 1 is the single row; a stiffness proportional to D² makes the closest-point
 // return radial, and the return of one increment after another then follows the exact path to first
 // order.
 //
-// Source: exact path on it: Krieg & Krieg (1977), doi:10.1115/1.3454568.
+// Source: the equation of one unknown as in Moré & Sorensen (1983), doi:10.1137/0904038; exact path: Krieg & Krieg (1977), doi:10.1115/1.3454568.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <concepts>
 #include <limits>
 #include <string>
 
-#include "ductile/surface/closest_point.hpp"
 #include "ductile/surface/surface.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -80,19 +91,46 @@ class Ellipsoid {
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
         if (!(value(force) > 1 + on_surface<S>)) return force; // to the bit
         const Vector d = capacity_.cwiseInverse();
-        // on the unit sphere force and flow are of order one whatever the units
-        const Ellipsoid unit(Vector::Ones(), Checked::yes);
         const Matrix k = d.asDiagonal() * stiffness * d.asDiagonal();
-        return capacity_.cwiseProduct(closest_point(unit, d.cwiseProduct(force), k));
+        return capacity_.cwiseProduct(
+            closest_on_sphere(d.cwiseProduct(force), Matrix(k / (k.trace() / S(N)))));
+    }
+
+    [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept {
+        const Vector squares = point.cwiseQuotient(capacity_).cwiseAbs2();
+        const Vector others = squares.sum() - squares.array();
+        const Vector reach = capacity_.array() * (1 - others.array()).max(S(0)).sqrt();
+        return {-reach, reach};
     }
 
   private:
-    enum class Checked { yes };
-    Ellipsoid(const Vector& capacity, Checked) noexcept : capacity_(capacity) {}
+    /// `trial` outside the unit sphere. Cost: a Cholesky factorisation for each of 1 to 5 steps.
+    static Vector closest_on_sphere(const Vector& trial, const Matrix& stiffness) noexcept {
+        constexpr int max_steps = 60;
+        Vector x = trial;
+        Vector slope = -(stiffness * x); // dx/dμ
+        S mu = 0;
+        for (int step = 0; step < max_steps; ++step) {
+            const S size = x.stableNorm();
+            const S shrinks = -(x / size).dot(slope / size);
+            const S ahead = (size - 1) / shrinks;
+            // what a straight step leaves out is below |slope| ahead²/μ
+            const S left_out = slope.stableNorm() * ahead * ahead;
+            if (!(left_out > std::numeric_limits<S>::epsilon() * mu)) {
+                x += slope * ahead;
+                break;
+            }
+            mu += ahead;
+            const Eigen::LLT<Matrix> factors(Matrix::Identity() + mu * stiffness);
+            x = factors.solve(trial);
+            slope = -factors.solve(stiffness * x);
+        }
+        return x / x.stableNorm();
+    }
 
     Vector capacity_;
 };
 
-static_assert(YieldSurface<Ellipsoid<double, 2>> && YieldSurface<Ellipsoid<float, 6>>);
+static_assert(ChordedSurface<Ellipsoid<double, 2>> && ChordedSurface<Ellipsoid<float, 6>>);
 
 } // namespace ductile

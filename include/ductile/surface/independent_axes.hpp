@@ -76,10 +76,15 @@ class IndependentAxes {
         return project_on_box<S, N>(force, -capacity_, capacity_, stiffness);
     }
 
+    [[nodiscard]] Chords<Vector> chords(const Vector& /*point*/) const noexcept {
+        return {-capacity_, capacity_};
+    }
+
   private:
     Vector capacity_;
 };
 
-static_assert(YieldSurface<IndependentAxes<double, 6>> && YieldSurface<IndependentAxes<float, 2>>);
+static_assert(ChordedSurface<IndependentAxes<double, 6>> &&
+              ChordedSurface<IndependentAxes<float, 2>>);
 
 } // namespace ductile

@@ -24,6 +24,10 @@
 //       also where the flow should turn: a `window` ends their grip where the surface would be
 //       exceeded by about that much.
 //
+// A force far inside the surface still gets its own chords, not a box that is cheaper to find: a
+// smaller one would flow below the surface, a larger one leave it, where a load comes that was not
+// predicted. The chords are cheap instead, where the surface has a closed form (ChordedSurface).
+//
 // Do not predict from the last force alone, f' = f: a row without force would get the bound 0, flow
 // freely, carry no force, and so keep the bound 0.
 //
@@ -86,6 +90,15 @@ template <std::floating_point S, int N>
     return box.basis * project_on_box<S, N>(inverse * trial, box.lower, box.upper, turned);
 }
 
+/// The force that would stop the rows in this step if nothing flowed: what the prediction projects.
+/// @param impedance  a matrix, or an Impedance
+template <class Vector, class Impedance>
+[[nodiscard]] Vector stopping_force(const Vector& last_force, const Vector& velocity,
+                                    const Vector& last_velocity,
+                                    const Impedance& impedance) noexcept {
+    return last_force - impedance * Vector(2 * velocity - last_velocity);
+}
+
 /// Prediction of the force at the end of this step, inside or on the surface.
 template <YieldSurface T>
 [[nodiscard]] typename T::Vector predicted_force(const T& surface,
@@ -93,8 +106,8 @@ template <YieldSurface T>
                                                  const typename T::Vector& velocity,
                                                  const typename T::Vector& last_velocity,
                                                  const typename T::Matrix& impedance) noexcept {
-    const typename T::Vector trial = last_force - impedance * (2 * velocity - last_velocity);
-    return surface.project(trial, impedance);
+    return surface.project(stopping_force(last_force, velocity, last_velocity, impedance),
+                           impedance);
 }
 
 /// Largest t ≥ 0 with `point` + t·`along` not outside; `point` not outside. `along` of any length.
@@ -118,18 +131,35 @@ template <YieldSurface T>
     return t;
 }
 
+/// The chords of the surface through `point` along the axes, in closed form where the surface has
+/// one, else by `reach` in both directions. `point` not outside by more than round-off, and never
+/// left out by the chords' own: lower ≤ point ≤ upper.
+template <YieldSurface T>
+[[nodiscard]] Chords<typename T::Vector> chords_through(const T& surface,
+                                                        const typename T::Vector& point) noexcept {
+    using Vector = typename T::Vector;
+    if constexpr (ChordedSurface<T>) {
+        const auto [lower, upper] = surface.chords(point);
+        return {lower.cwiseMin(point), upper.cwiseMax(point)};
+    } else {
+        Chords<Vector> chords{point, point};
+        for (int i = 0; i < T::dimension; ++i) {
+            chords.upper[i] += reach(surface, point, Vector(Vector::Unit(i)));
+            chords.lower[i] -= reach(surface, point, Vector(-Vector::Unit(i)));
+        }
+        return chords;
+    }
+}
+
 /// The chords of the surface through `predicted` along the axes; basis 1. A prediction outside is
 /// drawn in along its ray.
 template <YieldSurface T>
 [[nodiscard]] RowBox<typename T::Scalar, T::dimension> box_along(
     const T& surface, const typename T::Vector& predicted) noexcept {
-    using Vector = typename T::Vector;
     RowBox<typename T::Scalar, T::dimension> box;
-    const Vector point = project_radially(surface, predicted);
-    for (int i = 0; i < T::dimension; ++i) {
-        box.upper[i] = point[i] + reach(surface, point, Vector(Vector::Unit(i)));
-        box.lower[i] = point[i] - reach(surface, point, Vector(-Vector::Unit(i)));
-    }
+    const auto chords = chords_through(surface, project_radially(surface, predicted));
+    box.lower = chords.lower;
+    box.upper = chords.upper;
     return box;
 }
 

@@ -61,6 +61,12 @@ class Scaled {
         return capacity_.cwiseProduct(
             surface_.project(d.cwiseProduct(force), d.asDiagonal() * stiffness * d.asDiagonal()));
     }
+    [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept
+        requires ChordedSurface<Surface>
+    {
+        const auto [lower, upper] = surface_.chords(point.cwiseQuotient(capacity_));
+        return {capacity_.cwiseProduct(lower), capacity_.cwiseProduct(upper)};
+    }
 
   private:
     Surface surface_;

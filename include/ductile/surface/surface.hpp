@@ -50,6 +50,21 @@ concept YieldSurface = requires(const T surface, const typename T::Vector& vecto
     { surface.project(vector, stiffness) } noexcept -> std::same_as<typename T::Vector>;
 };
 
+/// Where the lines through a point along the axes leave the surface: force i alone may go from
+/// lower[i] to upper[i] while the others stay. Plain value [N | N m].
+template <class Vector>
+struct Chords {
+    Vector lower, upper;
+};
+
+/// A surface that knows its chords in closed form; others leave them to Newton (row_box.hpp).
+/// `chords(point)`  for a point not outside by more than round-off.
+template <class T>
+concept ChordedSurface = YieldSurface<T> && requires(const T surface,
+                                                     const typename T::Vector& point) {
+    { surface.chords(point) } noexcept -> std::same_as<Chords<typename T::Vector>>;
+};
+
 /// A gauge this little above 1 is on the surface: room for the round-off of one evaluation, so that
 /// a projected force is not projected again.
 template <std::floating_point S>

@@ -41,7 +41,7 @@ bool same(const State<S>& a, const OtherState& b) {
 
 /// Counts what the histories went through: a comparison proves nothing about a case never met.
 struct Seen {
-    int yielding = 0, broken = 0, released = 0, clipped = 0, unreliable = 0, elastic = 0;
+    int yielding = 0, broken = 0, released = 0, clipped = 0, unreliable = 0, elastic = 0, began = 0;
 };
 
 /// Masses on one joint each, driven by random loads, kicks, jitter and unsolved rows; each is
@@ -92,6 +92,19 @@ Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint
                 {memory.force[i], memory.velocity_after[i], memory.position_after[i]}, dt);
             REQUIRE(same<S>(batch.state(i), joints[i].state()));
             REQUIRE(batch.outcome(i) == step.outcome);
+            REQUIRE(batch.first_yield(i) == step.first_yield);
+            REQUIRE(batch.fracture(i).has_value() == step.fracture);
+            if (step.fracture) {
+                const FractureEvent<S> mine = *batch.fracture(i), its = *joints[i].fracture();
+                REQUIRE(mine.criterion == its.criterion);
+                REQUIRE(same(mine.plastic_travel, its.plastic_travel));
+                REQUIRE(same(mine.absorbed_energy, its.absorbed_energy));
+                REQUIRE(same(mine.released_energy, its.released_energy));
+                REQUIRE(same(mine.force, its.force));
+                REQUIRE(mine.time >= its.time - 1e-9);
+                REQUIRE(mine.time - double(dt) <= its.time + 1e-9);
+            }
+            seen.began += step.first_yield;
             REQUIRE(same(memory.release[i], step.release));
             REQUIRE(same(memory.residual[i], step.residual));
             seen.elastic += step.outcome == Outcome::elastic;
@@ -138,6 +151,7 @@ TEMPLATE_TEST_CASE("the batch books random histories as the scalar joint does",
         total.released += seen.released;
         total.clipped += seen.clipped;
         total.unreliable += seen.unreliable;
+        total.began += seen.began;
     }
     CHECK(total.elastic > 1000);
     CHECK(total.yielding > 1000);
@@ -145,6 +159,7 @@ TEMPLATE_TEST_CASE("the batch books random histories as the scalar joint does",
     CHECK(total.unreliable > 1000);
     CHECK(total.released > 300);
     CHECK(total.clipped > 300);
+    CHECK(total.began > 300);
 }
 
 TEMPLATE_TEST_CASE("joints with numbers of their own in one batch", "[batch]", float, double) {

@@ -76,7 +76,12 @@ TEST_CASE("a controller refuses limits that make none, by name", "[step_control]
     CHECK(with([](auto& p) { p.growth = 1; }) == "StepControl.growth = 1: must be > 1");
     CHECK(with([](auto& p) { p.shrink = 1; }) == "StepControl.shrink = 1: must be in [0, 1)");
     CHECK(with([](auto& p) { p.closing_fraction = 2; }) ==
-          "StepControl.closing_fraction = 2: must be in (0, 1)");
+          "StepControl.closing_fraction = 2: must be in (0, 1]");
+    CHECK(with([](auto& p) { p.gap_fraction = 0; }) ==
+          "StepControl.gap_fraction = 0: must be in (0, 1]");
+    CHECK(with([](auto& p) { p.gap_fraction = NAN; }) ==
+          "StepControl.gap_fraction = nan: must be in (0, 1]");
+    CHECK_NOTHROW(StepControl<double>({.closing_fraction = 1, .gap_fraction = 1}));
     CHECK(with([](auto& p) { p.steps_per_period = 1; }) ==
           "StepControl.steps_per_period = 1: must be >= 2");
     CHECK(with([](auto& p) { p.plastic_rotation = NAN; }) ==

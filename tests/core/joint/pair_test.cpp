@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
+#include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <cmath>
 
 #include "ductile/joint/pair.hpp"
 
@@ -25,13 +27,16 @@ struct Body {
         body.mass = number(1, 20);
         const V3 axis = V3(number(1, 2), number(-2, 2), number(-2, 2)).normalized();
         const Matrix3<double> r = Eigen::AngleAxisd(number(-3, 3), axis).toRotationMatrix();
-        body.inertia = r * V3(number(1, 3), number(1, 3), number(1, 3)).asDiagonal() * r.transpose();
+        body.inertia =
+            r * V3(number(1, 3), number(1, 3), number(1, 3)).asDiagonal() * r.transpose();
         body.arm = vector(2);
         body.linear = vector(5);
         body.angular = vector(5);
         return body;
     }
-    [[nodiscard]] BodyAtJoint<double> at_joint() const { return {1 / mass, inertia.inverse(), arm}; }
+    [[nodiscard]] BodyAtJoint<double> at_joint() const {
+        return {1 / mass, inertia.inverse(), arm};
+    }
     [[nodiscard]] double kinetic() const {
         return (mass * linear.squaredNorm() + angular.dot(inertia * angular)) / 2;
     }
@@ -87,4 +92,24 @@ TEST_CASE("two bodies that cannot move are left alone", "[pair]") {
     const auto impulse = release_impulse(fixed, fixed, axis, Vector6<double>(axis * 2), 5.0);
     CHECK(impulse.linear.norm() == 0);
     CHECK(impulse.angular.norm() == 0);
+}
+
+TEST_CASE("an axis response moves its axis by one and leaves the held axes alone", "[pair]") {
+    rc::prop("any two bodies, any axis, any number of held ones", [] {
+        const Body a = Body::any(), b = Body::any();
+        const Matrix6<double> k = inverse_mass_at_joint(a.at_joint(), b.at_joint());
+        // any six directions at right angles
+        Matrix6<double> any;
+        for (int i = 0; i < 36; ++i) any(i) = number(-2, 2);
+        for (int i = 0; i < 6; ++i) any(i, i) += 9;
+        const Matrix6<double> q = any.householderQr().householderQ();
+        const int held = *rc::gen::inRange(0, 6);
+        const Vector6<double> axis = q.col(held);
+        const Vector6<double> h = axis_response(k, axis, q.leftCols(held));
+        const Vector6<double> moved = k * h;
+        RC_ASSERT(std::abs(axis.dot(moved) - 1) < 1e-9);
+        for (int i = 0; i < held; ++i) RC_ASSERT(std::abs(q.col(i).dot(moved)) < 1e-9);
+        for (int i = held + 1; i < 6; ++i) RC_ASSERT(std::abs(q.col(i).dot(h)) < 1e-9 * h.norm());
+        RC_ASSERT(axis.dot(h) > 0);
+    });
 }

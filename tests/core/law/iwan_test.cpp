@@ -138,6 +138,47 @@ TEST_CASE("N elements approach the Ramberg-Osgood loop to second order (P09)",
     }
 }
 
+TEST_CASE("elements flow as a rigid law with their stiffness in series", "[law][iwan][property]") {
+    rc::prop("any path, with and without a final stiffness", [] {
+        const double final_stiffness = *rc::gen::inRange(0, 3) * 500.0;
+        const Iwan<double, 4> law(elements<double>, final_stiffness);
+        const double k = law.stiffness();
+        Iwan<double, 4>::State driven, flowing;
+        double at = 0, flowed = 0;
+        for (int i = 0; i < 40; ++i) {
+            at += *rc::gen::inRange(-12000, 12000) * 1e-6;
+            const auto step = law.project(driven, at);
+            const auto work = law.commit(flowing, step.plastic_increment);
+            flowed += step.plastic_increment;
+            RC_ASSERT(work.dissipated == Approx(step.dissipated).margin(1e-12));
+            RC_ASSERT(k * (at - flowed) == Approx(step.force).margin(1e-9));
+            for (int j = 0; j < 4; ++j) {
+                const auto at_j = std::size_t(j);
+                RC_ASSERT(flowing.slip[at_j] == Approx(driven.slip[at_j]).margin(1e-12));
+            }
+            RC_ASSERT(law.stored(flowing) + step.force * step.force / (2 * k) ==
+                      Approx(law.held(driven, at)).margin(1e-12));
+            // on the range's edge where it has just flowed, inside it else
+            const auto range = law.prepare(flowing, 0);
+            RC_ASSERT(step.force <= range.upper + 1e-9);
+            RC_ASSERT(step.force >= range.lower - 1e-9);
+            if (step.plastic_increment > 0) RC_ASSERT(step.force == Approx(range.upper));
+            if (step.plastic_increment < 0) RC_ASSERT(step.force == Approx(range.lower));
+            // the tangent is the slope, but for a kink within the difference
+            const double travel = *rc::gen::inRange(0, 10000) * 1e-6 + 0.37e-6, h = 1e-9;
+            for (const double direction : {-1.0, 1.0}) {
+                const double slope = (law.resistance(flowing, travel + h, direction) -
+                                      law.resistance(flowing, travel - h, direction)) /
+                                     (2 * h) * direction;
+                const double before = law.tangent(flowing, travel - h, direction);
+                const double after = law.tangent(flowing, travel + h, direction);
+                RC_ASSERT(slope <= before + 1e-2);
+                RC_ASSERT(slope >= after - 1e-2);
+            }
+        }
+    });
+}
+
 TEST_CASE("one element is perfectly plastic, one element and a spring are Prager's law",
           "[law][iwan]") {
     constexpr double k = 200;

@@ -43,3 +43,28 @@ TEST_CASE("fatigue constants of S355 follow the uniform material law", "[materia
     CHECK(fatigue->ductility_coefficient == 0.59);
     CHECK(fatigue->ductility_exponent == -0.58);
 }
+
+TEST_CASE("the numbers are those of the standards", "[material]") {
+    struct Row {
+        MaterialParameters<double> named;
+        double density, modulus, poisson, yield, strain; // kg/m³, GPa, -, MPa, %
+        double tensile, factor;                          // R_m [MPa], sigma_f'/R_m; 0: none
+    };
+    for (const Row& row : {Row{s235<double>(), 7850, 210, 0.3, 235, 26, 360, 1.5},
+                           Row{s355<double>(), 7850, 210, 0.3, 355, 22, 470, 1.5},
+                           Row{b500b<double>(), 7850, 200, 0.3, 500, 5, 1.08 * 500, 1.5},
+                           Row{aluminium_6061_t6<double>(), 2700, 70, 0.3, 240, 8, 260, 1.67},
+                           Row{cast_iron_gjl_250<double>(), 7200, 110, 0.26, 165, 0.3, 0, 0}}) {
+        INFO("f_y = " << row.yield << " MPa");
+        CHECK(row.named.density == Approx(row.density).epsilon(1e-12));
+        CHECK(row.named.youngs_modulus == Approx(row.modulus * 1e9).epsilon(1e-12));
+        CHECK(row.named.poisson_ratio == Approx(row.poisson).epsilon(1e-12));
+        CHECK(row.named.yield_stress == Approx(row.yield * 1e6).epsilon(1e-12));
+        CHECK(row.named.ultimate_strain == Approx(row.strain / 100).epsilon(1e-12));
+        REQUIRE(row.named.fatigue.has_value() == (row.tensile > 0));
+        if (row.tensile > 0) {
+            CHECK(row.named.fatigue->strength_coefficient ==
+                  Approx(row.factor * row.tensile * 1e6).epsilon(1e-12));
+        }
+    }
+}

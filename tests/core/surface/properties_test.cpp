@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "cases.hpp"
+#include "ductile/surface/closest_point.hpp"
 #include "ductile/surface/return_map.hpp"
 
 using namespace ductile;
@@ -189,6 +190,30 @@ TEST_CASE("the slope of the support is its derivative", "[surface]") {
             });
         }
     });
+}
+
+TEST_CASE("an ellipsoid's own closest point is that of the general return", "[surface]") {
+    using Surface = Ellipsoid<double, 6>;
+    using Vector = Surface::Vector;
+    const Surface surface({.capacity = {1, 2, 0.5, 1.5, 0.7, 1}});
+    rc::prop("any trial, any stiffness", [&] {
+        const auto ray = any_direction<Vector>();
+        const double beyond = std::pow(10, any_number(-6.0, 6.0));
+        const Vector trial = ray * ((1 + beyond) / surface.value(ray));
+        const auto stiffness = any_stiffness<Surface::Matrix>();
+        const Vector own = surface.project(trial, stiffness);
+        // the general return settles where its residual is round-off of the trial
+        const double tolerance = 1e-12 * (1 + beyond);
+        RC_ASSERT((own - closest_point(surface, trial, stiffness)).norm() <= tolerance);
+    });
+    // K = 1, c = 1: the radial return; and one axis much stiffer than the rest: x = t/(1 + μ k),
+    // where μ = 1 was chosen and t follows from x on the sphere
+    const Ellipsoid<double, 2> circle({.capacity = {1, 1}});
+    const Eigen::Vector2d radial = circle.project({3, 4}, Eigen::Matrix2d::Identity());
+    CHECK((radial - Eigen::Vector2d(0.6, 0.8)).norm() < 1e-15);
+    const Eigen::Vector2d stiffness(1, 1e8), on(0.6, 0.8);
+    const Eigen::Vector2d trial = on + stiffness.cwiseProduct(on);
+    CHECK((circle.project(trial, stiffness.asDiagonal()) - on).norm() < 1e-14);
 }
 
 TEST_CASE("float agrees with double", "[surface]") {

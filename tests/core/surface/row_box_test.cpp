@@ -18,7 +18,7 @@ using namespace ductile::test;
 namespace {
 
 /// Rigid rows of a joint under an outside load, enforced by `Mapping`; plastic travel at the end.
-struct Chords {};
+struct Boxed {};
 struct Exact {};
 
 template <class Mapping, class T>
@@ -117,6 +117,47 @@ TEST_CASE("the box along a prediction touches the surface there and holds what i
     });
 }
 
+TEST_CASE("chords in closed form are those that Newton finds", "[surface]") {
+    int closed = 0;
+    for_every_surface<double>([&](const std::string& name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        using Vector = typename T::Vector;
+        if constexpr (ChordedSurface<T>) {
+            ++closed;
+            rc::prop(name, [&] {
+                const auto ray = any_direction<Vector>();
+                const Vector point = ray * (any_number(0.0, 1.0) / surface.value(ray));
+                const auto [lower, upper] = surface.chords(point);
+                for (int i = 0; i < T::dimension; ++i) {
+                    const double up = point[i] + reach(surface, point, Vector(Vector::Unit(i)));
+                    const double down = point[i] - reach(surface, point, Vector(-Vector::Unit(i)));
+                    // where a line only touches, both have half the digits
+                    const double tolerance = upper[i] - lower[i] < 1e-2 ? 1e-7 : 1e-12;
+                    RC_ASSERT(std::abs(upper[i] - up) <= tolerance);
+                    RC_ASSERT(std::abs(lower[i] - down) <= tolerance);
+                }
+            });
+        }
+    });
+    CHECK(closed == 3); // ellipse, ellipsoid, independent axes
+}
+
+TEST_CASE("the ends of the chords take in a point that round-off put outside", "[surface]") {
+    for_every_surface<float>([](const std::string& name, const auto& surface) {
+        using T = std::decay_t<decltype(surface)>;
+        using Vector = typename T::Vector;
+        rc::prop(name, [&] {
+            const auto ray = any_direction<Vector>();
+            const Vector point = ray * ((1 + on_surface<float>) / surface.value(ray));
+            const auto [lower, upper] = chords_through(surface, point);
+            for (int i = 0; i < T::dimension; ++i) {
+                RC_ASSERT(lower[i] <= point[i]);
+                RC_ASSERT(upper[i] >= point[i]);
+            }
+        });
+    });
+}
+
 TEST_CASE("told the right force, the rows give it and its associated flow", "[surface]") {
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
@@ -194,7 +235,7 @@ TEST_CASE("rows bounded along the prediction flow as the surface does, to first 
         for (const Eigen::Matrix2d& believed : {masses, wrong}) {
             double last = 0;
             for (const int rate : {240, 960, 3840}) {
-                const double error = (travel_of<Chords>(surface, rate, believed) - exact).norm();
+                const double error = (travel_of<Boxed>(surface, rate, believed) - exact).norm();
                 CAPTURE(rate);
                 CHECK(error < 3.0 / rate * exact.norm());
                 if (last > 0) CHECK(error < last / 2);
@@ -213,7 +254,7 @@ TEST_CASE("a joint bent in flow extends as associated flow demands", "[surface]"
     const double np = 2, mp = 0.5, h = 4 * mp / np, n = 0.4;
     const Scaled surface(RectangleAxialBending<double>(),
                          ScaledParameters<double, 2>{.capacity = {np, mp}});
-    Rows<Chords, std::decay_t<decltype(surface)>> rows{surface,
+    Rows<Boxed, std::decay_t<decltype(surface)>> rows{surface,
                                                        Eigen::Matrix2d{{3.0, 0.0}, {0.0, 0.01}}};
     // settle into the flow, in which the axial row hardly accelerates
     for (int i = 0; i < 400; ++i) rows.step({n * np, (1 - n * n) * mp * 1.0001}, 1e-2);
@@ -224,7 +265,7 @@ TEST_CASE("a joint bent in flow extends as associated flow demands", "[surface]"
 
 TEST_CASE("a load inside the surface is held for good, also after shaking", "[surface]") {
     const BiaxialRectangle<double> surface;
-    Rows<Chords, BiaxialRectangle<double>> rows{
+    Rows<Boxed, BiaxialRectangle<double>> rows{
         surface, Eigen::Matrix3d{{0.05, 0.01, 0.0}, {0.01, 0.03, -0.01}, {0.0, -0.01, 0.04}}};
     const Eigen::Vector3d load{0.4, 0.3, 0.3}; // gauge 0.72
     REQUIRE(surface.value(load) < 0.8);

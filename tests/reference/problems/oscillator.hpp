@@ -69,10 +69,9 @@ struct Peak {
     double position = 0, time = 0;
 };
 
-/// Every turning point within `duration`.
-template <class Law, class LoadAt>
-[[nodiscard]] std::vector<Peak> peaks(Oscillator<Law>& body, double dt, double duration,
-                                      LoadAt&& load_at) {
+/// Every turning point within `duration` of anything that steps, and has a position and a velocity.
+template <class Body, class LoadAt>
+[[nodiscard]] std::vector<Peak> peaks(Body& body, double dt, double duration, LoadAt&& load_at) {
     std::vector<Peak> found;
     double before = body.position(), now = before;
     double last_velocity = body.velocity();

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// What crosses the seam between a link and its engine: bodies as the engine shows them, frames
+// fixed in them, the rows that the link asks for and the wrench that the engine answered.
+#pragma once
+
+#include <Eigen/Core>
+#include <concepts>
+
+#include "ductile/joint/pair.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// A body as its engine shows it, world axes. Default: the static world.
+template <std::floating_point S>
+struct BodyState {
+    Vector3<S> position = Vector3<S>::Zero();        ///< of the centre of mass [m]
+    Matrix3<S> orientation = Matrix3<S>::Identity(); ///< columns: the body's axes
+    Vector3<S> velocity = Vector3<S>::Zero();        ///< of the centre of mass [m/s]
+    Vector3<S> spin = Vector3<S>::Zero();            ///< [rad/s]
+    S inverse_mass = 0;                              ///< [1/kg]
+    Matrix3<S> inverse_inertia = Matrix3<S>::Zero(); ///< about the centre of mass [1/(kg m²)]
+};
+
+/// A frame fixed in a body: origin from its centre of mass, axes as columns, both in the body's
+/// axes.
+template <std::floating_point S>
+struct JointFrame {
+    Vector3<S> origin = Vector3<S>::Zero();   ///< [m]
+    Matrix3<S> axes = Matrix3<S>::Identity(); ///< orthonormal, right-handed
+};
+
+/// One row of the link: a force along, or a moment about, a direction.
+template <std::floating_point S>
+struct LinkRow {
+    Vector3<S> direction = Vector3<S>::Zero(); ///< world, unit
+    bool turns = false;                        ///< moment row
+    RowLimits<S> limits;                       ///< [N | N m], [m/s | rad/s]
+};
+
+/// Force and moment on body A at the joint, world axes.
+template <std::floating_point S>
+struct JointWrench {
+    Vector3<S> force = Vector3<S>::Zero();  ///< [N]
+    Vector3<S> moment = Vector3<S>::Zero(); ///< about the joint [N m]
+};
+
+/// K along the axes of frame B, for rows in the order of JointAxis. `axes_in_world`: columns.
+template <std::floating_point S>
+[[nodiscard]] Matrix6<S> inverse_mass_of_rows(const BodyState<S>& a, const BodyState<S>& b,
+                                              const Vector3<S>& joint,
+                                              const Matrix3<S>& axes_in_world) noexcept {
+    const Matrix6<S> k = inverse_mass_at_joint(
+        BodyAtJoint<S>{a.inverse_mass, a.inverse_inertia, joint - a.position},
+        BodyAtJoint<S>{b.inverse_mass, b.inverse_inertia, joint - b.position});
+    Matrix6<S> turned;
+    for (int row = 0; row < 6; row += 3) {
+        for (int column = 0; column < 6; column += 3) {
+            turned.template block<3, 3>(row, column) =
+                axes_in_world.transpose() * k.template block<3, 3>(row, column) * axes_in_world;
+        }
+    }
+    return turned;
+}
+
+} // namespace ductile

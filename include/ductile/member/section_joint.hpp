@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+//
+// A member's joint from its section, its material and the length of member that it stands for: no
+// strength is found by trial.
+//
+//   section_hinge    bending about one axis                        OneAxisJoint
+//   section_joint    all six axes on one ellipsoid                 CoupledJoint
+//
+// Capacities and stiffnesses are those of joint_capacity. The ellipsoid through the six capacities
+// is smooth and holds for bending with torsion; a rectangle under axial force and bending flows
+// earlier, at m = 1 - n², where the ellipsoid is up to 2/√3 = 1.155 times too strong. Where that
+// matters build the CoupledJoint from the section's own surface (surface/).
+//
+// Life is counted in the equivalent rotation p = D/M_p with the plastic moment about x: in bending
+// about x alone it is the plastic rotation.
+//
+// Symbols
+//   L    length of member that the joint stands for [m]
+//   M_p  plastic moment                             [N m]
+//   k    elastic stiffness of the length            [N/m | N m/rad]
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <limits>
+
+#include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/coupled_joint.hpp"
+#include "ductile/joint/one_axis_joint.hpp"
+#include "ductile/law/perfect.hpp"
+#include "ductile/material.hpp"
+#include "ductile/section/capacity.hpp"
+#include "ductile/section/section.hpp"
+#include "ductile/surface/ellipsoid.hpp"
+#include "ductile/vocabulary/check.hpp"
+
+namespace ductile {
+
+template <std::floating_point S>
+struct SectionJointParameters {
+    S length = std::numeric_limits<S>::quiet_NaN(); ///< L [m], > 0
+    /// Equivalent plastic rotation at which it breaks [rad], > 0; infinity: never.
+    S largest_rotation = std::numeric_limits<S>::infinity();
+    /// True: elastic with the stiffness of the length below yield; false: rigid.
+    bool elastic = false;
+    ShearYield shear_yield = ShearYield::von_mises;
+};
+
+template <std::floating_point S>
+using SectionJoint = CoupledJoint<Ellipsoid<S, 6>, Perfect<S>, TravelLimit<S>>;
+
+/// Rows in the order of JointAxis.
+/// @throws std::invalid_argument where a parameter is out of range.
+template <FullSection T>
+[[nodiscard]] SectionJoint<typename T::Scalar> section_joint(
+    const T& section, const Material<typename T::Scalar>& material,
+    const SectionJointParameters<typename T::Scalar>& parameters) {
+    using S = typename T::Scalar;
+    const JointCapacity<S> of = joint_capacity(
+        section, material, {.length = parameters.length, .shear_yield = parameters.shear_yield});
+    CoupledParameters<S, 6> rows;
+    Eigen::Matrix<S, 6, 1> capacity;
+    for (int i = 0; i < 6; ++i) {
+        capacity[i] = of.capacity[std::size_t(i)];
+        if (parameters.elastic) rows.stiffness[i] = of.stiffness[std::size_t(i)];
+    }
+    return SectionJoint<S>(Ellipsoid<S, 6>({.capacity = capacity}),
+                           Perfect<S>({.strength = plastic_moment(section, material)}),
+                           TravelLimit<S>({.limit = parameters.largest_rotation}), rows);
+}
+
+/// Bending about `axis` of the section.
+/// @throws std::invalid_argument where a parameter is out of range; a hinge that is rigid below
+/// yield needs no length.
+template <BiaxialSection T>
+[[nodiscard]] OneAxisJoint<Perfect<typename T::Scalar>> section_hinge(
+    const T& section, const Material<typename T::Scalar>& material,
+    const SectionJointParameters<typename T::Scalar>& parameters = {},
+    SectionAxis axis = SectionAxis::x) {
+    using S = typename T::Scalar;
+    OneAxisParameters<S> row;
+    if (parameters.elastic) {
+        const S length = check::positive("SectionHinge.length", parameters.length, "m");
+        row.stiffness = material.youngs_modulus() * section.second_moment(axis) / length;
+    }
+    return OneAxisJoint(Perfect<S>({.strength = plastic_moment(section, material, axis)}),
+                        TravelLimit<S>({.limit = parameters.largest_rotation}), row);
+}
+
+} // namespace ductile

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+//
+// The impedance of rows, by how much their forces change with their velocity: what predicts the
+// force that would stop them.
+//
+//   Z = (M⁻¹ + C)⁻¹/dt = M (1 + C M)⁻¹/dt,   C = 1/(k dt²), 0 for a rigid row
+//
+// The second form needs no inverse of M and loses no digits at either end: rigid rows, C → 0, give
+// Z = M/dt without any arithmetic, springs that are soft for the step, C → ∞, give Z → k dt.
+//
+// Symbols
+//   M   effective mass of the rows, symmetric, positive definite    [kg | kg m²]
+//   C   compliance of the rows, diagonal, >= 0                      [1/kg | 1/(kg m²)]
+//   Z   impedance, symmetric, positive definite                     [N s/m | N m s/rad]
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <concepts>
+
+namespace ductile {
+
+/// Plain value. Rigid rows cost a product with a vector, elastic ones a factorisation of 1 + C M.
+template <std::floating_point S, int N>
+class Impedance {
+  public:
+    using Vector = Eigen::Matrix<S, N, 1>;
+    using Matrix = Eigen::Matrix<S, N, N>;
+
+    /// Rigid rows. `dt` > 0 [s].
+    Impedance(const Matrix& mass, S dt) noexcept : mass_(mass), dt_(dt) {}
+
+    /// Rows of which some are elastic.
+    Impedance(const Matrix& mass, S dt, const Vector& compliance) noexcept
+        : mass_(mass), dt_(dt), rigid_(false) {
+        factors_.compute(Matrix(compliance.asDiagonal() * mass) + Matrix::Identity());
+    }
+
+    /// Z v [N | N m] for a velocity v [m/s | rad/s].
+    [[nodiscard]] Vector operator*(const Vector& velocity) const noexcept {
+        if (rigid_) return mass_ * velocity / dt_;
+        return mass_ * factors_.solve(velocity) / dt_;
+    }
+
+    /// Z dt, all that a projection needs [kg | kg m²].
+    [[nodiscard]] Matrix shape() const noexcept {
+        if (rigid_) return mass_;
+        return mass_ * factors_.inverse();
+    }
+
+  private:
+    Matrix mass_;
+    S dt_;
+    bool rigid_ = true;
+    Eigen::PartialPivLU<Matrix> factors_; ///< of 1 + C M, where not rigid
+};
+
+} // namespace ductile

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+//
+// The part of an adapter's World that knows no engine: whom it asks after each step, what it tells,
+// with what effort the next step is done, the clock, and steps that follow the motion.
+//
+//   every step:  open();  each part: engine's step, look(time, doubt);  close()
+//
+// Of a joint it knows an address, a name, and whom to ask for its report.
+//
+// Limit case: without joints it is a clock.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/detail/step_control.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/world/effort.hpp"
+#include "ductile/world/joint_report.hpp"
+#include "ductile/world/watch.hpp"
+
+namespace ductile {
+
+/// Takes one line, without its end.
+using Warn = std::function<void(const std::string&)>;
+
+inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
+
+/// What a world says of a joint when it is first left unsolved.
+[[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
+    std::ostringstream line;
+    line << "ductile: joint \"" << event.name
+         << "\" was left unsolved by the solver at t = " << event.time << " s (off by "
+         << event.report.residual << " m/s or rad/s)";
+    return line.str();
+}
+
+/// Not thread-safe.
+class Supervisor {
+  public:
+    using Report = JointReport<double>;
+    using Ask = std::function<Report()>;
+    using Event = JointEvent<double>;
+    using Listener = Watch<double>::Listener;
+
+    /// An empty `warn`: nothing is said.
+    /// @throws std::invalid_argument where a parameter is out of range.
+    Supervisor(const EffortParameters& effort, Warn warn)
+        : effort_(effort), warn_(std::move(warn)) {
+        watch_.on_event([this](const Event& event) {
+            if (event.kind == EventKind::unreliable && warn_) warn_(unreliable_warning(event));
+            if (listener_) listener_(event);
+        });
+    }
+    Supervisor(const Supervisor&) = delete;
+    Supervisor& operator=(const Supervisor&) = delete;
+
+    // ---- joints
+
+    /// Number of the joint in the watch. An empty `name`: "joint 3", with its number.
+    /// @throws std::invalid_argument where it is here already.
+    std::size_t add(const void* joint, std::string name, Ask ask) {
+        if (find(joint) != joints_.end()) {
+            throw std::invalid_argument("World.add.joint: must not be in the world already");
+        }
+        if (name.empty()) name = "joint " + std::to_string(added_);
+        const std::size_t number = watch_.add(std::move(name), ask().fracture.has_value());
+        joints_.push_back({joint, number, std::move(ask)});
+        return added_ = number + 1, number;
+    }
+    /// Also from within a listener. What is not here is left alone.
+    void remove(const void* joint) {
+        const auto found = find(joint);
+        if (found == joints_.end()) return;
+        found->joint = nullptr;
+        if (!looking_) forget_removed();
+    }
+    [[nodiscard]] bool knows(const void* joint) const {
+        return std::any_of(joints_.begin(), joints_.end(),
+                           [joint](const Entry& entry) { return entry.joint == joint; });
+    }
+
+    // ---- what it tells
+
+    [[nodiscard]] const Watch<double>& watch() const noexcept { return watch_; }
+    [[nodiscard]] std::span<const Event> events() const noexcept { return watch_.events(); }
+    void on_event(Listener listener) { listener_ = std::move(listener); }
+    [[nodiscard]] const Effort& effort() const noexcept { return effort_.effort(); }
+    [[nodiscard]] double time() const noexcept { return time_; }
+
+    // ---- around a step
+
+    /// Forgets the events of the last step.
+    void open() noexcept { watch_.open(time_); }
+
+    /// Asks all joints after a part of a step that ended at `time` [s]; doubt(joint) is called for
+    /// each that was left unsolved.
+    template <class Doubt>
+    void look(double time, Doubt&& doubt) {
+        time_ = time;
+        watch_.go_on(time);
+        const Looking guard(looking_);
+        const std::size_t here = joints_.size(); // a listener may add more
+        for (std::size_t i = 0; i < here; ++i) {
+            const void* joint = joints_[i].joint;
+            if (joint == nullptr) continue;
+            const Report report = joints_[i].ask();
+            if (report.outcome == Outcome::unreliable) {
+                reliable_ = false;
+                doubt(joint);
+            }
+            watch_.see(joints_[i].number, report);
+        }
+    }
+
+    /// The effort of the next step, all parts of this one having been looked at.
+    const Effort& close() noexcept {
+        forget_removed();
+        return effort_.next(std::exchange(reliable_, true));
+    }
+
+    /// Steps for `duration` [s] and ends there to the last bit. Before each step `scene` (may be
+    /// empty) says what moves beside the joints, and may apply forces; do_step(dt, end) does it.
+    /// The last two steps share what is left, so that none is much shorter than the others.
+    /// @throws std::invalid_argument where the duration is not positive or the shortest step does
+    /// not move the clock.
+    template <class DoStep>
+    void advance(double duration, StepControl<double>& control,
+                 const std::function<SceneMotion<double>()>& scene, DoStep&& do_step) {
+        check::positive("World.advance.duration", duration, "s");
+        const double end = time_ + duration;
+        if (!(end - control.parameters().min_step < end)) {
+            check::fail("StepControl.min_step", control.parameters().min_step, "s",
+                        "long enough to move the clock");
+        }
+        open();
+        while (time_ < end) {
+            SceneMotion<double> motion = scene ? scene() : SceneMotion<double>{};
+            add_motion(motion);
+            const double left = end - time_;
+            double dt = control.next(motion);
+            if (dt >= left) {
+                do_step(left, end);
+            } else {
+                dt = std::min(dt, left / 2);
+                do_step(dt, time_ + dt);
+            }
+        }
+    }
+
+  private:
+    struct Entry {
+        const void* joint; ///< null: removed while all were asked
+        std::size_t number;
+        Ask ask;
+    };
+
+    /// A listener may throw.
+    struct Looking {
+        explicit Looking(bool& flag) : flag_(flag) { flag_ = true; }
+        ~Looking() { flag_ = false; }
+        Looking(const Looking&) = delete;
+        Looking& operator=(const Looking&) = delete;
+        bool& flag_;
+    };
+
+    void forget_removed() noexcept {
+        std::erase_if(joints_, [](const Entry& entry) { return entry.joint == nullptr; });
+    }
+
+    [[nodiscard]] std::vector<Entry>::iterator find(const void* joint) {
+        return std::find_if(joints_.begin(), joints_.end(),
+                            [joint](const Entry& entry) { return entry.joint == joint; });
+    }
+
+    void add_motion(SceneMotion<double>& motion) const {
+        for (const Entry& entry : joints_) {
+            if (entry.joint == nullptr) continue;
+            const Report report = entry.ask();
+            motion.plastic_rotation_rate =
+                std::max(motion.plastic_rotation_rate, report.rotation_rate);
+            motion.plastic_elongation_rate =
+                std::max(motion.plastic_elongation_rate, report.elongation_rate);
+        }
+    }
+
+    std::vector<Entry> joints_;
+    Watch<double> watch_;
+    EffortControl effort_;
+    Warn warn_;
+    Listener listener_;
+    double time_ = 0;
+    std::size_t added_ = 0;
+    bool reliable_ = true;
+    bool looking_ = false;
+};
+
+} // namespace ductile

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "ductile/world/supervisor.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "support/throws.hpp"
+
+using namespace ductile;
+using ductile::test::message_of;
+
+namespace {
+
+/// A joint that says what it is told to say.
+struct Puppet {
+    JointReport<double> says;
+    Supervisor::Ask ask() {
+        return [this] { return says; };
+    }
+};
+
+} // namespace
+
+TEST_CASE("a supervisor warns once, by name, and reports who is in doubt", "[world]") {
+    std::vector<std::string> lines;
+    Supervisor supervisor({.action = OnUnconverged::split_step},
+                          [&lines](const std::string& line) { lines.push_back(line); });
+    Puppet post, sign;
+    supervisor.add(&post, "post", post.ask());
+    supervisor.add(&sign, "", sign.ask());
+    sign.says = {.outcome = Outcome::unreliable, .residual = 0.25};
+    std::vector<const void*> doubted;
+    const auto doubt = [&doubted](const void* joint) { doubted.push_back(joint); };
+    supervisor.open();
+    supervisor.look(0.5, doubt);
+    CHECK(supervisor.close().parts == 2);
+    supervisor.open();
+    supervisor.look(0.75, doubt);
+    supervisor.look(1, doubt);
+    CHECK(supervisor.close().parts == 4); // one step, whatever its parts
+    CHECK(doubted == std::vector<const void*>{&sign, &sign, &sign});
+    CHECK(lines == std::vector<std::string>{
+                       "ductile: joint \"joint 1\" was left unsolved by the solver at t = 0.5 s "
+                       "(off by 0.25 m/s or rad/s)"});
+    CHECK(supervisor.watch().unreliable() == 2);
+    CHECK(supervisor.time() == 1);
+}
+
+TEST_CASE("a listener may remove any joint while all are asked", "[world]") {
+    Supervisor supervisor({}, nullptr);
+    Puppet first, second, third;
+    for (Puppet* puppet : {&first, &second, &third}) {
+        puppet->says = {.first_yield = true, .plastic_travel = 1};
+        supervisor.add(puppet, "", puppet->ask());
+    }
+    std::vector<std::size_t> told;
+    supervisor.on_event([&](const JointEvent<double>& event) {
+        told.push_back(event.joint);
+        supervisor.remove(&first);
+        supervisor.remove(&second);
+    });
+    supervisor.open();
+    supervisor.look(1, [](const void*) {});
+    CHECK(told == std::vector<std::size_t>{0, 2});
+    CHECK_FALSE(supervisor.knows(&first));
+    CHECK(supervisor.knows(&third));
+    CHECK(message_of([&] { supervisor.add(&third, "", third.ask()); }) ==
+          "World.add.joint: must not be in the world already");
+}
+
+TEST_CASE("a listener that throws leaves the supervisor as good as before", "[world]") {
+    Supervisor supervisor({}, nullptr);
+    Puppet post;
+    post.says = {.first_yield = true, .plastic_travel = 1};
+    supervisor.add(&post, "post", post.ask());
+    supervisor.on_event([](const JointEvent<double>&) { throw std::runtime_error("stop"); });
+    supervisor.open();
+    CHECK_THROWS_AS(supervisor.look(1, [](const void*) {}), std::runtime_error);
+    supervisor.remove(&post);
+    CHECK_FALSE(supervisor.knows(&post));
+}
+
+TEST_CASE("an advance ends on time, its last two steps share what is left", "[world]") {
+    Supervisor supervisor({}, nullptr);
+    Puppet post;
+    post.says.rotation_rate = 1;
+    supervisor.add(&post, "post", post.ask());
+    StepControl<double> control({.min_step = 1e-6, .max_step = 1, .plastic_rotation = 0.4});
+    std::vector<double> steps;
+    supervisor.advance(1, control, {}, [&](double dt, double end) {
+        steps.push_back(dt);
+        supervisor.look(end, [](const void*) {});
+        supervisor.close();
+    });
+    CHECK(supervisor.time() == 1);
+    REQUIRE(steps.size() == 3);
+    CHECK(steps[0] == 0.4);
+    CHECK(steps[1] == Approx(0.3));
+    CHECK(steps[2] == Approx(0.3));
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+//
+// Two bodies in space and one link between them, solved exactly: the smallest engine that a link
+// can be tested in.
+//
+//   v' = v + M⁻¹ (load dt + Jᵀ λ),  x' = x + v' dt,  Q' = exp(ω' dt) Q        (symplectic Euler)
+//
+// without gyroscopic torque: inertias are meant to be spherical, or motions short. Loads act on
+// body A at its centre of mass.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "ductile/joint/link.hpp"
+#include "reference/boxed_lcp.hpp"
+
+namespace ductile::reference {
+
+template <class Joint>
+class PairWorld {
+  public:
+    using S = typename Joint::Scalar;
+
+    PairWorld(const BodyState<S>& a, const BodyState<S>& b, Link<Joint> joined)
+        : a_(a), b_(b), link_(std::move(joined)) {
+        link_.start(a_, b_);
+    }
+
+    [[nodiscard]] BodyState<S>& a() { return a_; }
+    [[nodiscard]] BodyState<S>& b() { return b_; }
+    [[nodiscard]] Link<Joint>& link() { return link_; }
+    [[nodiscard]] S supplied() const { return supplied_; } ///< work of the loads [J]
+    [[nodiscard]] S kinetic_energy() const { return energy(a_) + energy(b_); }
+
+    void step(S dt, const Vector3<S>& force = Vector3<S>::Zero(),
+              const Vector3<S>& torque = Vector3<S>::Zero(), S rate = 0) {
+        const Vector3<S> v = a_.velocity, w = a_.spin;
+        const auto& rows = link_.prepare(a_, b_, dt, rate);
+        a_.velocity += dt * a_.inverse_mass * force;
+        a_.spin += dt * a_.inverse_inertia * torque;
+        const Vector3<S> at = link_.point();
+        Eigen::Matrix<S, 6, 12> jacobian, mobile;
+        Vector<S> bias(6), lower(6), upper(6);
+        Matrix<S> compliance = Matrix<S>::Zero(6, 6);
+        for (int i = 0; i < 6; ++i) {
+            const LinkRow<S>& row = rows[std::size_t(i)];
+            const Vector3<S> none = Vector3<S>::Zero(), n = row.direction;
+            jacobian.row(i) << (row.turns ? none : n).transpose(),
+                (row.turns ? n : (at - a_.position).cross(n)).transpose(),
+                (row.turns ? none : -n).transpose(),
+                (row.turns ? -n : -(at - b_.position).cross(n)).transpose();
+            bias[i] = row.limits.bias;
+            lower[i] = row.limits.lower * dt;
+            upper[i] = row.limits.upper * dt;
+            compliance(i, i) = row.limits.compliance;
+        }
+        mobile << jacobian.template middleCols<3>(0) * a_.inverse_mass,
+            jacobian.template middleCols<3>(3) * a_.inverse_inertia,
+            jacobian.template middleCols<3>(6) * b_.inverse_mass,
+            jacobian.template middleCols<3>(9) * b_.inverse_inertia;
+        Eigen::Matrix<S, 12, 1> velocity;
+        velocity << a_.velocity, a_.spin, b_.velocity, b_.spin;
+        const Vector<S> impulse = lcp_.solve(mobile * jacobian.transpose() + compliance,
+                                             jacobian * velocity - bias, lower, upper);
+        velocity += mobile.transpose() * impulse;
+        a_.velocity = velocity.template segment<3>(0);
+        a_.spin = velocity.template segment<3>(3);
+        b_.velocity = velocity.template segment<3>(6);
+        b_.spin = velocity.template segment<3>(9);
+        supplied_ += dt * (force.dot(v + a_.velocity) + torque.dot(w + a_.spin)) / 2;
+        JointWrench<S> wrench;
+        for (std::size_t i = 0; i < 6; ++i) {
+            (rows[i].turns ? wrench.moment : wrench.force) +=
+                rows[i].direction * impulse[Eigen::Index(i)] / dt;
+        }
+        move(a_, dt);
+        move(b_, dt);
+        link_.commit(a_, b_, wrench, dt);
+        const BreakRelease<S> release = link_.release(a_, b_);
+        change(a_, release.a);
+        change(b_, release.b);
+    }
+
+  private:
+    static void move(BodyState<S>& body, S dt) {
+        body.position += dt * body.velocity;
+        const S angle = body.spin.norm() * dt;
+        if (angle > 0) {
+            body.orientation =
+                Eigen::AngleAxis<S>(angle, body.spin.normalized()) * body.orientation;
+        }
+    }
+    static void change(BodyState<S>& body, const VelocityChange<S>& by) {
+        body.velocity += by.linear;
+        body.spin += by.angular;
+    }
+    static S energy(const BodyState<S>& body) {
+        if (!(body.inverse_mass > 0)) return 0;
+        return body.velocity.squaredNorm() / body.inverse_mass / 2 +
+               body.spin.dot(body.inverse_inertia.inverse() * body.spin) / 2;
+    }
+
+    BodyState<S> a_, b_;
+    Link<Joint> link_;
+    BoxedLcp<S> lcp_;
+    S supplied_ = 0;
+};
+
+} // namespace ductile::reference
