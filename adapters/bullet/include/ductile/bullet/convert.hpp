@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// Bullet's vectors and bodies in the words of the core. Results are double whatever the precision of
-// Bullet: accumulated work and travel would lose digits in float.
+// Bullet's vectors and bodies in the words of the core. Results are double whatever the precision
+// of Bullet: accumulated work and travel would lose digits in float.
 #pragma once
 
-#include <LinearMath/btMatrix3x3.h>
-#include <LinearMath/btVector3.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btMatrix3x3.h>
+#include <LinearMath/btTransform.h>
+#include <LinearMath/btVector3.h>
 
+#include "ductile/joint/link_types.hpp"
 #include "ductile/joint/pair.hpp"
 
 namespace ductile::bullet {
@@ -26,22 +28,51 @@ namespace ductile::bullet {
     return {btScalar(v.x()), btScalar(v.y()), btScalar(v.z())};
 }
 
-/// Velocity of the point of the body that is at `arm` from its centre of mass, world axes [m/s].
-/// Double throughout, also where Bullet is float.
-[[nodiscard]] inline Vector3<double> velocity_at(const btRigidBody& body,
-                                                 const Vector3<double>& arm) noexcept {
-    return to_core(body.getLinearVelocity()) + to_core(body.getAngularVelocity()).cross(arm);
+[[nodiscard]] inline JointFrame<double> to_core(const btTransform& frame) noexcept {
+    return {to_core(frame.getOrigin()), to_core(frame.getBasis())};
 }
 
-/// The body as a joint at `point` (world) sees it. Static and kinematic bodies cannot move.
-[[nodiscard]] inline BodyAtJoint<double> at_joint(const btRigidBody& body,
-                                                  const btVector3& point) noexcept {
-    return {.inverse_mass = double(body.getInvMass()),
-            .inverse_inertia = to_core(body.getInvInertiaTensorWorld()),
-            .arm = to_core(point - body.getCenterOfMassPosition())};
+/// The body as it is now. Static and kinematic bodies cannot be moved by a joint.
+[[nodiscard]] inline BodyState<double> body_state(const btRigidBody& body) noexcept {
+    BodyState<double> state{.position = to_core(body.getCenterOfMassPosition()),
+                            .orientation = to_core(body.getCenterOfMassTransform().getBasis()),
+                            .velocity = to_core(body.getLinearVelocity()),
+                            .spin = to_core(body.getAngularVelocity())};
+    if (!body.isStaticOrKinematicObject()) {
+        state.inverse_mass = double(body.getInvMass());
+        state.inverse_inertia = to_core(body.getInvInertiaTensorWorld());
+    }
+    return state;
+}
+
+/// The body where it is now, with the velocities that the last tick left it: Bullet keeps them as
+/// its interpolation velocities, whoever changed the velocities since (damping at the start of the
+/// next tick, for one).
+[[nodiscard]] inline BodyState<double> body_state_of_last_tick(const btRigidBody& body) noexcept {
+    BodyState<double> state = body_state(body);
+    if (!body.isStaticOrKinematicObject()) {
+        state.velocity = to_core(body.getInterpolationLinearVelocity());
+        state.spin = to_core(body.getInterpolationAngularVelocity());
+    }
+    return state;
+}
+
+/// The velocities that the body would have after a tick of `dt` [s] if nothing held it.
+[[nodiscard]] inline BodyState<double> free_state(const btRigidBody& body, double dt) noexcept {
+    BodyState<double> state = body_state(body);
+    state.velocity += dt * state.inverse_mass * to_core(body.getTotalForce());
+    state.spin += dt * state.inverse_inertia * to_core(body.getTotalTorque());
+    if (!(state.inverse_mass > 0)) return state;
+    if (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) {
+        state.spin += to_core(body.computeGyroscopicImpulseImplicit_Body(btScalar(dt)));
+    } else if (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD) {
+        state.spin += to_core(body.computeGyroscopicImpulseImplicit_World(btScalar(dt)));
+    }
+    return state;
 }
 
 inline void apply(btRigidBody& body, const VelocityChange<double>& change) noexcept {
+    if (body.isStaticOrKinematicObject()) return;
     body.setLinearVelocity(body.getLinearVelocity() + to_bullet(change.linear));
     body.setAngularVelocity(body.getAngularVelocity() + to_bullet(change.angular));
 }

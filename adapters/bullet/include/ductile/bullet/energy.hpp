@@ -10,7 +10,8 @@
 // The solver's update is v' = v + M⁻¹ Σ impulses, so each impulse's work is impulse × (u + u')/2 at
 // its point, and the sum is the change of kinetic energy to round-off. Booked:
 //   plastic      what every PlasticConstraint says it absorbed
-//   joints       work of all constraints (their joint feedback), less the plastic part
+//   joints       work of all constraints (their joint feedback), less the plastic part and what
+//                elastic joints store, which the world holds
 //   contact      normal impulses of all manifold points
 //   friction     lateral impulses of all manifold points
 //   integration  gravity's work against the change of potential energy; damping; gyroscopic torque
@@ -35,7 +36,7 @@
 #include <unordered_map>
 
 #include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/one_axis_constraint.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/energy.hpp"
 
 namespace ductile::bullet {
@@ -57,6 +58,14 @@ class EnergyMeter {
     }
     EnergyMeter(const EnergyMeter&) = delete;
     EnergyMeter& operator=(const EnergyMeter&) = delete;
+
+    /// To be called for a constraint that leaves the world: takes back the feedback lent to it.
+    void forget(btTypedConstraint& constraint) {
+        const auto lent = feedback_of_.find(&constraint);
+        if (lent == feedback_of_.end()) return;
+        if (constraint.getJointFeedback() == lent->second) constraint.setJointFeedback(nullptr);
+        feedback_of_.erase(lent);
+    }
 
     void open() {
         ledger_.open(held());
@@ -80,7 +89,8 @@ class EnergyMeter {
             if (constraint.getJointFeedback() == nullptr) lend_feedback(constraint);
             *constraint.getJointFeedback() = no_feedback();
             if (auto* plastic = dynamic_cast<PlasticConstraint*>(&constraint)) {
-                plastic_start_[plastic] = {plastic->absorbed_energy(), plastic->release().energy};
+                plastic_start_[plastic] = {plastic->absorbed_energy(), plastic->stored_energy(),
+                                           plastic->release().energy};
             }
         }
     }
@@ -98,8 +108,8 @@ class EnergyMeter {
         ledger_.update(last_);
     }
 
-    /// What the world's dynamic bodies hold now. Potential energy is measured from the origin, with
-    /// each body's own gravity.
+    /// What the world's dynamic bodies and elastic joints hold now. Potential energy is measured
+    /// from the origin, with each body's own gravity.
     [[nodiscard]] HeldEnergy<double> held() const {
         HeldEnergy<double> result;
         for_each_body([&result](const btRigidBody& body) {
@@ -107,8 +117,14 @@ class EnergyMeter {
             const Vector3<double> w = to_core(body.getAngularVelocity());
             result.kinetic += mass(body) * v.squaredNorm() / 2 + w.dot(inertia(body) * w) / 2;
             result.potential -=
-                mass(body) * to_core(body.getGravity()).dot(to_core(body.getCenterOfMassPosition()));
+                mass(body) *
+                to_core(body.getGravity()).dot(to_core(body.getCenterOfMassPosition()));
         });
+        for (int i = 0; i < world_.getNumConstraints(); ++i) {
+            if (auto* plastic = dynamic_cast<PlasticConstraint*>(world_.getConstraint(i))) {
+                result.elastic += plastic->stored_energy();
+            }
+        }
         return result;
     }
 
@@ -138,7 +154,7 @@ class EnergyMeter {
         }
 
         Vector3<double> position;
-        Vector3<double> linear;  ///< at the start of the solve, after damping
+        Vector3<double> linear; ///< at the start of the solve, after damping
         Vector3<double> angular;
         Matrix3<double> inertia_world;
         Vector3<double> force; ///< applied by the user
@@ -152,6 +168,7 @@ class EnergyMeter {
     /// A plastic constraint's totals at the start of the step [J].
     struct PlasticStart {
         double absorbed = 0;
+        double stored = 0;
         double released = 0;
     };
 
@@ -251,17 +268,20 @@ class EnergyMeter {
     void book_constraint(btTypedConstraint& constraint, double dt) {
         const btJointFeedback* feedback = constraint.getJointFeedback();
         if (feedback == nullptr) return;
-        const double taken = -work(constraint.getRigidBodyA(), to_core(feedback->m_appliedForceBodyA),
-                                   to_core(feedback->m_appliedTorqueBodyA), dt) -
-                             work(constraint.getRigidBodyB(), to_core(feedback->m_appliedForceBodyB),
-                                  to_core(feedback->m_appliedTorqueBodyB), dt);
+        const double taken =
+            -work(constraint.getRigidBodyA(), to_core(feedback->m_appliedForceBodyA),
+                  to_core(feedback->m_appliedTorqueBodyA), dt) -
+            work(constraint.getRigidBodyB(), to_core(feedback->m_appliedForceBodyB),
+                 to_core(feedback->m_appliedTorqueBodyB), dt);
         double named = 0;
         if (auto* plastic = dynamic_cast<PlasticConstraint*>(&constraint)) {
             const PlasticStart& before = plastic_start_.at(plastic);
             const double flow = plastic->absorbed_energy() - before.absorbed;
             ledger_.book(Account::plastic, flow);
-            // what a break released was taken by the row and given back after the solve
-            named = flow + plastic->release().energy - before.released;
+            // what a break released was taken by the row and given back after the solve; what was
+            // stored then is set free inside the part
+            named = flow + plastic->stored_energy() - before.stored + plastic->release().energy -
+                    before.released;
         }
         ledger_.book(Account::joints, taken - named);
         taken_[&constraint] += taken;

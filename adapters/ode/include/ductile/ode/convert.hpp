@@ -43,12 +43,31 @@ namespace ductile::ode {
     return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>::Zero();
 }
 
-/// The body as a joint at `point` (world) sees it; the static world and kinematic bodies cannot move.
-[[nodiscard]] inline BodyAtJoint<double> at_joint(dBodyID body, const Vector3<double>& point) noexcept {
+/// The body as a joint at `point` (world) sees it; the static world and kinematic bodies cannot
+/// move.
+[[nodiscard]] inline BodyAtJoint<double> at_joint(dBodyID body,
+                                                  const Vector3<double>& point) noexcept {
     if (body == nullptr || dBodyIsKinematic(body)) return {};
     return {.inverse_mass = 1 / mass(body),
             .inverse_inertia = inertia(body).inverse(),
             .arm = point - to_core(dBodyGetPosition(body))};
+}
+
+/// The two bodies of a joint in the order in which ODE's rows and feedback know them: a joint made
+/// between the static world and a body (null first) is turned round inside ODE.
+struct AttachedBodies {
+    dBodyID a = nullptr;
+    dBodyID b = nullptr;   ///< null: the static world
+    bool reversed = false; ///< the user attached the world first
+
+    bool operator==(const AttachedBodies&) const = default;
+};
+
+[[nodiscard]] inline AttachedBodies attached_bodies(dJointID joint) noexcept {
+    const dBodyID first = dJointGetBody(joint, 0);
+    const dBodyID second = dJointGetBody(joint, 1);
+    if (first == nullptr && second != nullptr) return {second, nullptr, true};
+    return {first, second, false};
 }
 
 inline void apply(dBodyID body, const VelocityChange<double>& change) noexcept {

@@ -12,11 +12,14 @@
 // ODE's update is v' = v + M⁻¹ Σ impulses, so each impulse's work is impulse × (u + u')/2 at its
 // point, and the sum is the change of kinetic energy to round-off. Booked:
 //   plastic      what every PlasticConstraint added to the meter says it absorbed
-//   joints       work of all joints of the bodies (their feedback), less the plastic part
+//   joints       work of all joints of the bodies (their feedback and what a plastic constraint
+//   applies
+//                beside it), less what is plastic and what is stored
 //   contact      normal part of the contact joints' work
 //   friction     tangential part of the contact joints' work
 //   integration  gravity's work against the change of potential energy; gyroscopic torque and the
-//                turning of inertia tensors
+//                turning of inertia tensors; motion that ends because ODE puts a body to sleep
+// What plastic constraints store is held as elastic energy.
 // ODE's damping and its limit of angular speed are not booked: where a scene uses them they stay
 // unexplained.
 //
@@ -28,13 +31,14 @@
 #include <ode/ode.h>
 
 #include <Eigen/LU>
+#include <cstddef>
 #include <deque>
 #include <unordered_map>
 #include <vector>
 
 #include "ductile/energy.hpp"
 #include "ductile/ode/convert.hpp"
-#include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/ode/plastic_constraint.hpp"
 
 namespace ductile::ode {
 
@@ -47,9 +51,17 @@ class EnergyMeter {
 
     /// Watches a dynamic body.
     void add(dBodyID body) { bodies_.push_back(body); }
+    /// To be called before the body is destroyed: what it holds leaves the ledger as supplied
+    /// (negative).
+    void remove(dBodyID body) { std::erase(bodies_, body); }
     /// Watches a plastic constraint, so that its share of the joints' work is booked as plastic.
-    void add(PlasticConstraint& constraint) { plastic_[constraint.id()].constraint = &constraint; }
-    /// Names a contact joint of the coming step, so that its work is booked as contact and friction.
+    void add(PlasticConstraint& constraint) { plastic_.emplace_back(&constraint); }
+    /// To be called before the constraint is destroyed; what it stores leaves as with a body.
+    void remove(PlasticConstraint& constraint) {
+        std::erase_if(plastic_, [&](const auto& p) { return p.constraint == &constraint; });
+    }
+    /// Names a contact joint of the coming step, so that its work is booked as contact and
+    /// friction.
     void add_contact(dJointID joint, const dContactGeom& geometry) {
         contacts_[joint] = {to_core(geometry.pos), to_core(geometry.normal)};
     }
@@ -69,28 +81,34 @@ class EnergyMeter {
     void before_step() {
         // what somebody changed between the steps came from outside
         ledger_.supply(held().total() - last_.total());
+        take_feedback_back(); // of a step that was never made
         start_.clear();
         for (dBodyID body : bodies_) start_.emplace(body, BodyStart(body));
         feedback_.clear();
-        joints_.clear();
         for (dBodyID body : bodies_) {
             for (int i = 0; i < dBodyGetNumJoints(body); ++i) watch(dBodyGetJoint(body, i), body);
         }
-        for (auto& [id, share] : plastic_) {
+        for (PlasticShare& share : plastic_) {
             share.absorbed = share.constraint->absorbed_energy();
+            share.stored = share.constraint->stored_energy();
             share.released = share.constraint->release().energy;
+        }
+        plastic_of_.clear();
+        for (std::size_t i = 0; i < plastic_.size(); ++i) {
+            plastic_of_.emplace(plastic_[i].constraint->id(), i);
         }
     }
 
     /// Books the step of `dt` [s] that was opened by `before_step`.
     void after_step(double dt) {
         for (auto& [body, start] : start_) start.finish(body);
-        for (const auto& [id, share] : plastic_) undo_release(share);
-        for (const auto& [body, start] : start_) book_body(body, start, dt);
-        for (const WatchedJoint& joint : joints_) book_joint(joint, dt);
-        for (const WatchedJoint& joint : joints_) {
-            if (joint.lent) dJointSetFeedback(joint.id, nullptr);
+        for (const PlasticShare& share : plastic_) undo_release(share);
+        for (dBodyID body : bodies_) {
+            const auto start = start_.find(body);
+            if (start != start_.end()) book_body(body, start->second, dt);
         }
+        for (const WatchedJoint& joint : joints_) book_joint(joint, dt);
+        take_feedback_back();
         contacts_.clear();
         last_ = held();
         ledger_.update(last_);
@@ -99,6 +117,9 @@ class EnergyMeter {
     /// What the watched bodies hold now; potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const {
         HeldEnergy<double> result;
+        for (const PlasticShare& share : plastic_) {
+            result.elastic += share.constraint->stored_energy();
+        }
         for (dBodyID body : bodies_) {
             const Vector3<double> v = linear_velocity(body);
             const Vector3<double> w = angular_velocity(body);
@@ -117,7 +138,8 @@ class EnergyMeter {
               angular(angular_velocity(body)),
               inertia_world(inertia(body)),
               force(to_core(dBodyGetForce(body))),
-              torque(to_core(dBodyGetTorque(body))) {}
+              torque(to_core(dBodyGetTorque(body))),
+              awake(dBodyIsEnabled(body) != 0) {}
 
         void finish(dBodyID body) {
             linear_after = linear_velocity(body);
@@ -130,6 +152,7 @@ class EnergyMeter {
         Matrix3<double> inertia_world;
         Vector3<double> force; ///< applied by the user
         Vector3<double> torque;
+        bool awake;
         Vector3<double> linear_after{0, 0, 0}; ///< after the solve, before a break's release
         Vector3<double> angular_after{0, 0, 0};
     };
@@ -150,8 +173,11 @@ class EnergyMeter {
 
     /// A plastic constraint and its totals at the start of the step [J].
     struct PlasticShare {
-        PlasticConstraint* constraint = nullptr;
+        explicit PlasticShare(PlasticConstraint* of) : constraint(of) {}
+
+        PlasticConstraint* constraint;
         double absorbed = 0;
+        double stored = 0;
         double released = 0;
     };
 
@@ -163,8 +189,7 @@ class EnergyMeter {
     }
 
     void watch(dJointID id, dBodyID from) {
-        const dBodyID first = dJointGetBody(id, 0);
-        const dBodyID second = dJointGetBody(id, 1);
+        const auto [first, second, reversed] = attached_bodies(id);
         // each joint once: from its first watched body
         if (from != first && start_.count(first) > 0) return;
         if (dJointIsEnabled(id) == 0) return;
@@ -173,12 +198,20 @@ class EnergyMeter {
         joints_.push_back({id, first, second, dJointGetFeedback(id), lend});
     }
 
+    void take_feedback_back() {
+        for (const WatchedJoint& joint : joints_) {
+            if (joint.lent) dJointSetFeedback(joint.id, nullptr);
+        }
+        joints_.clear();
+    }
+
     /// A break's release acted after the solve; the rows' work wants the velocities before it.
     void undo_release(const PlasticShare& share) {
         const BreakRelease<double>& release = share.constraint->release();
         if (release.energy == share.released) return;
-        take_back(dJointGetBody(share.constraint->id(), 0), release.a);
-        take_back(dJointGetBody(share.constraint->id(), 1), release.b);
+        const auto [a, b, reversed] = attached_bodies(share.constraint->id());
+        take_back(a, release.a);
+        take_back(b, release.b);
     }
     void take_back(dBodyID body, const VelocityChange<double>& change) {
         const auto start = start_.find(body);
@@ -188,6 +221,10 @@ class EnergyMeter {
     }
 
     void book_body(dBodyID body, const BodyStart& start, double dt) {
+        if (dBodyIsEnabled(body) == 0) {
+            if (start.awake) ledger_.book(Account::integration, kinetic(body, start));
+            return;
+        }
         const Vector3<double> mean_linear = (start.linear + start.linear_after) / 2;
         const Vector3<double> mean_angular = (start.angular + start.angular_after) / 2;
         ledger_.supply(dt * (start.force.dot(mean_linear) + start.torque.dot(mean_angular)));
@@ -198,6 +235,12 @@ class EnergyMeter {
         const double turning = w.dot((start.inertia_world - inertia(body)) * w) / 2;
         const double gyroscopic = -gyroscopic_impulse(body, start, dt).dot(mean_angular);
         ledger_.book(Account::integration, potential + turning + gyroscopic);
+    }
+
+    /// Kinetic energy at the start of the step [J].
+    static double kinetic(dBodyID body, const BodyStart& start) {
+        return mass(body) * start.linear.squaredNorm() / 2 +
+               start.angular.dot(start.inertia_world * start.angular) / 2;
     }
 
     /// Angular impulse [N m s] that ODE adds for ω × Iω, by its implicit rule (Lacoursière 2006):
@@ -213,17 +256,20 @@ class EnergyMeter {
     }
 
     /// Work that a force and a torque about the centre of mass do on a body over the step [J].
-    [[nodiscard]] double work(dBodyID body, const dReal* force, const dReal* torque, double dt) const {
+    [[nodiscard]] double work(dBodyID body, const Vector3<double>& force,
+                              const Vector3<double>& torque, double dt) const {
         const auto start = start_.find(body);
-        if (start == start_.end()) return 0;
+        // ODE leaves the feedback of a joint that sleeps as it was
+        if (start == start_.end() || dBodyIsEnabled(body) == 0) return 0;
         const BodyStart& s = start->second;
-        return dt / 2 * (to_core(force).dot(s.linear + s.linear_after) +
-                         to_core(torque).dot(s.angular + s.angular_after));
+        return dt / 2 *
+               (force.dot(s.linear + s.linear_after) + torque.dot(s.angular + s.angular_after));
     }
 
     void book_joint(const WatchedJoint& joint, double dt) {
         const dJointFeedback& f = *joint.feedback;
-        const double taken = -work(joint.first, f.f1, f.t1, dt) - work(joint.second, f.f2, f.t2, dt);
+        double taken = -work(joint.first, to_core(f.f1), to_core(f.t1), dt) -
+                       work(joint.second, to_core(f.f2), to_core(f.t2), dt);
         if (const auto contact = contacts_.find(joint.id); contact != contacts_.end()) {
             const auto& [point, normal] = contact->second;
             const Vector3<double> sum =
@@ -234,12 +280,18 @@ class EnergyMeter {
             return;
         }
         double named = 0;
-        if (const auto plastic = plastic_.find(joint.id); plastic != plastic_.end()) {
-            const PlasticShare& share = plastic->second;
-            const double flow = share.constraint->absorbed_energy() - share.absorbed;
+        const auto [begin, end] = plastic_of_.equal_range(joint.id);
+        for (auto entry = begin; entry != end; ++entry) {
+            const PlasticShare& share = plastic_[entry->second];
+            const PlasticConstraint& constraint = *share.constraint;
+            const OutsideForce& outside = constraint.outside_force();
+            taken -= work(joint.first, outside.force, outside.torque_a, dt) +
+                     work(joint.second, -outside.force, outside.torque_b, dt);
+            const double flow = constraint.absorbed_energy() - share.absorbed;
             ledger_.book(Account::plastic, flow);
             // what a break released was taken by the row and given back after the solve
-            named = flow + share.constraint->release().energy - share.released;
+            named += flow + constraint.stored_energy() - share.stored +
+                     constraint.release().energy - share.released;
         }
         ledger_.book(Account::joints, taken - named);
         taken_[joint.id] += taken;
@@ -258,7 +310,8 @@ class EnergyMeter {
     HeldEnergy<double> last_;
     std::vector<dBodyID> bodies_;
     std::unordered_map<dBodyID, BodyStart> start_;
-    std::unordered_map<dJointID, PlasticShare> plastic_;
+    std::vector<PlasticShare> plastic_;
+    std::unordered_multimap<dJointID, std::size_t> plastic_of_; ///< place in plastic_, this step
     std::unordered_map<dJointID, Contact> contacts_;
     std::unordered_map<dJointID, double> taken_;
     std::vector<WatchedJoint> joints_;

@@ -3,12 +3,13 @@
 // A hinge that holds rigidly below its plastic moment, turns at it, keeps the turn and breaks.
 //
 //   ductile::ode::PlasticHinge hinge(world, left, right, {.anchor = {0, 0, 0}, .axis = {0, 1, 0}},
-//                                    ductile::OneAxisJoint(ductile::Perfect<double>({.strength = 64})));
+//                                    ductile::OneAxisJoint(ductile::Perfect<double>({.strength =
+//                                    64})));
 //   hinge.add_to(stepper);
 //
 // ODE's hinge with its motor as the plastic row; see one_axis_constraint.hpp for signs and ODE's
-// traps. Angles are not wrapped: the hinge may turn many times, as long as it turns less than π in one
-// step.
+// traps. Angles are not wrapped: the hinge may turn many times, as long as it turns less than π in
+// one step.
 #pragma once
 
 #include <ode/ode.h>
@@ -17,8 +18,8 @@
 
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
-#include "ductile/vocabulary/angle.hpp"
 
 namespace ductile::ode {
 
@@ -37,14 +38,10 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
     /// hinge's rest position.
     /// @throws std::invalid_argument where `a` is null.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
-        : Base(dJointCreateHinge(world, nullptr), a, b, std::move(joint)), world_(world) {
-        const auto& [anchor, axis] = frame;
-        dJointSetHingeAnchor(Base::id(), dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
-        dJointSetHingeAxis(Base::id(), dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
-        dJointSetHingeParam(Base::id(), dParamCFM, 0); // the plastic row is exact
-        axis_in_b_ = this->axis();
+        : Base(hinge_axis(make(world, a, b, frame)), std::move(joint), AtBreak::disable_joint,
+               true) {
+        axis_in_b_ = this->row().axis();
         if (b != nullptr) axis_in_b_ = matrix_to_core(dBodyGetRotation(b)).transpose() * axis_in_b_;
-        Base::start();
     }
 
     /// Angle of A relative to B about the axis, not wrapped [rad].
@@ -55,36 +52,25 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
     [[nodiscard]] double moment() const { return Base::reaction(); }
 
   private:
-    [[nodiscard]] bool turns() const noexcept override { return true; }
-    [[nodiscard]] double measure(double predicted) const override {
-        return unwrap(double(dJointGetHingeAngle(Base::id())), predicted);
+    static dJointID make(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame) {
+        require_body("PlasticHinge", a);
+        const dJointID id = dJointCreateHinge(world, nullptr);
+        const auto& [anchor, axis] = frame;
+        dJointAttach(id, a, b);
+        dJointSetHingeAnchor(id, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
+        dJointSetHingeAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+        return id;
     }
-    [[nodiscard]] Vector3<double> axis() const override {
-        dVector3 result;
-        dJointGetHingeAxis(Base::id(), result);
-        return to_core(result);
-    }
-    [[nodiscard]] Vector3<double> point() const override {
-        dVector3 result;
-        dJointGetHingeAnchor(Base::id(), result);
-        return to_core(result);
-    }
-    /// ODE pulls anchors and axes together by the world's ERP a step.
+    /// ODE pulls the axes together as it does the pin.
     [[nodiscard]] Vector6<double> rigid_target(double dt) const override {
-        dVector3 other;
-        dJointGetHingeAnchor2(Base::id(), other);
-        Vector3<double> axis_b = axis_in_b_;
-        if (Base::b() != nullptr) axis_b = matrix_to_core(dBodyGetRotation(Base::b())) * axis_in_b_;
-        Vector6<double> target;
-        target << to_core(other) - point(), axis().cross(axis_b);
-        return double(dWorldGetERP(world_)) / dt * target;
-    }
-    void set_motor(dReal velocity, dReal strength) override {
-        dJointSetHingeParam(Base::id(), dParamVel, velocity);
-        dJointSetHingeParam(Base::id(), dParamFMax, strength);
+        const dBodyID b = this->row().bodies().b;
+        Vector6<double> target = Base::rigid_target(dt);
+        const Vector3<double> axis_b =
+            b != nullptr ? matrix_to_core(dBodyGetRotation(b)) * axis_in_b_ : axis_in_b_;
+        target.template tail<3>() = this->erp() / dt * this->row().axis().cross(axis_b);
+        return target;
     }
 
-    dWorldID world_;
     Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A bar that holds its length below its axial strength, stretches or shortens at it, keeps the change
-// and breaks: ODE's slider with its motor as the plastic row. See one_axis_constraint.hpp for signs
-// and ODE's traps.
+// A bar that holds its length below its axial strength, stretches or shortens at it, keeps the
+// change and breaks: ODE's slider with its motor as the plastic row. See one_axis_constraint.hpp
+// for signs and ODE's traps.
 #pragma once
 
 #include <ode/ode.h>
@@ -11,6 +11,7 @@
 
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
 
 namespace ductile::ode {
@@ -24,11 +25,8 @@ class PlasticSlider final : public OneAxisConstraint<Joint> {
     /// Where the bodies are now is the bar's rest position.
     /// @throws std::invalid_argument where `a` is null.
     PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis, Joint joint)
-        : Base(dJointCreateSlider(world, nullptr), a, b, std::move(joint)) {
-        dJointSetSliderAxis(Base::id(), dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
-        dJointSetSliderParam(Base::id(), dParamCFM, 0); // the plastic row is exact
-        Base::start();
-    }
+        : Base(slider_axis(make(world, a, b, axis)), std::move(joint), AtBreak::disable_joint,
+               true) {}
 
     /// Change of length: A's displacement along the axis relative to B [m].
     [[nodiscard]] double elongation() const { return Base::position(); }
@@ -38,23 +36,12 @@ class PlasticSlider final : public OneAxisConstraint<Joint> {
     [[nodiscard]] double force() const { return Base::reaction(); }
 
   private:
-    [[nodiscard]] bool turns() const noexcept override { return false; }
-    [[nodiscard]] double measure(double /*predicted*/) const override {
-        return double(dJointGetSliderPosition(Base::id()));
-    }
-    [[nodiscard]] Vector3<double> axis() const override {
-        dVector3 result;
-        dJointGetSliderAxis(Base::id(), result);
-        return to_core(result);
-    }
-    /// ODE applies a slider's force midway between the two centres of mass.
-    [[nodiscard]] Vector3<double> point() const override {
-        const Vector3<double> a = to_core(dBodyGetPosition(Base::a()));
-        return Base::b() == nullptr ? a : (a + to_core(dBodyGetPosition(Base::b()))) / 2;
-    }
-    void set_motor(dReal velocity, dReal strength) override {
-        dJointSetSliderParam(Base::id(), dParamVel, velocity);
-        dJointSetSliderParam(Base::id(), dParamFMax, strength);
+    static dJointID make(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis) {
+        require_body("PlasticSlider", a);
+        const dJointID id = dJointCreateSlider(world, nullptr);
+        dJointAttach(id, a, b);
+        dJointSetSliderAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+        return id;
     }
 };
 

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+//
+// A solver that hands each island to the user's own solver, or, where one of its constraints is in
+// doubt, to a direct one (SoftMlcpSolver with Dantzig's method). World installs it where the user
+// chose OnUnconverged::direct_solver.
+//
+// Bullet gathers small islands to groups of m_minimumSolverBatchSize constraints; the decision is
+// for the group.
+//
+// Thread-safety: `solveGroup` may be called by several threads at once as far as the user's solver
+// allows it (btConstraintSolverPoolMt does): each call borrows a direct solver of its own. Doubts
+// are changed between steps only.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "ductile/bullet/soft_mlcp_solver.hpp"
+
+namespace ductile::bullet {
+
+class DoubtSolver final : public btConstraintSolver {
+  public:
+    /// `usual` must outlive this.
+    explicit DoubtSolver(btConstraintSolver& usual) : usual_(usual) {}
+    DoubtSolver(const DoubtSolver&) = delete;
+    DoubtSolver& operator=(const DoubtSolver&) = delete;
+
+    [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
+
+    /// From now on the constraint's island is solved directly. Only its address is kept.
+    void doubt(const void* constraint) { doubted_.insert(constraint); }
+    void trust(const void* constraint) { doubted_.erase(constraint); }
+    void trust_all() noexcept { doubted_.clear(); }
+
+    /// Islands that a direct solver was given and did not solve: the iterative one took over.
+    [[nodiscard]] int fallbacks() const {
+        const std::lock_guard lock(mutex_);
+        int sum = 0;
+        for (const auto& direct : idle_) sum += direct->solver.getNumFallbacks();
+        return sum;
+    }
+
+    // ---- Bullet's side
+
+    void prepareSolve(int bodies, int manifolds) override {
+        usual_.prepareSolve(bodies, manifolds);
+    }
+    btScalar solveGroup(btCollisionObject** bodies, int body_count,
+                        btPersistentManifold** manifolds, int manifold_count,
+                        btTypedConstraint** constraints, int constraint_count,
+                        const btContactSolverInfo& info, btIDebugDraw* drawer,
+                        btDispatcher* dispatcher) override {
+        const auto solve = [&](btConstraintSolver& solver) {
+            return solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
+                                     constraint_count, info, drawer, dispatcher);
+        };
+        const bool in_doubt =
+            !doubted_.empty() && std::any_of(constraints, constraints + constraint_count,
+                                             [this](const btTypedConstraint* constraint) {
+                                                 return doubted_.count(constraint) > 0;
+                                             });
+        if (!in_doubt) return solve(usual_);
+        auto direct = borrow();
+        const btScalar result = solve(direct->solver);
+        give_back(std::move(direct));
+        return result;
+    }
+    void allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) override {
+        usual_.allSolved(info, drawer);
+    }
+    void reset() override {
+        usual_.reset();
+        for (auto& direct : idle_) direct->solver.reset();
+    }
+    [[nodiscard]] btConstraintSolverType getSolverType() const override {
+        return usual_.getSolverType();
+    }
+
+  private:
+    struct Direct {
+        btDantzigSolver dantzig;
+        SoftMlcpSolver solver{dantzig, Answer::exact};
+    };
+
+    std::unique_ptr<Direct> borrow() {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty()) return std::make_unique<Direct>();
+        auto result = std::move(idle_.back());
+        idle_.pop_back();
+        return result;
+    }
+    void give_back(std::unique_ptr<Direct> direct) {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(direct));
+    }
+
+    btConstraintSolver& usual_;
+    std::unordered_set<const void*> doubted_;
+    mutable std::mutex mutex_; ///< of idle_
+    std::vector<std::unique_ptr<Direct>> idle_;
+};
+
+} // namespace ductile::bullet

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+//
+// The forces that a user applied for a step, kept so that each part of the step has them: Bullet
+// forgets forces at the end of each part.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btVector3.h>
+
+#include <vector>
+
+namespace ductile::bullet {
+
+/// Of rigid bodies. Not thread-safe. No body may leave the world between `hold` and `apply`.
+class HeldForces {
+  public:
+    void hold(btCollisionWorld& world) {
+        held_.clear();
+        const auto& objects = world.getCollisionObjectArray();
+        for (int i = 0; i < objects.size(); ++i) {
+            btRigidBody* body = btRigidBody::upcast(objects[i]);
+            if (body == nullptr || body->isStaticOrKinematicObject()) continue;
+            const btVector3 force = unweighted(body->getTotalForce(), body->getLinearFactor());
+            const btVector3 torque = unweighted(body->getTotalTorque(), body->getAngularFactor());
+            if (force.isZero() && torque.isZero()) continue;
+            held_.push_back({body, force, torque});
+        }
+    }
+    void apply() const {
+        for (const auto& [body, force, torque] : held_) {
+            body->applyCentralForce(force);
+            body->applyTorque(torque);
+        }
+    }
+
+  private:
+    struct Held {
+        btRigidBody* body;
+        btVector3 force, torque;
+    };
+
+    /// Bullet multiplies by the body's factor whatever is applied.
+    static btVector3 unweighted(const btVector3& sum, const btVector3& factor) {
+        btVector3 result(0, 0, 0);
+        for (int i = 0; i < 3; ++i) {
+            if (factor[i] != 0) result[i] = sum[i] / factor[i];
+        }
+        return result;
+    }
+
+    std::vector<Held> held_;
+};
+
+} // namespace ductile::bullet

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+//
+// A plastic joint as a Bullet constraint of six rows: what PlasticHinge, PlasticSlider and
+// PlasticJoint share. It translates bodies, rows and reactions; geometry is the core's Link,
+// plasticity its joint. Signs and frames are those of link.hpp.
+//
+// Committing. The constraint commits each internal tick by itself: at the tick's end where it was
+// added by `add_to` (which registers its action), otherwise when Bullet opens the next tick or when
+// somebody asks it for a result, whichever comes first. Nothing has to be called by hand. A tick in
+// which the bodies slept, or the constraint was disabled, was not solved and is not committed.
+//   Only with `add_to` may bodies be moved by hand (not only given velocities) between a tick and
+//   what comes first.
+//
+// Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance.
+//
+// Traps of Bullet 3.24 that this header deals with
+//   - The solver leaves the impulse of a constraint's last row in `m_appliedImpulse`: with one
+//     plastic row, and that the last, the reaction is exact without joint feedback.
+//   - Joint feedback is a force with its torque about the centre of mass, world axes, multiplied by
+//     the body's linear and angular factor.
+//   - Velocities changed while the solver asks for rows are lost: what a break found there must
+//   give
+//     back is given as six forces in that tick.
+//   - `setBreakingImpulseThreshold` also clamps row limits: leave it infinite.
+//   - Bullet turns a body by at most π/4 a step; faster spins than that are cut by the engine.
+//
+// Not thread-safe beyond what Bullet guarantees for a constraint.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btActionInterface.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/draw.hpp"
+#include "ductile/bullet/link_rows.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/reaction.hpp"
+#include "ductile/joint/link.hpp"
+#include "ductile/vocabulary/check.hpp"
+
+namespace ductile::bullet {
+
+/// What a constraint reads of its reactions.
+enum class Reads {
+    plastic_row, ///< of the one plastic row; the user's joint feedback is left alone
+    all_rows     ///< of all six, by joint feedback: the user's where there is one, else its own
+};
+
+template <class Joint>
+class JointConstraint : public PlasticConstraint {
+  public:
+    using Axes = typename Link<Joint>::Axes;
+    using State = typename Link<Joint>::State;
+    /// Number of rows that the joint rules.
+    static constexpr int dimension = Link<Joint>::dimension;
+
+    JointConstraint(const JointConstraint&) = delete;
+    JointConstraint& operator=(const JointConstraint&) = delete;
+
+    /// Adds the constraint and its end-of-tick commit to a world.
+    void add_to(btDynamicsWorld& world, bool disable_collisions_between_bodies = true) {
+        world.addConstraint(this, disable_collisions_between_bodies);
+        world.addAction(&action_);
+        world_ = &world;
+    }
+    void remove_from(btDynamicsWorld& world) {
+        settle();
+        world.removeAction(&action_);
+        world.removeConstraint(this);
+        world_ = nullptr;
+    }
+
+    /// Accumulated plastic travel p, work-conjugate, never decreases [m | rad].
+    [[nodiscard]] double plastic_travel() { return settled().joint().state().plastic_travel; }
+    /// Energy dissipated by plastic flow [J].
+    [[nodiscard]] double absorbed_energy() override {
+        return settled().joint().state().plastic_work;
+    }
+    [[nodiscard]] double stored_energy() override { return settled().joint().state().stored; }
+    /// Share of the strength that the last tick's forces used: 1 where it flows, 0 where broken
+    /// [-].
+    [[nodiscard]] double utilisation() {
+        const Joint& joint = settled().joint();
+        if (joint.state().broken) return 0;
+        if constexpr (one_axis) {
+            const double force = link_.force(link_.axes()[0]);
+            const double strength = joint.strength(force > 0 ? -1 : 1);
+            return strength > 0 ? std::abs(force) / strength : 0;
+        } else {
+            return joint.utilisation();
+        }
+    }
+    [[nodiscard]] bool broken() { return settled().broken(); }
+    /// Unreliable where the solver left a row unsolved.
+    [[nodiscard]] Outcome outcome() { return settled().outcome(); }
+    /// Certificate: violation of the plastic rows in the last tick, and the largest so far
+    /// [m/s | rad/s].
+    [[nodiscard]] double residual() { return settled().last().residual; }
+    [[nodiscard]] double residual_max() { return settled().joint().state().residual_max; }
+    /// Largest violation of the rigid rows in the last tick [m/s | rad/s].
+    [[nodiscard]] double rigid_residual() { return settled().rigid_residual(); }
+    [[nodiscard]] const Joint& joint() { return settled().joint(); }
+    [[nodiscard]] const BreakRelease<double>& release() override {
+        settle();
+        return release_;
+    }
+
+    /// All that the joint remembers: with the bodies' transforms and velocities a run goes on from
+    /// it bit for bit. state_bytes.hpp turns it into bytes.
+    [[nodiscard]] State state() { return settled().state(); }
+    /// To be called when the bodies are back where they were. Also mends a broken joint where `state` is from before the break, and breaks it where it is
+    /// from after. Forces, outcome and residuals of the last tick are not restored.
+    void restore(const State& state) {
+        const bool was_broken = link_.broken();
+        open_ = Open::nothing;
+        release_ = {};
+        link_.restore(state);
+        link_.look(body_state(m_rbA), body_state(m_rbB));
+        if (link_.broken() != was_broken) setEnabled(was_broken);
+    }
+
+    [[nodiscard]] JointView view() override {
+        settle();
+        JointView view{.frame_a = m_rbA.getCenterOfMassTransform() * frame_in_a_,
+                       .frame_b = m_rbB.getCenterOfMassTransform() * frame_in_b_,
+                       .outcome = link_.outcome(),
+                       .utilisation = utilisation()};
+        if (link_.broken()) view.outcome = Outcome::broken;
+        for (const JointAxis axis : all_joint_axes) {
+            view.plastic_offset[Eigen::Index(index(axis))] = link_.plastic_offset(axis);
+        }
+        return view;
+    }
+
+    [[nodiscard]] JointReport<double> report() override {
+        settle();
+        const auto now = link_report(link_, link_.velocities(body_state(m_rbA), body_state(m_rbB)));
+        return acts() ? now : idle_report(now);
+    }
+
+    // ---- Bullet's side
+
+    /// Bullet's own: called for every constraint when a tick opens.
+    void buildJacobian() override {
+        if (reads_ == Reads::all_rows && m_jointFeedback == nullptr) m_jointFeedback = &feedback_;
+        settle_late(true);
+    }
+
+    void getInfo1(btConstraintInfo1* info) override {
+        info->m_numConstraintRows = link_.broken() && open_ != Open::hand_back ? 0 : 6;
+        info->nub = 0;
+    }
+
+    void getInfo2(btConstraintInfo2* info) override {
+        dt_ = 1.0 / double(info->fps);
+        if (open_ == Open::hand_back) {
+            write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
+            return;
+        }
+        const double erp = double(rigid_erp_ < 0 ? info->erp : rigid_erp_);
+        link_.prepare(body_state(m_rbA), body_state(m_rbB), dt_, erp * double(info->fps));
+        if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
+        write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact());
+        open_ = Open::tick;
+    }
+
+    /// BT_CONSTRAINT_ERP and BT_CONSTRAINT_STOP_ERP: share of the rigid rows' error that is removed
+    /// per tick, in [0, 1]; negative (as it is at first): that of the world.
+    /// @throws std::invalid_argument for a CFM: compliance follows from the joint's stiffness.
+    void setParam(int num, btScalar value, int /*axis*/ = -1) override {
+        if (num == BT_CONSTRAINT_ERP || num == BT_CONSTRAINT_STOP_ERP) {
+            rigid_erp_ = value < 0 ? btScalar(-1)
+                                   : check::between("JointConstraint.erp", value, btScalar(0),
+                                                    btScalar(1), "", true);
+        } else if (num == BT_CONSTRAINT_CFM || num == BT_CONSTRAINT_STOP_CFM) {
+            check::fail("JointConstraint.cfm", value, "",
+                        "left alone: compliance follows from the joint's stiffness");
+        }
+    }
+    [[nodiscard]] btScalar getParam(int num, int /*axis*/ = -1) const override {
+        return num == BT_CONSTRAINT_ERP || num == BT_CONSTRAINT_STOP_ERP ? rigid_erp_ : btScalar(0);
+    }
+
+  protected:
+    /// Frames are in the bodies' centre-of-mass frames, z along the member. Where the bodies are
+    /// now the joint is at rest.
+    JointConstraint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
+                    const btTransform& frame_in_b, Joint joint, const Axes& axes, Reads reads)
+        // no built-in type: Bullet casts by type, e.g. when it draws
+        : PlasticConstraint(MAX_CONSTRAINT_TYPE, a, b),
+          frame_in_a_(frame_in_a),
+          frame_in_b_(frame_in_b),
+          link_(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)),
+          reads_(reads) {
+        std::size_t row = 0;
+        for (const JointAxis axis : all_joint_axes) {
+            if (!link_.is_plastic(axis)) order_[row++] = index(axis);
+        }
+        for (const JointAxis axis : axes) order_[row++] = index(axis);
+        if (reads_ == Reads::all_rows) m_jointFeedback = &feedback_;
+        link_.start(body_state(m_rbA), body_state(m_rbB));
+    }
+    ~JointConstraint() override = default;
+
+    /// The link after the last tick.
+    Link<Joint>& settled() {
+        settle();
+        return link_;
+    }
+
+    /// Reaction on A in the last tick, nothing once the joint is broken: the force of a break is
+    /// that of its FractureEvent [N | N m].
+    double reaction_along(JointAxis axis) {
+        return settled().broken() ? 0 : link_.force(axis);
+    }
+
+  private:
+    static constexpr bool one_axis = !requires { Joint::dimension; };
+
+    /// What was begun and is not yet booked.
+    enum class Open {
+        nothing,
+        tick,     ///< rows were handed out
+        hand_back ///< a break was found by the solver: this tick gives its energy back
+    };
+
+    /// Commits at the end of each internal tick.
+    struct CommitAction final : btActionInterface {
+        explicit CommitAction(JointConstraint& owner) : owner_(owner) {}
+        void updateAction(btCollisionWorld*, btScalar) override { owner_.settle_now(); }
+        void debugDraw(btIDebugDraw* drawer) override {
+            if (drawer != nullptr) draw(owner_, *drawer);
+        }
+        JointConstraint& owner_;
+    };
+
+    /// Commits the open tick at its end, with the bodies as they are.
+    void settle_now() {
+        if (open_ != Open::nothing) settle(body_state(m_rbA), body_state(m_rbB), false);
+    }
+    /// Commits the open tick some time after it.
+    void settle_late(bool in_solver) {
+        if (open_ == Open::nothing) return;
+        settle(body_state_of_last_tick(m_rbA), body_state_of_last_tick(m_rbB), in_solver);
+    }
+    void settle() { settle_late(false); }
+
+    void settle(const BodyState<double>& a, const BodyState<double>& b, bool in_solver) {
+        const Open was = std::exchange(open_, Open::nothing);
+        if (was == Open::hand_back) setEnabled(false);
+        if (was != Open::tick) return;
+        if (link_.commit(a, b, reaction(), dt_).outcome != Outcome::broken) return;
+        const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
+        release_ = link_.release(now_a, now_b);
+        if (in_solver && release_.energy > 0) {
+            handed_ = link_.release_impulse(now_a, now_b);
+            open_ = Open::hand_back;
+            return;
+        }
+        setEnabled(false);
+        if (release_.energy > 0) {
+            apply(m_rbA, release_.a);
+            apply(m_rbB, release_.b);
+        }
+    }
+
+    /// What the six rows put on A. With one plastic row its force is exact; the others are as exact
+    /// as joint feedback.
+    [[nodiscard]] JointWrench<double> reaction() {
+        Vector6<double> forces = Vector6<double>::Zero();
+        if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
+            forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows());
+        }
+        if constexpr (one_axis) {
+            forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
+        }
+        JointWrench<double> wrench;
+        for (std::size_t i = 0; i < 6; ++i) {
+            const LinkRow<double>& row = link_.rows()[i];
+            (row.turns ? wrench.moment : wrench.force) += row.direction * forces[Eigen::Index(i)];
+        }
+        return wrench;
+    }
+
+    btTransform frame_in_a_;
+    btTransform frame_in_b_;
+    Link<Joint> link_;
+    Reads reads_;
+    CommitAction action_{*this};
+    btJointFeedback feedback_;
+    ReactionArm reaction_arm_;
+    std::array<std::size_t, 6> order_{}; ///< axis of each row
+    BreakRelease<double> release_;
+    JointImpulse<double> handed_; ///< what Open::hand_back gives
+    double dt_ = 0;
+    btScalar rigid_erp_ = -1; ///< negative: the world's
+    Open open_ = Open::nothing;
+};
+
+} // namespace ductile::bullet

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// The six rows of a link as Bullet's solvers want them. A row of compliance C goes to Bullet as
+//   C itself        where a solver of soft_solvers.hpp or soft_mlcp_solver.hpp asks;
+//   C m             where another solver asks and C m <= 1/2: right in sequential impulse, whose
+//                   error each sweep multiplies by C m;
+//   a given force   otherwise: that of the pair as if it were alone (isolated_pair.hpp). Exact
+//   where
+//                   nothing else acts on the two bodies within the step.
+// Where that is not right (a chain of stiff rows; btMLCPSolver, which does not read C m) the row
+// misses u' + C λ = b, and the joint's certificate says so.
+//
+// btMLCPSolver also wants bounds that enclose zero: for solvers other than our own a given force is
+// a row of bounds 0 and f whose target velocity is out of reach.
+//
+// Symbols
+//   u'  row velocity after the solve   [m/s | rad/s]
+//   λ   impulse of the row             [N s | N m s]
+//   C   compliance                     [1/kg | 1/(kg m²)]
+//   m   effective mass 1/(J M⁻¹ Jᵀ)    [kg | kg m²]
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/joint/isolated_pair.hpp"
+#include "ductile/joint/link.hpp"
+
+namespace ductile::bullet {
+
+/// Jacobian of a force along, or a moment about, `direction` at the point `joint`, world axes.
+inline void write_direction(btTypedConstraint::btConstraintInfo2& info, int row,
+                            const btRigidBody& a, const btRigidBody& b,
+                            const Vector3<double>& joint, const Vector3<double>& direction,
+                            bool turns) noexcept {
+    const btVector3 n = to_bullet(direction), at_joint = to_bullet(joint);
+    const btVector3 on_a = turns ? n : (at_joint - a.getCenterOfMassPosition()).cross(n);
+    const btVector3 on_b = turns ? -n : -(at_joint - b.getCenterOfMassPosition()).cross(n);
+    const int at = row * info.rowskip;
+    for (int i = 0; i < 3; ++i) {
+        info.m_J1linearAxis[at + i] = turns ? btScalar(0) : n[i];
+        info.m_J2linearAxis[at + i] = turns ? btScalar(0) : -n[i];
+        info.m_J1angularAxis[at + i] = on_a[i];
+        info.m_J2angularAxis[at + i] = on_b[i];
+    }
+}
+
+/// A row that ends with `impulse` [N s | N m s] in any solver.
+inline void write_given(btTypedConstraint::btConstraintInfo2& info, int row,
+                        double impulse) noexcept {
+    constexpr double out_of_reach = 1e6; // [m/s | rad/s]
+    const int at = row * info.rowskip;
+    info.m_lowerLimit[at] = btScalar(std::min(impulse, 0.0));
+    info.m_upperLimit[at] = btScalar(std::max(impulse, 0.0));
+    info.m_constraintError[at] = btScalar(std::copysign(out_of_reach, impulse));
+    info.cfm[at] = 0;
+}
+
+/// Six rows that give `impulse` to A at the point `joint`, and the opposite to B.
+inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
+                          const btRigidBody& b, const Vector3<double>& joint,
+                          const JointImpulse<double>& impulse) noexcept {
+    for (int row = 0; row < 6; ++row) {
+        const bool turns = row >= 3;
+        write_direction(info, row, a, b, joint, Vector3<double>::Unit(row % 3), turns);
+        write_given(info, row, (turns ? impulse.angular : impulse.linear)[row % 3]);
+    }
+}
+
+/// J M⁻¹ Jᵀ of a row alone, as Bullet's solvers see it [1/kg | 1/(kg m²)].
+[[nodiscard]] inline double inverse_mass_of(const LinkRow<double>& row, const btRigidBody& a,
+                                            const btRigidBody& b,
+                                            const Vector3<double>& joint) noexcept {
+    double sum = 0;
+    for (const btRigidBody* body : {&a, &b}) {
+        const Vector3<double> arm = joint - to_core(body->getCenterOfMassPosition());
+        const Vector3<double> n =
+            row.turns ? row.direction : Vector3<double>(arm.cross(row.direction));
+        sum += n.dot(to_core(body->getInvInertiaTensorWorld()) * n);
+        if (!row.turns) sum += double(body->getInvMass());
+    }
+    return sum;
+}
+
+/// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver
+/// honours C.
+template <class Joint>
+void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
+                const btRigidBody& b, const Link<Joint>& link,
+                const std::array<std::size_t, 6>& order, bool exact) noexcept {
+    constexpr double largest_slack = 0.5; // C m
+    const double dt = 1 / double(info.fps);
+    const auto impulse = [dt](double force) {
+        return btScalar(std::clamp(force * dt, -double(SIMD_INFINITY), double(SIMD_INFINITY)));
+    };
+    Vector6<double> alone = Vector6<double>::Zero();
+    bool solved_alone = false;
+    const auto force_alone = [&](std::size_t axis) {
+        if (!solved_alone) {
+            const Matrix6<double> k = inverse_mass_of_rows(body_state(a), body_state(b),
+                                                           link.point(), link.axes_in_world());
+            alone = forces_of_isolated_pair(
+                link.rows(), k, link.velocities(free_state(a, dt), free_state(b, dt)), dt);
+            solved_alone = true;
+        }
+        return alone[Eigen::Index(axis)];
+    };
+    for (int row = 0; row < 6; ++row) {
+        const std::size_t axis = order[std::size_t(row)];
+        const LinkRow<double>& wanted = link.rows()[axis];
+        const RowLimits<double>& limits = wanted.limits;
+        write_direction(info, row, a, b, link.point(), wanted.direction, wanted.turns);
+        const int at = row * info.rowskip;
+        info.m_constraintError[at] = btScalar(limits.bias);
+        info.m_lowerLimit[at] = impulse(limits.lower);
+        info.m_upperLimit[at] = impulse(limits.upper);
+        info.cfm[at] = btScalar(limits.compliance);
+        if (exact) continue;
+        if (limits.lower == limits.upper) write_given(info, row, limits.lower * dt);
+        if (!(limits.compliance > 0)) continue;
+        const double slack = limits.compliance / inverse_mass_of(wanted, a, b, link.point());
+        info.cfm[at] = btScalar(slack);
+        if (slack > largest_slack) write_given(info, row, force_alone(axis) * dt);
+    }
+}
+
+} // namespace ductile::bullet

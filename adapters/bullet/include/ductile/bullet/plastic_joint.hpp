@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+//
+// A joint of any of the six axes: those that its law rules yield, apart or together on one surface,
+// the others hold rigidly.
+//
+//   PlasticJoint(post, ground, frame_in_post, frame_in_ground, six_axis_joint)
+//   PlasticJoint(post, frame_in_post, hinge_joint, {ductile::JointAxis::bending_x})
+//
+// Frames have z along the member and x, y along the axes of its section, as the capacities of a
+// section do; signs and finite rotation as in link.hpp. See joint_constraint.hpp for committing,
+// compliance and Bullet's traps.
+//
+// Forces are read through joint feedback. The constraint sets one of its own; one that the user
+// sets before or after is read instead and never written.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+
+#include <utility>
+
+#include "ductile/bullet/joint_constraint.hpp"
+#include "ductile/joint/joint_axis.hpp"
+
+namespace ductile::bullet {
+
+/// `Joint`: CoupledJoint of one to six axes, or OneAxisJoint.
+template <class Joint>
+class PlasticJoint final : public JointConstraint<Joint> {
+    using Base = JointConstraint<Joint>;
+
+  public:
+    using Axes = typename Base::Axes;
+
+    /// `axes`: which axis each row of the joint rules, none twice. Frames are in the bodies'
+    /// centre-of-mass frames. Where the bodies are now is the rest position.
+    /// @throws std::invalid_argument where an axis is given twice.
+    PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
+                 const btTransform& frame_in_b, Joint joint, const Axes& axes)
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), axes, Reads::all_rows) {}
+
+    /// All six axes, in the order of JointAxis.
+    PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
+                 const btTransform& frame_in_b, Joint joint) requires(Base::dimension == 6)
+        : PlasticJoint(a, b, frame_in_a, frame_in_b, std::move(joint), all_joint_axes) {}
+
+    /// To the static world.
+    PlasticJoint(btRigidBody& a, const btTransform& frame_in_a, Joint joint, const Axes& axes)
+        : PlasticJoint(a, btTypedConstraint::getFixedBody(), frame_in_a,
+                       a.getCenterOfMassTransform() * frame_in_a, std::move(joint), axes) {}
+    PlasticJoint(btRigidBody& a, const btTransform& frame_in_a,
+                 Joint joint) requires(Base::dimension == 6)
+        : PlasticJoint(a, frame_in_a, std::move(joint), all_joint_axes) {}
+
+    /// Reaction on A along, or about, +axis of frame B in the last tick, rigid axes too; zero
+    /// once broken [N | N m].
+    [[nodiscard]] double force(JointAxis axis) { return Base::reaction_along(axis); }
+    /// Of A in frame B; angles go on over many turns. Of a rigid axis what it is off by [m | rad].
+    [[nodiscard]] double position(JointAxis axis) { return Base::settled().position(axis); }
+    /// Geometric rest position q_p; zero for a rigid axis [m | rad].
+    [[nodiscard]] double plastic_offset(JointAxis axis) {
+        return Base::settled().plastic_offset(axis);
+    }
+};
+
+} // namespace ductile::bullet

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+//
+// The forces of a constraint's rows, read back from Bullet's joint feedback: a force with its
+// torque about the centre of mass, world axes, for either body,
+//
+//   on A:  F = Σ n λ/dt,   T = r × F + M        =>   force n·F, moment n·(T - r × F)
+//
+// with r from the centre of mass to the joint. Bullet sums in its own precision, so that the moment
+// is known to round-off of |T| + |r| |F|. It is read from the body with the shorter arm, and a
+// force that lies within that round-off of its bound is taken to be at the bound, where the solver
+// put it.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/joint/link_types.hpp"
+
+namespace ductile::bullet {
+
+/// From which body to read, and from where. To be taken before the solve: bodies move after it.
+struct ReactionArm {
+    bool from_b = false;
+    Vector3<double> arm = Vector3<double>::Zero(); ///< joint minus centre of mass, world [m]
+};
+
+[[nodiscard]] inline ReactionArm reaction_arm(const btRigidBody& a, const btRigidBody& b,
+                                              const Vector3<double>& joint) noexcept {
+    // feedback is what a body felt: less than the row gave where its factors are not one
+    const auto feels_all = [](const btRigidBody& body) {
+        const btVector3 one(1, 1, 1);
+        return body.getLinearFactor() == one && body.getAngularFactor() == one;
+    };
+    const Vector3<double> arm_a = joint - to_core(a.getCenterOfMassPosition());
+    const Vector3<double> arm_b = joint - to_core(b.getCenterOfMassPosition());
+    const bool from_b =
+        feels_all(b) && (!feels_all(a) || arm_b.squaredNorm() < arm_a.squaredNorm());
+    return {from_b, from_b ? arm_b : arm_a};
+}
+
+/// Forces and moments of `rows` on A [N | N m].
+[[nodiscard]] inline Vector6<double> forces_of_rows(
+    const btJointFeedback& feedback, const ReactionArm& from,
+    const std::array<LinkRow<double>, 6>& rows) noexcept {
+    const Vector3<double> force = from.from_b
+                                      ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
+                                      : to_core(feedback.m_appliedForceBodyA);
+    const Vector3<double> torque = from.from_b
+                                       ? Vector3<double>(-to_core(feedback.m_appliedTorqueBodyB))
+                                       : to_core(feedback.m_appliedTorqueBodyA);
+    const Vector3<double>& arm = from.arm;
+    const Vector3<double> moment = torque - arm.cross(force);
+    constexpr double round_off = 8 * double(std::numeric_limits<btScalar>::epsilon());
+    Vector6<double> result;
+    for (std::size_t i = 0; i < 6; ++i) {
+        const LinkRow<double>& row = rows[i];
+        double value = row.direction.dot(row.turns ? moment : force);
+        const double doubt =
+            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm());
+        for (const double bound : {row.limits.lower, row.limits.upper}) {
+            if (std::abs(value - bound) <= doubt) value = bound;
+        }
+        result[Eigen::Index(i)] = value;
+    }
+    return result;
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+//
+// The forces that a user applied for a step, kept so that each part of the step has them: ODE
+// forgets forces at the end of each part.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <span>
+#include <vector>
+
+#include "ductile/ode/convert.hpp"
+
+namespace ductile::ode {
+
+/// Not thread-safe. No body may be destroyed between `hold` and `apply`.
+class HeldForces {
+  public:
+    void hold(std::span<const dBodyID> bodies) {
+        held_.clear();
+        for (dBodyID body : bodies) {
+            const Held held{body, to_core(dBodyGetForce(body)), to_core(dBodyGetTorque(body))};
+            if (!held.force.isZero(0) || !held.torque.isZero(0)) held_.push_back(held);
+        }
+    }
+    void apply() const {
+        for (const auto& [body, f, t] : held_) {
+            dBodyAddForce(body, dReal(f.x()), dReal(f.y()), dReal(f.z()));
+            dBodyAddTorque(body, dReal(t.x()), dReal(t.y()), dReal(t.z()));
+        }
+    }
+
+  private:
+    struct Held {
+        dBodyID body;
+        Vector3<double> force, torque;
+    };
+
+    std::vector<Held> held_;
+};
+
+} // namespace ductile::ode

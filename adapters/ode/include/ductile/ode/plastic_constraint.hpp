@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+//
+// A plastic constraint of any kind as a world and an energy account see it.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "ductile/joint/pair.hpp"
+#include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/world/joint_report.hpp"
+
+namespace ductile::ode {
+
+/// What a constraint applied for a step beside its joint, about the centres of mass, world axes.
+struct OutsideForce {
+    Vector3<double> force{0, 0, 0};    ///< on A; the opposite on B [N]
+    Vector3<double> torque_a{0, 0, 0}; ///< [N m]
+    Vector3<double> torque_b{0, 0, 0};
+};
+
+class PlasticConstraint : public SteppedConstraint {
+  public:
+    [[nodiscard]] virtual double absorbed_energy() const = 0; ///< D [J]
+    /// Elastic energy, and what a back force holds [J].
+    [[nodiscard]] virtual double stored_energy() const = 0;
+    /// Of the break, if there was one.
+    [[nodiscard]] virtual const BreakRelease<double>& release() const = 0;
+    /// Of the last step.
+    [[nodiscard]] virtual const OutsideForce& outside_force() const = 0;
+    [[nodiscard]] virtual dJointID id() const = 0;
+    /// Of the last step; where the constraint did not act in it, an idle one. Speeds are those of
+    /// now.
+    [[nodiscard]] virtual JointReport<double> report() const = 0;
+};
+
+/// What happens to ODE's joint when its plastic row breaks.
+enum class AtBreak {
+    disable_joint, ///< the whole joint lets go
+    release_axis   ///< only the row does: its motor is switched off
+};
+
+/// @throws std::invalid_argument where the first body of a `kind` is null.
+inline void require_body(const char* kind, dBodyID a) {
+    if (a != nullptr) return;
+    throw std::invalid_argument(std::string(kind) +
+                                ".a = null: must be a body (only b may be the static world)");
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// Lets an ODE world step on several threads, and stops them in the order ODE wants:
+//
+//   ductile::ode::ThreadPool threads(world, 4);   // before the first step, after the world
+//   stepper.step(dt);
+//
+// Plastic constraints need nothing for it: they act before and after ODE's step, on the thread that
+// calls it. ODE spreads islands, and stages of one island, over the threads.
+//
+// The world and the library's initialisation have to outlive this object.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <stdexcept>
+
+namespace ductile::ode {
+
+class ThreadPool {
+  public:
+    /// `count` >= 1 threads beside the one that steps.
+    /// @throws std::invalid_argument where `count` is zero, std::runtime_error where this build of
+    /// ODE has no threads or the system gives none.
+    ThreadPool(dWorldID world, unsigned count) : world_(world) {
+        if (count == 0) throw std::invalid_argument("ThreadPool.count = 0: must be at least 1");
+        implementation_ = dThreadingAllocateMultiThreadedImplementation();
+        pool_ = implementation_ == nullptr
+                    ? nullptr
+                    : dThreadingAllocateThreadPool(count, 0, dAllocateFlagBasicData, nullptr);
+        if (pool_ == nullptr) {
+            if (implementation_ != nullptr) dThreadingFreeImplementation(implementation_);
+            throw std::runtime_error("ThreadPool: ODE gave no threads");
+        }
+        dThreadingThreadPoolServeMultiThreadedImplementation(pool_, implementation_);
+        dWorldSetStepThreadingImplementation(
+            world_, dThreadingImplementationGetFunctions(implementation_), implementation_);
+    }
+
+    ~ThreadPool() {
+        dThreadingImplementationShutdownProcessing(implementation_);
+        dThreadingFreeThreadPool(pool_);
+        dWorldSetStepThreadingImplementation(world_, nullptr, nullptr);
+        dThreadingFreeImplementation(implementation_);
+    }
+
+    ThreadPool(const ThreadPool&) = delete;
+    ThreadPool& operator=(const ThreadPool&) = delete;
+
+  private:
+    dWorldID world_;
+    dThreadingImplementationID implementation_ = nullptr;
+    dThreadingThreadPoolID pool_ = nullptr;
+};
+
+} // namespace ductile::ode

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+//
+// Plastic hinges whose islands are solved by several threads: the same bits as with one.
+//
+// Bullet guarantees that an island is solved by one thread, with a solver of its own, and that
+// actions run after all islands. A constraint must then touch nothing but itself and the bodies of
+// its island. Debian builds Bullet without BT_THREADSAFE: its world for threads runs, but on one.
+// So the islands are also handed to threads here, as Bullet built with BT_THREADSAFE does it.
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
+#include <BulletDynamics/Dynamics/btSimulationIslandManagerMt.h>
+#include <LinearMath/btThreads.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "adapters/bullet_rows.hpp"
+#include "ductile/bullet/bullet.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+using Hinge = bullet::PlasticHinge<OneAxisJoint<Perfect<double>, TravelLimit<double>>>;
+
+constexpr std::size_t pairs = 60;
+
+/// Two bodies on a hinge off their centres, of different masses, speeds and strengths: a third of
+/// them breaks, a third stops, a third stays rigid.
+class Pair {
+  public:
+    Pair(std::size_t i, btCollisionShape& shape) {
+        const auto n = btScalar(i);
+        for (int side = 0; side < 2; ++side) {
+            btRigidBody::btRigidBodyConstructionInfo info(
+                1 + btScalar(0.03) * n + btScalar(side), nullptr, &shape,
+                {btScalar(0.1), btScalar(0.3), btScalar(0.4) + btScalar(0.01) * n});
+            info.m_startWorldTransform.setOrigin({4 * n, btScalar(2 * side - 1), 0});
+            body[side] = std::make_unique<btRigidBody>(info);
+            body[side]->setActivationState(DISABLE_DEACTIVATION);
+        }
+        body[0]->setAngularVelocity({0, 0, 3 + btScalar(0.1) * n});
+        btTransform below, above;
+        below.setIdentity(), above.setIdentity();
+        below.setOrigin({0, 1, 0}), above.setOrigin({0, -1, 0});
+        const double strength = i % 3 == 2 ? 1e4 : 2 + 0.05 * double(i);
+        hinge = std::make_unique<Hinge>(
+            *body[0], *body[1], below, above,
+            OneAxisJoint(Perfect<double>({.strength = strength}),
+                         TravelLimit<double>({.limit = i % 3 == 0 ? 0.05 : 1e3})));
+    }
+    std::unique_ptr<btRigidBody> body[2];
+    std::unique_ptr<Hinge> hinge;
+};
+
+/// A world of separate pairs of any kind of world.
+template <class World>
+class Scene {
+  public:
+    template <class... Arguments>
+    explicit Scene(bool commit_at_end_of_tick, Arguments&&... arguments)
+        : world(&dispatcher_, &broadphase_, std::forward<Arguments>(arguments)..., &configuration_),
+          commit_at_end_of_tick_(commit_at_end_of_tick) {
+        world.setGravity({0, -1, 0});
+        for (std::size_t i = 0; i < pairs; ++i) {
+            all.push_back(std::make_unique<Pair>(i, shape_));
+            for (auto& body : all.back()->body) world.addRigidBody(body.get(), 0, 0);
+            if (commit_at_end_of_tick) {
+                all.back()->hinge->add_to(world);
+            } else {
+                world.addConstraint(all.back()->hinge.get());
+            }
+        }
+    }
+    ~Scene() {
+        for (auto& pair : all) {
+            if (commit_at_end_of_tick_) {
+                pair->hinge->remove_from(world);
+            } else {
+                world.removeConstraint(pair->hinge.get());
+            }
+            for (auto& body : pair->body) world.removeRigidBody(body.get());
+        }
+    }
+    void run(int steps) {
+        for (int i = 0; i < steps; ++i)
+            world.stepSimulation(btScalar(1) / 240, 0, btScalar(1) / 240);
+    }
+    /// All that is known of the hinges and bodies.
+    std::vector<double> state() {
+        std::vector<double> result;
+        for (auto& pair : all) {
+            Hinge& h = *pair->hinge;
+            result.insert(result.end(), {h.rotation(), h.plastic_rotation(), h.absorbed_energy(),
+                                         h.moment(), h.residual_max(), double(h.broken())});
+            for (const auto& body : pair->body) {
+                for (int k = 0; k < 3; ++k) {
+                    result.push_back(double(body->getCenterOfMassPosition()[k]));
+                    result.push_back(double(body->getLinearVelocity()[k]));
+                    result.push_back(double(body->getAngularVelocity()[k]));
+                }
+            }
+        }
+        return result;
+    }
+    [[nodiscard]] std::size_t broken() {
+        std::size_t count = 0;
+        for (auto& pair : all) count += pair->hinge->broken();
+        return count;
+    }
+
+  private:
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btSphereShape shape_{1};
+
+  public:
+    World world;
+    std::vector<std::unique_ptr<Pair>> all;
+
+  private:
+    bool commit_at_end_of_tick_;
+};
+
+/// Solves every constraint as an island, by as many threads as there are solvers.
+class IslandThreads final : public btDiscreteDynamicsWorld {
+  public:
+    IslandThreads(btDispatcher* dispatcher, btBroadphaseInterface* broadphase,
+                  std::vector<NamedSolver>* solvers, btCollisionConfiguration* configuration)
+        : btDiscreteDynamicsWorld(dispatcher, broadphase, &*solvers->front(), configuration),
+          solvers_(*solvers) {}
+
+  protected:
+    void solveConstraints(btContactSolverInfo& info) override {
+        std::vector<std::thread> threads;
+        for (std::size_t t = 0; t < solvers_.size(); ++t) {
+            threads.emplace_back([this, t, &info] { solve_every(solvers_.size(), t, info); });
+        }
+        for (auto& thread : threads) thread.join();
+    }
+
+  private:
+    void solve_every(std::size_t stride, std::size_t first, const btContactSolverInfo& info) {
+        for (auto i = int(first); i < getNumConstraints(); i += int(stride)) {
+            btTypedConstraint* constraint = getConstraint(i);
+            btCollisionObject* bodies[] = {&constraint->getRigidBodyA(),
+                                           &constraint->getRigidBodyB()};
+            (*solvers_[first])
+                .solveGroup(bodies, 2, nullptr, 0, &constraint, 1, info, nullptr, nullptr);
+        }
+    }
+    std::vector<NamedSolver>& solvers_;
+};
+
+std::vector<NamedSolver> solvers(const std::string& name, std::size_t count) {
+    std::vector<NamedSolver> result;
+    for (std::size_t i = 0; i < count; ++i) result.emplace_back(name);
+    return result;
+}
+
+constexpr int steps = 120;
+
+} // namespace
+
+TEST_CASE("islands solved by four threads are those of one thread, bit for bit",
+          "[bullet][threads]") {
+    const std::string name =
+        GENERATE(as<std::string>(), "si", "soft-si", "soft-nncg", "soft-mlcp-dantzig");
+    // with the action at the end of the tick, or in the next tick's solve, by the solver's thread
+    const bool commit_at_end_of_tick = GENERATE(true, false);
+    INFO(name << (commit_at_end_of_tick ? ", committed at the tick's end" : ", committed late"));
+    auto one = solvers(name, 1), four = solvers(name, 4);
+    Scene<IslandThreads> serial(commit_at_end_of_tick, &one);
+    Scene<IslandThreads> parallel(commit_at_end_of_tick, &four);
+    serial.run(steps), parallel.run(steps);
+    CHECK(serial.state() == parallel.state());
+    CHECK(parallel.broken() == pairs / 3);
+}
+
+TEST_CASE("Bullet's world for threads is its world for one, bit for bit", "[bullet][threads]") {
+    std::unique_ptr<btITaskScheduler> own(
+        btCreateDefaultTaskScheduler()); // null: not BT_THREADSAFE
+    btSetTaskScheduler(own != nullptr ? own.get() : btGetSequentialTaskScheduler());
+    const bool exact = GENERATE(false, true);
+    INFO((exact ? "Dantzig" : "sequential impulse"));
+    std::vector<std::unique_ptr<btDantzigSolver>> dantzigs;
+    std::vector<btConstraintSolver*> pool_of;
+    for (int i = 0; i < 4; ++i) { // the pool deletes its solvers
+        dantzigs.push_back(std::make_unique<btDantzigSolver>());
+        if (exact) {
+            pool_of.push_back(new bullet::SoftMlcpSolver(*dantzigs.back(), bullet::Answer::exact));
+        } else {
+            pool_of.push_back(new bullet::SoftSequentialImpulseSolver);
+        }
+    }
+    btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
+    NamedSolver alone(exact ? "soft-mlcp-dantzig" : "soft-si");
+    {
+        Scene<btDiscreteDynamicsWorld> serial(true, &*alone);
+        Scene<btDiscreteDynamicsWorldMt> parallel(true, &pool, nullptr);
+        // islands of their own, not gathered to batches: NNCG and early exits look at the whole
+        // batch
+        serial.world.getSolverInfo().m_minimumSolverBatchSize = 1;
+        static_cast<btSimulationIslandManagerMt*>(parallel.world.getSimulationIslandManager())
+            ->setMinimumSolverBatchSize(1);
+        serial.run(steps), parallel.run(steps);
+        CHECK(serial.state() == parallel.state());
+        CHECK(parallel.broken() == pairs / 3);
+    }
+    btSetTaskScheduler(nullptr);
+}
+
+TEST_CASE("worlds in threads of their own do not know of each other", "[bullet][threads]") {
+    const auto state_after = [](std::size_t count) {
+        std::vector<NamedSolver> own = solvers("soft-mlcp-dantzig", count);
+        std::vector<std::unique_ptr<Scene<btDiscreteDynamicsWorld>>> scenes;
+        for (NamedSolver& solver : own) {
+            scenes.push_back(std::make_unique<Scene<btDiscreteDynamicsWorld>>(true, &*solver));
+        }
+        std::vector<std::thread> threads;
+        for (auto& scene : scenes) threads.emplace_back([&scene] { scene->run(steps); });
+        for (auto& thread : threads) thread.join();
+        for (auto& scene : scenes) CHECK(scene->state() == scenes.front()->state());
+        return scenes.front()->state();
+    };
+    CHECK(state_after(4) == state_after(1));
+}

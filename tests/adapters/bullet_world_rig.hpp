@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// A Bullet world below ductile's own World, for the tests of that. Same verbs as
+// ode_world_rig.hpp.
+#pragma once
+
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/bullet/bullet.hpp"
+
+namespace ductile::test {
+
+namespace engine = ductile::bullet;
+using V3 = Vector3<double>;
+using Joint = OneAxisJoint<Perfect<double>, TravelLimit<double>>;
+
+class WorldRig {
+  public:
+    using Hinge = bullet::PlasticHinge<Joint>;
+    using Body = btRigidBody*;
+    static constexpr bool single = sizeof(btScalar) == sizeof(float);
+
+    explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
+                      bool ledger = true)
+        : solver_(iterative
+                      ? std::unique_ptr<btConstraintSolver>(
+                            std::make_unique<btSequentialImpulseConstraintSolver>())
+                      : std::make_unique<bullet::SoftMlcpSolver>(dantzig_, bullet::Answer::exact)),
+          dynamics_(&dispatcher_, &broadphase_, solver_.get(), &configuration_),
+          world_(dynamics_, {.effort = effort, .ledger = ledger, .warn = std::move(warn)}) {
+        dynamics_.setGravity({0, 0, 0});
+    }
+    ~WorldRig() {
+        for (auto& hinge : hinges_) world_.remove(*hinge);
+        for (auto& body : bodies_) dynamics_.removeRigidBody(body.get());
+    }
+
+    [[nodiscard]] bullet::World& world() { return world_; }
+    [[nodiscard]] btDiscreteDynamicsWorld& dynamics() { return dynamics_; }
+    [[nodiscard]] int iterations() { return dynamics_.getSolverInfo().m_numIterations; }
+
+    Body body(double mass, const V3& inertia, const V3& at) {
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape_,
+                                                      bullet::to_bullet(inertia));
+        info.m_startWorldTransform.setOrigin(bullet::to_bullet(at));
+        Body b = bodies_.emplace_back(std::make_unique<btRigidBody>(info)).get();
+        b->setActivationState(DISABLE_DEACTIVATION);
+        dynamics_.addRigidBody(b, 0, 0);
+        return b;
+    }
+
+    /// About z; null `b`: the static world.
+    Hinge& hinge(Body a, Body b, const V3& anchor, Joint joint, const std::string& name) {
+        btTransform frame;
+        frame.setIdentity();
+        frame.setOrigin(bullet::to_bullet(anchor));
+        const auto in = [&](Body body) {
+            return body->getCenterOfMassTransform().inverse() * frame;
+        };
+        hinges_.push_back(b != nullptr ? std::make_unique<Hinge>(*a, *b, in(a), in(b), joint)
+                                       : std::make_unique<Hinge>(*a, in(a), joint));
+        world_.add(*hinges_.back(), name);
+        return *hinges_.back();
+    }
+
+    static void apply_force(Body b, const V3& force) {
+        b->applyCentralForce(bullet::to_bullet(force));
+    }
+    static void set_velocity(Body b, const V3& v) { b->setLinearVelocity(bullet::to_bullet(v)); }
+    static void set_spin(Body b, const V3& w) { b->setAngularVelocity(bullet::to_bullet(w)); }
+    static V3 velocity(Body b) { return bullet::to_core(b->getLinearVelocity()); }
+    static V3 spin(Body b) { return bullet::to_core(b->getAngularVelocity()); }
+    static V3 position(Body b) { return bullet::to_core(b->getCenterOfMassPosition()); }
+
+  private:
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btDantzigSolver dantzig_;
+    std::unique_ptr<btConstraintSolver> solver_;
+    btDiscreteDynamicsWorld dynamics_;
+    btSphereShape shape_{1};
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    bullet::World world_;
+    std::vector<std::unique_ptr<Hinge>> hinges_;
+};
+
+} // namespace ductile::test

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+//
+// What only Bullet's World has: a direct solver for the islands in doubt, worlds for threads,
+// multibodies, and that joints need none of it.
+#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
+#include <BulletDynamics/Dynamics/btSimulationIslandManagerMt.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <LinearMath/btThreads.h>
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "adapters/bullet_world.hpp"
+#include "support/throws.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+using Hinge = bullet::PlasticHinge<>;
+constexpr bool single = sizeof(btScalar) == sizeof(float);
+
+btTransform at(double x, double y) {
+    btTransform frame;
+    frame.setIdentity();
+    frame.setOrigin({btScalar(x), btScalar(y), 0});
+    return frame;
+}
+
+OneAxisJoint<Perfect<double>> joint(double strength) {
+    return OneAxisJoint(Perfect<double>({.strength = strength}));
+}
+
+/// Cantilevers of rods of 0.1 kg and a tip of 1 kg; every second one is a single rod.
+template <class Dynamics>
+class Beams {
+  public:
+    static constexpr int count = 6, segments = 5;
+
+    template <class... Arguments>
+    explicit Beams(bullet::WorldParameters parameters, Arguments&&... arguments)
+        : dynamics(&dispatcher_, &broadphase_, std::forward<Arguments>(arguments)...,
+                   &configuration_),
+          world(std::make_unique<bullet::World>(dynamics, std::move(parameters))) {
+        dynamics.setGravity({0, 0, 0});
+        for (int beam = 0; beam < count; ++beam) {
+            const int n = beam % 2 == 0 ? segments : 1;
+            btRigidBody* before = nullptr;
+            for (int i = 0; i < n; ++i) {
+                const bool tip = i + 1 == n;
+                btRigidBody::btRigidBodyConstructionInfo info(tip ? 1 : btScalar(0.1), nullptr,
+                                                              &shape_, {1e-3f, 1e-2f, 1e-2f});
+                info.m_startWorldTransform = at(0.2 * i + 0.1, 5 * beam);
+                auto& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
+                body.setActivationState(DISABLE_DEACTIVATION);
+                dynamics.addRigidBody(&body, 0, 0);
+                if (tip) body.setLinearVelocity({0, 4, 0});
+                hinges.push_back(
+                    before != nullptr
+                        ? std::make_unique<Hinge>(body, *before, at(-0.1, 0), at(0.1, 0), joint(20))
+                        : std::make_unique<Hinge>(body, at(-0.1, 0), joint(20)));
+                world->add(*hinges.back(),
+                           "beam " + std::to_string(beam) + " hinge " + std::to_string(i));
+                before = &body;
+            }
+        }
+    }
+    ~Beams() {
+        for (auto& hinge : hinges) hinge->remove_from(dynamics);
+        for (auto& body : bodies_) dynamics.removeRigidBody(body.get());
+    }
+    [[nodiscard]] std::vector<double> state() {
+        std::vector<double> result;
+        for (auto& hinge : hinges) {
+            result.insert(result.end(), {hinge->rotation(), hinge->absorbed_energy(),
+                                         hinge->moment(), hinge->residual_max()});
+        }
+        return result;
+    }
+
+  private:
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btSphereShape shape_{1};
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+
+  public:
+    Dynamics dynamics;
+    std::unique_ptr<bullet::World> world;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+};
+
+/// Sequential impulse that counts the constraints it is given.
+class CountingSolver final : public btSequentialImpulseConstraintSolver {
+  public:
+    btScalar solveGroup(btCollisionObject** bodies, int body_count,
+                        btPersistentManifold** manifolds, int manifold_count,
+                        btTypedConstraint** constraints, int constraint_count,
+                        const btContactSolverInfo& info, btIDebugDraw* drawer,
+                        btDispatcher* dispatcher) override {
+        solved += constraint_count;
+        return btSequentialImpulseConstraintSolver::solveGroup(
+            bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info,
+            drawer, dispatcher);
+    }
+    int solved = 0;
+};
+
+bullet::WorldParameters direct() {
+    return {.effort = {.action = OnUnconverged::direct_solver}, .warn = nullptr};
+}
+
+} // namespace
+
+TEST_CASE("joints need no World: they are the same without one, bit for bit", "[bullet][world]") {
+    btSequentialImpulseConstraintSolver one, two;
+    Beams<btDiscreteDynamicsWorld> with({.warn = nullptr}, &one);
+    Beams<btDiscreteDynamicsWorld> without({.warn = nullptr}, &two);
+    without.world.reset();
+    for (int i = 0; i < 200; ++i) {
+        with.world->step(1e-3);
+        without.dynamics.stepSimulation(btScalar(1e-3), 0);
+    }
+    CHECK(with.state() == without.state());
+}
+
+TEST_CASE("only islands in doubt go to the direct solver, and the user's is put back",
+          "[bullet][world]") {
+    CountingSolver own;
+    Beams<btDiscreteDynamicsWorld> beams(direct(), &own);
+    beams.dynamics.getSolverInfo().m_minimumSolverBatchSize = 1;
+    CHECK(beams.dynamics.getConstraintSolver() != &own);
+    using Scene = Beams<btDiscreteDynamicsWorld>;
+    constexpr int chains = Scene::count / 2 * Scene::segments, alone = Scene::count / 2;
+    beams.world->step(1e-3);
+    CHECK(own.solved == chains + alone);
+    CHECK(beams.world->effort().direct);
+    own.solved = 0;
+    beams.world->step(1e-3);
+    CHECK(own.solved == alone);
+    beams.world.reset();
+    CHECK(beams.dynamics.getConstraintSolver() == &own);
+}
+
+TEST_CASE("a solver that cannot be exchanged is refused", "[bullet][world]") {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btDiscreteDynamicsWorld owner(&dispatcher, &broadphase, nullptr, &configuration);
+    CHECK(message_of([&] { bullet::World(owner, direct()); })
+              .find("World.effort.action = direct_solver: must not be asked of a world that made "
+                    "its solver") == 0);
+    bullet::World(owner, {.effort = {.action = OnUnconverged::split_step}});
+    btMultiBodyConstraintSolver solver;
+    btMultiBodyDynamicsWorld reduced(&dispatcher, &broadphase, &solver, &configuration);
+    CHECK(message_of([&] { bullet::World(reduced, direct()); })
+              .find("World.effort.action = direct_solver: must not be asked of a "
+                    "btMultiBodyDynamicsWorld") == 0);
+}
+
+TEST_CASE("a World over Bullet's world for threads does what it does over that for one",
+          "[bullet][world][threads]") {
+    std::unique_ptr<btITaskScheduler> own(
+        btCreateDefaultTaskScheduler()); // null: not BT_THREADSAFE
+    btSetTaskScheduler(own != nullptr ? own.get() : btGetSequentialTaskScheduler());
+    const auto run_threads = [] {
+        std::vector<btConstraintSolver*> pool_of; // the pool deletes its solvers
+        for (int i = 0; i < 4; ++i) pool_of.push_back(new btSequentialImpulseConstraintSolver);
+        btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
+        Beams<btDiscreteDynamicsWorldMt> beams(direct(), &pool, nullptr);
+        static_cast<btSimulationIslandManagerMt*>(beams.dynamics.getSimulationIslandManager())
+            ->setMinimumSolverBatchSize(1);
+        beams.world->step(1e-3);
+        CHECK(beams.world->effort().direct);
+        for (int i = 1; i < 200; ++i) beams.world->step(1e-3);
+        CHECK(beams.dynamics.getConstraintSolver() != &pool);
+        beams.world.reset();
+        CHECK(beams.dynamics.getConstraintSolver() == &pool);
+        return beams.state();
+    };
+    const std::vector<double> parallel = run_threads();
+    CHECK(parallel == run_threads());
+    btSequentialImpulseConstraintSolver alone;
+    Beams<btDiscreteDynamicsWorld> serial(direct(), &alone);
+    serial.dynamics.getSolverInfo().m_minimumSolverBatchSize = 1;
+    for (int i = 0; i < 200; ++i) serial.world->step(1e-3);
+    // the two hand an island's constraints over in different orders, which iterations feel until
+    // the direct solver takes over: 2.5e-5 of the root's rotation
+    CHECK(parallel[0] == Approx(serial.state()[0]).epsilon(1e-3));
+    btSetTaskScheduler(nullptr);
+}
+
+TEST_CASE("one doubt solver serves several threads at once", "[bullet][world][threads]") {
+    // as Bullet built with BT_THREADSAFE does it: islands by threads, a usual solver that may
+    btSequentialImpulseConstraintSolver usual;
+    bullet::DoubtSolver doubts(usual);
+    std::array<std::unique_ptr<BulletWorld>, 4> worlds;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    for (auto& world : worlds) {
+        world = std::make_unique<BulletWorld>("si");
+        btRigidBody& body = world->body(1, 2);
+        body.setAngularVelocity({0, 0, 10});
+        hinges.push_back(std::make_unique<Hinge>(body, at(0, 0), joint(64)));
+        hinges.back()->add_to(world->world());
+        world->world().setConstraintSolver(&doubts);
+        doubts.doubt(static_cast<btTypedConstraint*>(hinges.back().get()));
+    }
+    std::vector<std::thread> threads;
+    for (auto& world : worlds) threads.emplace_back([&world] { world->step(1e-3, 300); });
+    for (auto& thread : threads) thread.join();
+    for (auto& hinge : hinges) {
+        CHECK(hinge->absorbed_energy() == hinges[0]->absorbed_energy());
+        CHECK(hinge->absorbed_energy() == Approx(99.84).epsilon(single ? 1e-4 : 1e-9));
+    }
+    CHECK(doubts.fallbacks() == 0);
+    for (std::size_t i = 0; i < worlds.size(); ++i) hinges[i]->remove_from(worlds[i]->world());
+}
+
+TEST_CASE("feedback that the ledger lent is taken back from a joint that leaves",
+          "[bullet][world]") {
+    BulletWorld rig("si");
+    btRigidBody& body = rig.body(1, 2);
+    Hinge hinge(body, at(0, 0), joint(64));
+    {
+        bullet::World world(rig.world());
+        world.add(hinge);
+        world.step(1e-3);
+        CHECK(hinge.getJointFeedback() != nullptr);
+        world.remove(hinge);
+    }
+    CHECK(hinge.getJointFeedback() == nullptr);
+    CHECK_FALSE(hinge.in_world());
+}
+
+TEST_CASE("a motor taken over and a sleeping joint are told of too", "[bullet][world]") {
+    BulletWorld rig("soft-mlcp");
+    btRigidBody& body = rig.body(1, 2);
+    btHingeConstraint own(body, {0, 0, 0}, {0, 0, 1});
+    rig.world().addConstraint(&own);
+    bullet::PlasticMotor motor(own, joint(64));
+    bullet::World world(rig.world());
+    world.add(motor, "elbow");
+    body.setAngularVelocity({0, 0, 10});
+    CHECK(motor.report().rotation_rate == Approx(10));
+    world.step(1e-3);
+    REQUIRE(world.events().size() == 1);
+    CHECK(world.events()[0].name == "elbow");
+    CHECK(world.events()[0].kind == EventKind::yielded);
+    CHECK(world.events()[0].report.outcome == Outcome::yielding);
+    body.forceActivationState(ISLAND_SLEEPING);
+    CHECK(motor.report().outcome == Outcome::elastic);
+    CHECK_FALSE(motor.report().first_yield);
+    world.remove(motor);
+    rig.world().removeConstraint(&own);
+}
+
+TEST_CASE("the joint of a multibody is told of, and refused where the world has none",
+          "[bullet][world]") {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btMultiBodyConstraintSolver solver;
+    btMultiBodyDynamicsWorld dynamics(&dispatcher, &broadphase, &solver, &configuration);
+    dynamics.setGravity({0, 0, 0});
+    btMultiBody body(1, 0, {1, 1, 1}, true, false);
+    body.setupRevolute(0, 1, {2, 2, 2}, -1, btQuaternion::getIdentity(), {0, 0, 1}, {0, 0, 0},
+                       {0, 0, 0}, true);
+    body.finalizeMultiDof();
+    bullet::undamp(body);
+    btSphereShape shape(1);
+    btMultiBodyLinkCollider collider(&body, 0);
+    collider.setCollisionShape(&shape);
+    body.getLink(0).m_collider = &collider;
+    dynamics.addCollisionObject(&collider, 0, 0);
+    dynamics.addMultiBody(&body);
+    bullet::MultiBodyPlasticHinge<OneAxisJoint<Perfect<double>, TravelLimit<double>>> hinge(
+        body, 0,
+        OneAxisJoint(Perfect<double>({.strength = 64}), TravelLimit<double>({.limit = 1.5})));
+    btMultiBody& moving = body;
+    moving.setJointVel(0, 10);
+    CHECK(hinge.report().rotation_rate == Approx(10));
+    std::vector<std::string> told;
+    {
+        bullet::World world(dynamics, {.ledger = false});
+        world.on_event([&told](const JointEvent<double>& event) {
+            told.push_back(event.name + " " + std::string(to_string(event.kind)));
+        });
+        world.add(hinge, "knee");
+        StepControl<double> control({.min_step = 1e-5, .max_step = 1e-2});
+        world.advance(0.3, control);
+        CHECK(world.time() == 0.3);
+        world.remove(hinge);
+    }
+    CHECK(told == std::vector<std::string>{"knee yielded", "knee broke"});
+    CHECK(hinge.absorbed_energy() == Approx(96).epsilon(single ? 1e-3 : 1e-6));
+    BulletWorld rig;
+    bullet::World plain(rig.world());
+    CHECK(message_of([&] { plain.add(hinge); }) ==
+          "World.world: must be a btMultiBodyDynamicsWorld for the joint of a multibody");
+    dynamics.removeMultiBody(&body);
+    dynamics.removeCollisionObject(&collider);
+}
