@@ -1,0 +1,46 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What joints cost: cost.py --bin FOLDER --build FOLDER --out FOLDER [--quick]
+
+Runs the joint_cost and scaling programs of every engine build, whose tables go to the terminal, and joins
+their rows into joint_cost.csv and scaling.csv in --out.
+"""
+
+import argparse
+import os
+import subprocess
+import tempfile
+
+from common import Progress, write_meta
+
+BUILDS = ("bullet-double", "bullet-float", "ode-double")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--bin", required=True, help="folder of the programs")
+    parser.add_argument("--build", required=True, help="CMake's build folder, for the machine's description")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    os.makedirs(options.out, exist_ok=True)
+    extra = ["--quick"] if options.quick else []
+    progress = Progress("cost", 2 * len(BUILDS))
+    for question in ("joint_cost", "scaling"):
+        joined = []
+        for build in BUILDS:
+            program = os.path.join(options.bin, f"{question}-{build}")
+            if os.path.exists(program):
+                with tempfile.NamedTemporaryFile("r", suffix=".csv") as file:
+                    subprocess.run([program, *extra, "--csv", file.name], check=True)
+                    lines = file.read().splitlines()
+                joined += lines if not joined else lines[1:]
+            progress.advance(1, f"{question}-{build}")
+        with open(os.path.join(options.out, f"{question}.csv"), "w") as file:
+            file.write("\n".join(joined) + "\n")
+    progress.finish()
+    write_meta(options.out, options.build, quick=options.quick)
+
+
+if __name__ == "__main__":
+    main()

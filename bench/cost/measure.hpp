@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+//
+// CPU time of steps of several fields, measured in turn so that a busy machine disturbs all alike.
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+namespace bench::cost {
+
+/// CPU time of this process [s].
+[[nodiscard]] inline double cpu_now() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+[[nodiscard]] inline double median(std::vector<double> values) {
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Median CPU time of a step of every field [s], over `rounds` rounds in each of which every field
+/// steps for at least `at_least` seconds.
+template <class Field>
+std::vector<double> step_times(std::vector<std::unique_ptr<Field>>& fields, int rounds,
+                               double at_least) {
+    std::vector<std::vector<double>> times(fields.size());
+    for (auto& field : fields) field->step(); // first step: allocations
+    for (int round = 0; round < rounds; ++round) {
+        for (std::size_t i = 0; i < fields.size(); ++i) {
+            long steps = 0;
+            const double start = cpu_now();
+            double now = start;
+            do {
+                fields[i]->step();
+                ++steps;
+                now = cpu_now();
+            } while (now - start < at_least);
+            times[i].push_back((now - start) / double(steps));
+        }
+    }
+    std::vector<double> result;
+    result.reserve(times.size());
+    for (auto& of_field : times) result.push_back(median(std::move(of_field)));
+    return result;
+}
+
+} // namespace bench::cost

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+//
+// Runs a scene in an engine's world: once observed after every step, for what is right and wrong
+// with it, and as often as wanted unobserved, for what it costs. Both runs are the same simulation.
+#pragma once
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "ductile/detail/step_control.hpp"
+#include "engines/settings.hpp"
+#include "methods/holder.hpp"
+#include "scenes/scene.hpp"
+
+namespace bench {
+
+struct RunResult {
+    Observation end;
+    long steps = 0;
+    long unreliable_steps = 0; ///< that the method itself said not to believe
+    double energy_start = 0;   ///< kinetic + potential of all bodies [J]
+    double energy_highest = 0; ///< [J]
+    bool finite = true;        ///< false: stopped where a number was no longer one
+};
+
+/// What StepControl wants to know of the scene, from the engine's state.
+template <class World>
+ductile::SceneMotion<double> motion(const Scene& scene, const World& world) {
+    ductile::SceneMotion<double> result;
+    for (std::size_t i = 0; i < scene.joints.size(); ++i) {
+        const JointSpec& joint = scene.joints[i];
+        if (world.holders()[i]->broken()) continue;
+        const double speed = std::abs(row_speed(joint, world.state(joint.a), world.state(joint.b)));
+        double& rate = joint.motion == Motion::turns ? result.plastic_rotation_rate
+                                                     : result.plastic_elongation_rate;
+        rate = std::max(rate, speed);
+        if (std::isfinite(joint.stiffness)) {
+            const double frequency =
+                std::sqrt(joint.stiffness / effective_mass(scene, joint)) / (2 * std::acos(-1.0));
+            result.elastic_frequency = std::max(result.elastic_frequency, frequency);
+        }
+    }
+    for (const ContactSpec& contact : scene.contacts) {
+        if (!contact.approach) continue;
+        const Approach a = contact.approach(world.state(contact.a), world.state(contact.b));
+        if (a.gap <= 0 || a.closing_speed <= result.closing_speed) continue;
+        result.gap = a.gap;
+        result.closing_speed = a.closing_speed;
+        result.thickness = contact.thickness;
+    }
+    return result;
+}
+
+/// The step of every run: fixed, or chosen from the motion.
+class Stepping {
+  public:
+    Stepping(const Scene& scene, const Settings& settings)
+        : scene_(scene),
+          fixed_(settings.dt),
+          adaptive_(settings.adaptive()),
+          control_(parameters(settings)) {}
+
+    template <class World>
+    double next(const World& world) {
+        return adaptive_ ? control_.next(motion(scene_, world)) : fixed_;
+    }
+
+  private:
+    /// The defaults of StepControl scaled from their 0.005 to the tolerance; a bar's metre is worth
+    /// a radian.
+    static ductile::StepControlParameters<double> parameters(const Settings& settings) {
+        ductile::StepControlParameters<double> p;
+        if (!settings.adaptive()) return p;
+        const double scale = settings.tolerance / p.plastic_rotation;
+        p.plastic_rotation = settings.tolerance;
+        p.plastic_elongation = settings.tolerance;
+        p.closing_fraction = std::min(scale * p.closing_fraction, 0.5);
+        p.steps_per_period = std::max(p.steps_per_period / std::sqrt(scale), 2.0);
+        return p;
+    }
+
+    const Scene& scene_;
+    double fixed_;
+    bool adaptive_;
+    ductile::StepControl<double> control_;
+};
+
+/// Kinetic and potential energy of all bodies [J].
+template <class World>
+double energy(const Scene& scene, const World& world) {
+    double sum = 0;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+        const BodyState state = world.state(int(i));
+        sum += kinetic(scene.bodies[i], state) + potential(scene, scene.bodies[i], state);
+    }
+    return sum;
+}
+
+/// Observed run; `watch(world, observation)` after every step.
+template <class World, class Watch>
+RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
+    World world(scene, settings);
+    Stepping stepping(scene, settings);
+    RunResult r;
+    Observation& o = r.end;
+    std::vector<Travel> travels;
+    for (const JointSpec& joint : scene.joints) {
+        travels.emplace_back(joint, world.state(joint.a), world.state(joint.b));
+    }
+    o.travel.assign(travels.size(), 0);
+    o.peak_travel = o.travel;
+    o.bodies.resize(scene.bodies.size());
+    r.energy_start = r.energy_highest = energy(scene, world);
+    // half a step less: round-off of the sum must not add a step
+    const double end = scene.duration - (settings.adaptive() ? 0 : settings.dt / 2);
+    do {
+        const double dt = stepping.next(world);
+        world.step(dt);
+        o.time += dt;
+        ++r.steps;
+        for (std::size_t i = 0; i < o.bodies.size(); ++i) o.bodies[i] = world.state(int(i));
+        for (std::size_t i = 0; i < travels.size(); ++i) {
+            const JointSpec& joint = scene.joints[i];
+            o.travel[i] = travels[i].update(world.state(joint.a), world.state(joint.b));
+            o.peak_travel[i] = std::max(o.peak_travel[i], std::abs(o.travel[i]));
+        }
+        const double now = energy(scene, world);
+        r.finite = std::isfinite(now);
+        r.energy_highest = std::max(r.energy_highest, now);
+        bool unreliable = false;
+        o.absorbed = 0;
+        for (const auto& holder : world.holders()) {
+            unreliable = unreliable || holder->unreliable();
+            const auto absorbed = holder->absorbed();
+            if (!absorbed) o.absorbed.reset();
+            if (o.absorbed) *o.absorbed += *absorbed;
+        }
+        r.unreliable_steps += unreliable;
+        watch(world, o);
+    } while (r.finite && o.time < end);
+    return r;
+}
+template <class World>
+RunResult observe(const Scene& scene, const Settings& settings) {
+    return observe<World>(scene, settings, [](const World&, const Observation&) {});
+}
+
+/// |value - expected| / |expected|; infinite where the run did not stay finite; none where the
+/// method has no such quantity.
+[[nodiscard]] inline std::optional<double> relative_error(const Quantity& quantity,
+                                                          const RunResult& run) {
+    const auto value = quantity.value(run.end);
+    if (!value) return std::nullopt;
+    const double error = std::abs(*value / quantity.expected - 1);
+    return run.finite && std::isfinite(error) ? error : infinity;
+}
+
+/// The steps alone, to be counted or timed. Not inlined: instructions are collected by its name.
+template <class World>
+[[gnu::noinline]] void bench_steps(World& world, Stepping& stepping, long steps) {
+    for (long i = 0; i < steps; ++i) world.step(stepping.next(world));
+}
+
+/// CPU time of this process [s].
+[[nodiscard]] inline double process_cpu_time() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
+/// CPU time of `steps` steps from the start [s]: the median of at least `repeats` runs and of as
+/// many as take `at_least` seconds together. An absurdly long run is not repeated.
+template <class World>
+double cpu_time(const Scene& scene, const Settings& settings, long steps, int repeats,
+                double at_least) {
+    std::vector<double> times;
+    double sum = 0;
+    while (int(times.size()) < repeats || sum < at_least) {
+        World world(scene, settings);
+        Stepping stepping(scene, settings);
+        const double start = process_cpu_time();
+        bench_steps(world, stepping, steps);
+        times.push_back(process_cpu_time() - start);
+        sum += times.back();
+        if (sum > 20 * std::max(at_least, 0.01) || times.size() >= 1000) break;
+    }
+    const auto middle = times.begin() + std::ptrdiff_t(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
+}
+
+} // namespace bench

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+//
+// What accuracy costs: every scene with a known answer × every method × solver × step × iterations
+// on one build of one engine; errors and CPU time as CSV on the standard output. Bullet's float and
+// double libraries share their symbols, so each engine build has a program of its own;
+// bench/pareto.py runs them, joins their rows and adds instructions.
+//
+//   pareto-bullet-double [--quick] [--scene NAME]       all rows
+//   pareto-bullet-double [--quick] --list               the rows without running them, with their
+//   steps pareto-bullet-double --scene NAME --row SOLVER,METHOD,DT,TOLERANCE,ITERATIONS
+//                                                       one run without observation, for callgrind
+//
+// Columns: scene,engine,solver,precision,method,dt_s,tolerance,iterations,quantity,error_rel,
+// cpu_s_per_sim_s,steps,unreliable_steps. dt_s of an adaptive run is its mean step; tolerance is 0
+// for fixed steps; iterations of Bullet's mlcp are those of its fallback, 0 where there are none.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "engines/run_scene.hpp"
+#include "methods/names.hpp"
+#include "scenes/all.hpp"
+
+#ifdef BENCH_ODE
+#include "engines/ode_world.hpp"
+using World = bench::OdeWorld;
+#else
+#include "engines/bullet_world.hpp"
+using World = bench::BulletWorld;
+#endif
+
+using namespace bench;
+
+namespace {
+
+struct Plan {
+    std::vector<double> steps;
+    std::vector<double> tolerances;
+    std::vector<int> iterations; ///< of iterative solvers
+    std::vector<int> fallback;   ///< of direct solvers where they give up
+    long longest = 0;            ///< runs of more steps are left out
+    int repeats = 3;             ///< of the timing
+    double at_least = 0;         ///< CPU time of all repeats of a row [s]
+};
+
+const Plan full{
+    {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5},
+    {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005},
+    {4, 10, 50, 200},
+    {10, 200},
+    20000,
+    5,
+    0.02};
+const Plan quick{{1.0 / 60, 1.0 / 240, 1e-3, 5e-4, 2e-4, 1e-4, 2e-5},
+                 {0.05, 0.01, 0.005, 0.002, 0.001},
+                 {10, 50},
+                 {200},
+                 8000,
+                 3,
+                 0.003};
+
+std::vector<int> iterations_of(const SolverName& solver, const Plan& plan) {
+    switch (solver.iterations) {
+        case Iterations::none:
+            return {0};
+        case Iterations::fallback:
+            return plan.fallback;
+        case Iterations::solve:
+            return plan.iterations;
+    }
+    return {};
+}
+
+/// Without a stiffness elastic-plastic would be plastic-hinge once more.
+bool stands_for(const MethodName& method, const Scene& scene) {
+    return method.name != "elastic-plastic" ||
+           std::any_of(scene.joints.begin(), scene.joints.end(),
+                       [](const JointSpec& joint) { return std::isfinite(joint.stiffness); });
+}
+
+/// Every run of a scene on this engine build.
+std::vector<Settings> rows(const Scene& scene, const Plan& plan) {
+    std::vector<Settings> result;
+    for (const SolverName& solver : World::solvers) {
+        for (const int iterations : iterations_of(solver, plan)) {
+            for (const MethodName& method : method_names) {
+                if (!World::has(method.name) || !stands_for(method, scene)) continue;
+                Settings row{.solver = std::string(solver.name),
+                             .iterations = iterations,
+                             .method = std::string(method.name)};
+                for (const double dt : plan.steps) {
+                    row.dt = dt;
+                    if (scene.duration / dt <= double(plan.longest)) result.push_back(row);
+                }
+                if (!method.ours) continue;
+                for (const double tolerance : plan.tolerances) {
+                    row.tolerance = tolerance;
+                    result.push_back(row);
+                }
+            }
+        }
+    }
+    return result;
+}
+
+std::string name(const Settings& row) {
+    return row.method + (row.adaptive() ? std::string(adaptive_suffix) : "");
+}
+
+void run(const Scene& scene, const Settings& row, const Plan& plan) {
+    const RunResult result = observe<World>(scene, row);
+    const double cpu = cpu_time<World>(scene, row, result.steps, plan.repeats, plan.at_least);
+    const double dt = row.adaptive() ? result.end.time / double(result.steps) : row.dt;
+    for (const Quantity& quantity : scene.quantities) {
+        const auto error = relative_error(quantity, result);
+        if (!error) continue;
+        fmt::print("{},{},{},{},{},{:.9e},{},{},{},{:.9e},{:.6e},{},{}\n", scene.name,
+                   World::engine, row.solver, World::precision, name(row), dt, row.tolerance,
+                   row.iterations, quantity.name, *error, cpu / result.end.time, result.steps,
+                   result.unreliable_steps);
+    }
+    std::fflush(stdout);
+}
+
+/// One run's steps, for a tool that counts them.
+void run_once(const Scene& scene, const Settings& row) {
+    const long steps = observe<World>(scene, row).steps;
+    World world(scene, row);
+    Stepping stepping(scene, row);
+    bench_steps(world, stepping, steps);
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    CLI::App app("Accuracy and cost of plastic joints on one engine build");
+    bool is_quick = false, list = false;
+    std::string only, single;
+    app.add_flag("--quick", is_quick, "fewer steps, iterations and repeats");
+    app.add_flag("--list", list, "print the rows instead of running them");
+    app.add_option("--scene", only, "this scene only");
+    app.add_option("--row", single, "SOLVER,METHOD,DT,TOLERANCE,ITERATIONS: its steps once");
+    CLI11_PARSE(app, argc, argv);
+    const Plan& plan = is_quick ? quick : full;
+
+    bool found = false;
+    for (const Scene& scene : all_scenes()) {
+        if (!only.empty() && scene.name != only) continue;
+        found = true;
+        if (!single.empty()) {
+            const auto fields = CLI::detail::split(single, ',');
+            if (fields.size() != 5)
+                throw std::invalid_argument("--row = " + single + ": five fields");
+            run_once(scene, {.solver = fields[0],
+                             .iterations = std::stoi(fields[4]),
+                             .method = fields[1],
+                             .dt = std::stod(fields[2]),
+                             .tolerance = std::stod(fields[3])});
+            continue;
+        }
+        for (const Settings& row : rows(scene, plan)) {
+            if (list) {
+                fmt::print("{},{},{},{:.9e},{},{},{}\n", scene.name, row.solver, name(row), row.dt,
+                           row.tolerance, row.iterations,
+                           row.adaptive() ? 1000 : long(scene.duration / row.dt));
+            } else {
+                run(scene, row, plan);
+            }
+        }
+    }
+    if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+}

@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Draws stored results: plot.py bench/results/NAME
+
+From pareto.csv one picture per scene, pareto-SCENE.png: error over cost, both logarithmic, with the Pareto
+front drawn and our points filled and large. Nothing is run.
+"""
+
+import csv
+import sys
+from collections import defaultdict
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+from pareto import ALL_METHODS, front, is_ours, number, primary  # noqa: E402
+
+BEST, WORST = 1e-9, 10.0  # errors beyond are drawn at the rim
+OUR_COLOURS = {"plastic-hinge": "crimson", "elastic-plastic": "darkorange", "plastic-joint": "navy"}
+MARKERS = {("bullet", "double"): "o", ("bullet", "float"): "^", ("ode", "double"): "s"}
+
+
+def read(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def shown(row):
+    error = number(row, "error_rel")
+    return min(max(error, BEST), WORST) if error == error else WORST
+
+
+def draw_scene(scene, quantity, rows, path):
+    figure, axis = plt.subplots(figsize=(10, 5.6))
+    colours = plt.get_cmap("Set2").colors
+    colour = {method: colours[i % len(colours)] for i, method in enumerate(ALL_METHODS)} | OUR_COLOURS
+    groups = defaultdict(list)
+    for row in rows:
+        groups[row["method"], row["engine"], row["precision"]].append(row)
+    named = set()
+    order = sorted(groups.items(), key=lambda item: (is_ours(item[0][0]), item[0]))
+    for (method, engine, precision), points in order:
+        ours, adaptive = is_ours(method), method.endswith("-adaptive")
+        axis.plot([number(r, "cpu_s_per_sim_s") for r in points], [shown(r) for r in points],
+                  linestyle="", marker="D" if adaptive else MARKERS.get((engine, precision), "x"),
+                  markersize=6.5 if ours else 4, alpha=0.8,
+                  color=colour[method.removesuffix("-adaptive")], fillstyle="full",
+                  markeredgecolor="white", markeredgewidth=0.5, zorder=4 if ours else 2,
+                  label=None if method in named else method)
+        named.add(method)
+    best = front(rows)
+    axis.step([number(r, "cpu_s_per_sim_s") for r in best], [shown(r) for r in best], where="post",
+              color="black", linewidth=1.2, zorder=3, label="Pareto front")
+    for target in (0.05, 0.01, 0.001):
+        axis.axhline(target, color="grey", linewidth=0.6, linestyle=":", zorder=1)
+        axis.text(1.0, target, f" {100 * target:g} %", transform=axis.get_yaxis_transform(), fontsize=8,
+                  va="center", color="grey")
+    lowest = min(map(shown, rows))
+    axis.set(xscale="log", yscale="log", ylim=(lowest / 3, 3 * WORST),
+             xlabel="CPU seconds per simulated second", ylabel=f"relative error of {quantity}",
+             title=f"{scene}: accuracy against cost\n"
+                   "circle Bullet double, triangle Bullet float, square ODE, diamond adaptive; "
+                   "large: ours; rims: exact, or worse than 1000 %")
+    axis.title.set_fontsize(9)
+    axis.grid(alpha=0.25, which="major")
+    axis.legend(fontsize=7.5, loc="upper left", bbox_to_anchor=(1.07, 1))
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    print(path)
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder = Path(sys.argv[1])
+    rows = read(folder / "pareto.csv")
+    for scene, quantity in primary(rows).items():
+        chosen = [r for r in rows if r["scene"] == scene and r["quantity"] == quantity]
+        draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
+
+
+if __name__ == "__main__":
+    main()

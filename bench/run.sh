@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+#
+# Installs what is missing, builds the benchmarks, runs them with progress and time left, stores the
+# results with the machine they are of, and draws them.
+#   bench/run.sh [--quick] [--name NAME]     results in bench/results/NAME
+# NAME: default the processor's name, with -quick where quick. --quick takes some minutes on two idle
+# cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+quick=()
+name=
+while [ $# -gt 0 ]; do
+    case $1 in
+        --quick) quick=(--quick) ;;
+        --name)
+            [ $# -ge 2 ] || { echo "--name: a name is missing" >&2; exit 2; }
+            name=$2
+            shift
+            ;;
+        *) echo "usage: bench/run.sh [--quick] [--name NAME]" >&2; exit 2 ;;
+    esac
+    shift
+done
+if [ -z "$name" ]; then
+    name=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -1 | tr '[:upper:] ' '[:lower:]-' |
+        tr -cd 'a-z0-9-')
+    name=${name:-machine}${quick:+-quick}
+fi
+
+cmake/install-packages.sh
+cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
+cmake --build --preset release --target \
+    {pareto,stability,scaling,joint_cost}-{bullet-double,bullet-float,ode-double}
+out=bench/results/$name
+mkdir -p "$out"
+# the interpreter for which Debian packages matplotlib
+/usr/bin/python3 bench/pareto.py --bin build/release/bin --build build/release --out "$out" \
+    ${quick[@]+"${quick[@]}"}
+/usr/bin/python3 bench/stability.py --bin build/release/bin --build build/release --out "$out" \
+    ${quick[@]+"${quick[@]}"}
+/usr/bin/python3 bench/cost.py --bin build/release/bin --build build/release --out "$out" \
+    ${quick[@]+"${quick[@]}"}
+/usr/bin/python3 bench/plot.py "$out"
+/usr/bin/python3 bench/plot_stability.py "$out"
