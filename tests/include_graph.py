@@ -21,6 +21,8 @@ ALLOWED = {
     "energy": set(),
     "joint": {"vocabulary", "law", "surface", "fracture"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
+    "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
+    "world": {"vocabulary", "fracture", "detail"},
     "detail": {"vocabulary", "material", "section", "law", "joint"},
 }
 ADAPTERS = ("bullet", "ode")

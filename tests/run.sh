@@ -12,6 +12,8 @@ for preset in "${@:-release}"; do
     cmake --build --preset "$preset"
     ctest --preset "$preset"
 done
+# what the contract of the last preset showed, solver by solver
+python3 tests/features.py build/"${preset}"/tests/features_*.csv >tests/features.md
 
 echo "== headers with clang"
 cmake --preset clang -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=OFF -DDUCTILE_BENCH=OFF >/dev/null

@@ -10,7 +10,8 @@
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
-#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
+#include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>
+#include <BulletDynamics/MLCPSolvers/btSolveProjectedGaussSeidel.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -25,11 +26,12 @@
 #include "ductile/bullet/bullet.hpp"
 #include "edge_contact.hpp"
 #include "simulation.hpp"
+#include "specimen_joints.hpp"
 
 namespace charpy {
 
 class BulletScene {
-    using Hinge = ductile::bullet::PlasticHinge<>;
+    using Joints = SpecimenJoints<ductile::bullet::PlasticHinge, ductile::bullet::PlasticJoint>;
 
   public:
     static constexpr std::string_view engine = "bullet";
@@ -53,7 +55,7 @@ class BulletScene {
     ~BulletScene() {
         meter_.reset();
         for (const Pair& pair : pairs_) dispatcher_->releaseManifold(pair.manifold);
-        for (auto& hinge : plastic_) hinge->remove_from(*world_);
+        plastic_.for_each([this](auto& joint) { joint.remove_from(*world_); });
         for (auto& constraint : constraints_) world_->removeConstraint(constraint.get());
         for (auto& body : bodies_) world_->removeRigidBody(body.get());
     }
@@ -111,15 +113,13 @@ class BulletScene {
         return sum;
     }
     [[nodiscard]] double joint_work() {
-        double sum = 0;
-        for (auto& hinge : plastic_) sum += hinge->absorbed_energy();
+        double sum = plastic_.absorbed();
         for (const btTypedConstraint* joint : engine_joints_) sum += meter_->taken_by(*joint);
         return sum;
     }
+    [[nodiscard]] double stored() { return plastic_.stored(); }
     [[nodiscard]] double joint_travel() {
-        double sum = 0;
-        for (auto& hinge : plastic_) sum += hinge->plastic_rotation();
-        return plastic_.empty() ? std::abs(rotation()) : sum;
+        return plastic_.empty() ? std::abs(rotation()) : plastic_.travel();
     }
     /// Angle between the outermost parts: the bend of the whole specimen [rad].
     [[nodiscard]] double rotation() const {
@@ -128,25 +128,12 @@ class BulletScene {
         return std::atan2(double(relative[0][2]), double(relative[0][0]));
     }
     [[nodiscard]] bool broken() {
-        for (auto& hinge : plastic_) {
-            if (hinge->broken()) return true;
-        }
-        for (const btTypedConstraint* joint : engine_joints_) {
-            if (!joint->isEnabled()) return true;
-        }
-        return false;
+        return plastic_.broken() ||
+               std::any_of(engine_joints_.begin(), engine_joints_.end(),
+                           [](const btTypedConstraint* joint) { return !joint->isEnabled(); });
     }
-    /// True where a hinge says that the last step's solve should not be believed.
-    [[nodiscard]] bool unreliable() {
-        return std::any_of(plastic_.begin(), plastic_.end(), [](const auto& hinge) {
-            return hinge->outcome() == ductile::Outcome::unreliable;
-        });
-    }
-    [[nodiscard]] double residual_max() {
-        double worst = 0;
-        for (auto& hinge : plastic_) worst = std::max(worst, hinge->residual_max());
-        return worst;
-    }
+    [[nodiscard]] bool unreliable() { return plastic_.unreliable(); }
+    [[nodiscard]] double residual_max() { return plastic_.residual_max(); }
 
   private:
     /// One edge against one face, with the manifold that carries it.
@@ -181,14 +168,20 @@ class BulletScene {
         configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
         dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
         broadphase_ = std::make_unique<btDbvtBroadphase>();
+        using ductile::bullet::Answer;
         if (solver == "mlcp") {
-            dantzig_ = std::make_unique<btDantzigSolver>();
-            solver_ = std::make_unique<btMLCPSolver>(dantzig_.get());
+            solve_lcp(std::make_unique<btDantzigSolver>(), Answer::exact);
+        } else if (solver == "lemke") {
+            solve_lcp(std::make_unique<btLemkeSolver>(), Answer::exact);
+        } else if (solver == "pgs") {
+            solve_lcp(std::make_unique<btSolveProjectedGaussSeidel>(), Answer::iterated);
         } else if (solver == "si") {
-            solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+            solver_ = std::make_unique<ductile::bullet::SoftSequentialImpulseSolver>();
+        } else if (solver == "nncg") {
+            solver_ = std::make_unique<ductile::bullet::SoftNncgSolver>();
         } else {
-            throw std::invalid_argument("--solver = " + solver +
-                                        ": must be mlcp or si with --engine bullet");
+            throw std::invalid_argument("--solver = " + solver + ": must be " +
+                                        std::string(bullet_solvers) + " with --engine bullet");
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), broadphase_.get(),
                                                            solver_.get(), configuration_.get());
@@ -200,6 +193,12 @@ class BulletScene {
         info.m_globalCfm = scalar(1e-7); // as the ODE scene's contacts: 10 kN yield at 1 mm/s
         // manifolds made by hand do not merge islands: one island for all
         world_->getSimulationIslandManager()->setSplitIslands(false);
+    }
+
+    /// Bullet's own solvers, made to honour the compliance of elastic rows.
+    void solve_lcp(std::unique_ptr<btMLCPSolverInterface> lcp, ductile::bullet::Answer answer) {
+        lcp_ = std::move(lcp);
+        solver_ = std::make_unique<ductile::bullet::SoftMlcpSolver>(*lcp_, answer);
     }
 
     btRigidBody& add_body(btCollisionShape& shape, double mass, const btVector3& inertia,
@@ -270,12 +269,11 @@ class BulletScene {
 
     /// Every edge may touch every part.
     void pair_edges() {
-        const double reach = s_.hammer_height / 2;
+        const Vector tip = ductile::bullet::to_core(nose_local_);
         for (const btRigidBody* part : parts_) {
-            for (const double side : {-1.0, 1.0}) {
-                const Vector nose = ductile::bullet::to_core(nose_local_) +
-                                    Vector(0, 0, side * s_.nose_width / 2);
-                pair(*hammer_, {nose - Vector(0, reach, 0), nose + Vector(0, reach, 0)}, *part, 1);
+            for (const Edge& edge : hammer_edges(s_.flat(), s_.nose_length, s_.hammer_thickness,
+                                                 s_.hammer_height / 2)) {
+                pair(*hammer_, {tip + edge.from, tip + edge.to}, *part, 1);
             }
             for (std::size_t i = 0; i < anvils_.size(); ++i) {
                 const double inner = (i == 0 ? 1 : -1) * s_.anvil_width / 2;
@@ -312,24 +310,28 @@ class BulletScene {
             }
             pair.manifold->clearManifold();
             for (int i = 0; i < contact.count; ++i) {
-                const ContactPoint& point = contact.points[std::size_t(i)];
-                const btVector3 on_edge = ductile::bullet::to_bullet(point.position);
-                const btVector3 on_face =
-                    ductile::bullet::to_bullet(point.position - point.gap * point.normal);
                 // a direct solver's pivoting stalls where symmetric contacts reach their bound at
                 // once: no two are quite alike
                 const double unlike = 1e-6 * (1 + 0.37 * count++) * dt;
-                btManifoldPoint entry(striker.invXform(on_edge), part.invXform(on_face),
-                                      ductile::bullet::to_bullet(point.normal),
-                                      scalar(point.gap + unlike));
-                entry.m_positionWorldOnA = on_edge;
-                entry.m_positionWorldOnB = on_face;
-                entry.m_combinedFriction = scalar(s_.friction);
-                entry.m_combinedRestitution = scalar(s_.restitution);
-                entry.m_appliedImpulse = impulse[std::size_t(i)];
-                pair.manifold->addManifoldPoint(entry);
+                add_contact(pair, contact.points[std::size_t(i)], impulse[std::size_t(i)], unlike);
             }
         }
+    }
+
+    /// `unlike`: added to the gap [m].
+    void add_contact(Pair& pair, const ContactPoint& point, btScalar impulse, double unlike) {
+        const btVector3 on_edge = ductile::bullet::to_bullet(point.position);
+        const btVector3 normal = ductile::bullet::to_bullet(point.normal);
+        const btVector3 on_face =
+            ductile::bullet::to_bullet(point.position - point.gap * point.normal);
+        btManifoldPoint entry(pair.striker->getCenterOfMassTransform().invXform(on_edge),
+                              pair.part->getCenterOfMassTransform().invXform(on_face), normal,
+                              scalar(point.gap + unlike));
+        entry.m_positionWorldOnA = on_edge;
+        entry.m_positionWorldOnB = on_face;
+        entry.m_combinedFriction = scalar(s_.friction);
+        entry.m_appliedImpulse = impulse;
+        pair.manifold->addManifoldPoint(entry);
     }
 
     btTypedConstraint& add_constraint(std::unique_ptr<btTypedConstraint> constraint) {
@@ -339,30 +341,38 @@ class BulletScene {
 
     void join_specimen() {
         const double half = s_.length / double(parts_.size()) / 2;
-        // z of the joint's frame along y, the axis of bending
+        // hinges: z of the joint's frame along y, the axis of bending
         const btQuaternion upright(vector(1, 0, 0), scalar(-SIMD_HALF_PI));
-        const btTransform in_a(upright, vector(0, 0, half));
-        const btTransform in_b(upright, vector(0, 0, -half));
+        // six axes: x of the section along y, its y along -x, z along the specimen
+        const btQuaternion along(vector(0, 0, 1), scalar(SIMD_HALF_PI));
+        const btQuaternion& turn = is_elastic(method_) ? along : upright;
+        const btTransform in_a(turn, vector(0, 0, half)), in_b(turn, vector(0, 0, -half));
         for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
             const bool notched = i + 1 == parts_.size() / 2;
-            join(*parts_[i], *parts_[i + 1], in_a, in_b,
-                 notched ? s_.notched_moment() : s_.full_moment());
+            join(*parts_[i], *parts_[i + 1], in_a, in_b, notched);
         }
     }
 
+    template <template <class> class Constraint, class Law>
+    void add_plastic(btRigidBody& a, btRigidBody& b, const btTransform& in_a,
+                     const btTransform& in_b, Law law) {
+        plastic_.add(std::make_unique<Constraint<Law>>(a, b, in_a, in_b, std::move(law)))
+            .add_to(*world_);
+    }
+
     void join(btRigidBody& a, btRigidBody& b, const btTransform& in_a, const btTransform& in_b,
-              double moment) {
+              bool notched) {
+        using ductile::bullet::PlasticHinge, ductile::bullet::PlasticJoint;
         constexpr int bending = 5; // rotation about the frames' z
+        const double moment = notched ? s_.notched_moment() : s_.full_moment();
         switch (method_) {
             case Method::rigid: return;
-            case Method::plastic_hinge: {
-                ductile::OneAxisJoint<ductile::Perfect<double>> law(
-                    ductile::Perfect<double>({.strength = moment}),
-                    ductile::TravelLimit<double>({.limit = s_.max_plastic_rotation}));
-                plastic_.push_back(std::make_unique<Hinge>(a, b, in_a, in_b, std::move(law)));
-                plastic_.back()->add_to(*world_);
-                return;
-            }
+            case Method::plastic_hinge:
+                return add_plastic<PlasticHinge>(a, b, in_a, in_b, hinge_law(s_, notched));
+            case Method::elastic_plastic:
+                return add_plastic<PlasticJoint>(a, b, in_a, in_b, axes_law(s_, notched));
+            case Method::elastic_plastic_2:
+                return add_plastic<PlasticJoint>(a, b, in_a, in_b, surface_law(s_, notched));
             case Method::zero_limits: {
                 auto joint = std::make_unique<btGeneric6DofConstraint>(a, b, in_a, in_b, true);
                 lock(*joint, -1);
@@ -430,13 +440,13 @@ class BulletScene {
     std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
     std::unique_ptr<btCollisionDispatcher> dispatcher_;
     std::unique_ptr<btDbvtBroadphase> broadphase_;
-    std::unique_ptr<btMLCPSolverInterface> dantzig_;
+    std::unique_ptr<btMLCPSolverInterface> lcp_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
-    std::vector<std::unique_ptr<Hinge>> plastic_;
+    Joints plastic_;
     std::unique_ptr<ductile::bullet::EnergyMeter> meter_;
     std::vector<Motor> motors_;
     std::vector<btTypedConstraint*> breakable_;

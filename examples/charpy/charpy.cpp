@@ -6,45 +6,40 @@
 //
 //   charpy                                           every method on every engine, table and plots
 //   charpy --engine ode --method plastic-hinge       one run
+//   charpy --table FOLDER                            the source's chapter 3 beside ours
 //   charpy --help                                    all options with units
 //
 // Exit status: 0 done, 2 bad input (one line says what), 1 a run failed.
 #include <fmt/core.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <memory>
+#include <ostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "options.hpp"
+#include "output_file.hpp"
+#include "process.hpp"
+#include "published_table.hpp"
 #include "report.hpp"
-
-extern char** environ;
 
 namespace {
 
 namespace fs = std::filesystem;
-using charpy::Method;
+using charpy::BadInput;
 using charpy::Options;
+using charpy::output_of;
+using charpy::OutputFile;
 using nlohmann::ordered_json;
 
 /// One row of the table to be.
 struct Run {
     std::string engine, precision, solver, method;
-};
-
-/// Error in what the user asked for; its text is the one line shown.
-struct BadInput : std::runtime_error {
-    using std::runtime_error::runtime_error;
 };
 
 std::vector<Run> plan(const Options& o) {
@@ -53,19 +48,17 @@ std::vector<Run> plan(const Options& o) {
     std::vector<Run> runs;
     for (const std::string& engine : engines) {
         const bool bullet = engine == "bullet";
-        if (!o.solver.empty() && bullet != (o.solver == "mlcp" || o.solver == "si")) {
+        const bool of_ode = o.solver == "direct" || o.solver == "quick";
+        if (!o.solver.empty() && bullet == of_ode) {
             if (o.engine == "all") continue; // that solver belongs to the other engine
             throw BadInput(fmt::format("--solver = {}: must be {} with --engine {}", o.solver,
-                                       bullet ? "mlcp or si" : "direct or quick", engine));
+                                       bullet ? charpy::bullet_solvers : charpy::ode_solvers,
+                                       engine));
         }
         const std::string solver = !o.solver.empty() ? o.solver : bullet ? "mlcp" : "direct";
-        for (const auto& [method, view] : charpy::method_names) {
-            const std::string name(view);
+        for (const auto& method : charpy::method_names) {
+            const std::string name(method.second);
             if (o.method != "all" && o.method != name) continue;
-            if (!bullet && !charpy::ode_has(method)) {
-                if (o.method == name && o.engine == engine) charpy::require_in_ode(method);
-                continue;
-            }
             runs.push_back({engine, bullet ? o.precision : "double", solver, name});
         }
     }
@@ -78,95 +71,6 @@ std::vector<Run> plan(const Options& o) {
     }
     return runs;
 }
-
-fs::path own_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
-
-/// Starts a program and returns what it prints; its last line of errors where it fails.
-std::string output_of(const fs::path& program, const std::vector<std::string>& arguments) {
-    std::array<int, 2> out{}, err{};
-    if (pipe(out.data()) != 0 || pipe(err.data()) != 0) throw std::runtime_error("no pipe");
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, out[1], STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, err[1], STDERR_FILENO);
-    for (const int end : {out[0], err[0], out[1], err[1]}) {
-        posix_spawn_file_actions_addclose(&actions, end);
-    }
-    std::vector<char*> argv{const_cast<char*>(program.c_str())};
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    pid_t child = 0;
-    const int failed =
-        posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(out[1]);
-    close(err[1]);
-    const auto read_all = [](int from) {
-        std::string text;
-        std::array<char, 65536> buffer{};
-        for (ssize_t n = 0; (n = read(from, buffer.data(), buffer.size())) > 0;) {
-            text.append(buffer.data(), std::size_t(n));
-        }
-        close(from);
-        return text;
-    };
-    if (failed != 0) {
-        close(out[0]);
-        close(err[0]);
-        throw std::runtime_error(program.string() + " could not be started");
-    }
-    const std::string text = read_all(out[0]);
-    std::string errors = read_all(err[0]);
-    int status = 0;
-    waitpid(child, &status, 0);
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-        while (!errors.empty() && errors.back() == '\n') errors.pop_back();
-        throw std::runtime_error(errors.empty() ? program.string() + " failed" : errors);
-    }
-    return text;
-}
-
-/// A file that appears complete or not at all. Opened when the program starts, so that a file that
-/// cannot be written is known before the work is done.
-class OutputFile {
-  public:
-    OutputFile(const std::string& option, const std::string& path) : path_(path) {
-        if (path_.empty()) return;
-        temporary_ = path_ + ".part";
-        if (fs::is_directory(path_)) fail(option, "is a folder");
-        stream_.open(temporary_);
-        if (!stream_) fail(option, "cannot be written");
-    }
-    ~OutputFile() {
-        if (path_.empty() || done_) return;
-        std::error_code ignored;
-        stream_.close();
-        fs::remove(temporary_, ignored);
-    }
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
-
-    explicit operator bool() const { return !path_.empty(); }
-    std::ofstream& stream() { return stream_; }
-    void finish() {
-        if (path_.empty()) return;
-        stream_.close();
-        if (!stream_) throw BadInput(path_ + ": cannot be written");
-        fs::rename(temporary_, path_);
-        done_ = true;
-    }
-
-  private:
-    [[noreturn]] void fail(const std::string& option, const char* why) {
-        const std::string path = path_;
-        path_.clear();
-        throw BadInput(fmt::format("{} = {}: {}", option, path, why));
-    }
-
-    std::string path_, temporary_;
-    std::ofstream stream_;
-    bool done_ = false;
-};
 
 void write_history(std::ostream& csv, const ordered_json& result, const nlohmann::json& history) {
     const std::string key = fmt::format(
@@ -199,6 +103,56 @@ void draw(const std::string& csv, const std::string& folder) {
     fmt::print("{}", text);
 }
 
+/// Runs one method on one engine's program. `given`: the user's own options; what this run fixes
+/// follows, and the last value of an option counts.
+ordered_json run_one(const std::vector<std::string>& given, const Run& r,
+                     const std::vector<std::string>& fixed = {}) {
+    const fs::path program =
+        charpy::own_folder() / fmt::format("charpy-{}-{}", r.engine, r.precision);
+    std::vector<std::string> arguments = given;
+    for (const std::string& option : {"--engine=" + r.engine, "--precision=" + r.precision,
+                                      "--solver=" + r.solver, "--method=" + r.method}) {
+        arguments.push_back(option);
+    }
+    arguments.insert(arguments.end(), fixed.begin(), fixed.end());
+    return ordered_json::parse(output_of(program, arguments));
+}
+
+/// Writes the published figures beside ours.
+int run_published(const Options& options, const std::vector<std::string>& given) {
+    std::error_code failed;
+    fs::create_directories(options.table, failed);
+    if (failed) throw BadInput(fmt::format("--table = {}: cannot be made", options.table));
+    const auto file = [&options](const char* name) {
+        return (fs::path(options.table) / name).string();
+    };
+    OutputFile text("--table", file("published.txt"));
+    OutputFile markdown("--table", file("published.md"));
+    OutputFile csv("--table", file("published.csv"));
+
+    const auto parts = charpy::published_plan(options.scenario);
+    std::size_t count = 0, done = 0;
+    for (const charpy::PublishedPart& part : parts) count += part.runs.size();
+    for (const charpy::PublishedPart& part : parts) {
+        const charpy::TextTable table = charpy::published_table(
+            part, options.scenario, [&](const charpy::PublishedRun& wanted) {
+                const auto& [engine, precision, solver] = wanted.block;
+                const Run r{engine, precision, solver, std::string(to_string(wanted.method))};
+                fmt::print(stderr, "[{:>3}/{}] {} {} {} {} {}\n", ++done, count, r.engine,
+                           r.precision, r.solver, r.method, wanted.step);
+                return run_one(given, r, wanted.options).at("result");
+            });
+        fmt::print("{}\n", table.text());
+        text.stream() << table.text() << '\n';
+        markdown.stream() << table.markdown() << '\n';
+        csv.stream() << table.csv(&part == &parts.front());
+    }
+    text.finish();
+    markdown.finish();
+    csv.finish();
+    return 0;
+}
+
 int run(int argc, char** argv) {
     Options options;
     CLI::App app("Charpy impact test on Bullet and ODE: what a hammer loses by bending a steel bar.\n"
@@ -213,8 +167,15 @@ int run(int argc, char** argv) {
         throw BadInput(charpy::one_line(error));
     }
     charpy::finish(app, options);
+    charpy::require_effect(app, options);
     const std::vector<Run> runs = plan(options);
+    const std::vector<std::string> given(argv + 1, argv + argc);
     if (argc == 1) options.plots = "charpy-plots";
+    if (!options.ccd.empty()) {
+        fmt::print("--ccd {}: no effect, contacts come from exact geometry before surfaces meet\n",
+                   options.ccd);
+    }
+    if (!options.table.empty()) return run_published(options, given);
 
     OutputFile json("--json", options.json);
     const bool draws = !options.plots.empty();
@@ -233,23 +194,17 @@ int run(int argc, char** argv) {
     auto results = ordered_json::array();
     std::string table;
     int failures = 0;
-    // the user's own options, then what this run fixes; the last value of an option counts
-    const std::vector<std::string> given(argv + 1, argv + argc);
     for (std::size_t i = 0; i < runs.size(); ++i) {
         const Run& r = runs[i];
         fmt::print(stderr, "[{:>2}/{}] {} {} {} {} ... ", i + 1, runs.size(), r.engine, r.precision,
                    r.solver, r.method);
         const auto start = std::chrono::steady_clock::now();
-        const fs::path program = own_folder() / fmt::format("charpy-{}-{}", r.engine, r.precision);
-        std::vector<std::string> arguments = given;
-        for (const std::string& fixed : {"--engine=" + r.engine, "--precision=" + r.precision,
-                                         "--solver=" + r.solver, "--method=" + r.method}) {
-            arguments.push_back(fixed);
-        }
         try {
-            const auto document = ordered_json::parse(output_of(program, arguments));
+            const ordered_json document = run_one(given, r);
             results.push_back(document.at("result"));
-            table += charpy::table_row(document.at("result"), expected);
+            table += charpy::table_row(
+                document.at("result"),
+                charpy::reference(options.scenario, charpy::method_of(r.method)));
             if (csv) write_history(csv.stream(), document.at("result"), document.at("history"));
             const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
             fmt::print(stderr, "{:.2f} s\n", taken.count());

@@ -87,6 +87,7 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
     };
     r.hammer_loss = r.strike_energy - scene.hammer_energy();
     r.plastic_work = scene.joint_work();
+    r.stored = scene.stored();
     r.plastic_rotation = scene.joint_travel();
     r.rotation = std::abs(scene.rotation());
     r.specimen_kinetic = scene.specimen_kinetic();

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace charpy {
 
@@ -85,6 +86,22 @@ struct EdgeContact {
 [[nodiscard]] inline double reach(bool made, double thickness, double closing_speed, double dt) {
     constexpr double resting = 1e-6; // apart only by round-off
     return made ? thickness : std::max(closing_speed, 0.0) * dt / 2 + resting;
+}
+
+/// The edges of a hammer that can strike, in a frame at the middle of the flat that strikes first:
+/// those of the flat and, where there is draft, those where the taper ends. Along y they reach
+/// `half_height` to both sides [m].
+[[nodiscard]] inline std::vector<Edge> hammer_edges(double flat, double draft, double thickness,
+                                                    double half_height) {
+    std::vector<Edge> edges;
+    const auto pair = [&](double x, double width) {
+        for (const double z : {-width / 2, width / 2}) {
+            edges.push_back({Vector(x, -half_height, z), Vector(x, half_height, z)});
+        }
+    };
+    pair(0, flat);
+    if (draft > 0) pair(draft, thickness);
+    return edges;
 }
 
 } // namespace charpy

@@ -6,6 +6,11 @@
 //
 // The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of the
 // blow gravity would move it by 0.1 mm.
+//
+// ODE's joints neither break by themselves nor have Bullet's second kind of spring. zero-limits is
+// here what its users do: a hinge stopped at zero, whose feedback is read after the step and which
+// is disabled beyond the threshold. spring2 is a motor with the spring's force, the spring
+// softened as Bullet's: so that it turns by a quarter radian of its phase a step.
 #pragma once
 
 #include <ode/ode.h>
@@ -14,6 +19,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
@@ -23,11 +29,12 @@
 #include "ductile/ode/ode.hpp"
 #include "edge_contact.hpp"
 #include "simulation.hpp"
+#include "specimen_joints.hpp"
 
 namespace charpy {
 
 class OdeScene {
-    using Hinge = ductile::ode::PlasticHinge<>;
+    using Joints = SpecimenJoints<ductile::ode::PlasticHinge, ductile::ode::PlasticJoint>;
 
   public:
     static constexpr std::string_view engine = "ode";
@@ -36,10 +43,9 @@ class OdeScene {
     OdeScene(const Scenario& scenario, Method method, const std::string& solver)
         : s_(scenario), method_(method) {
         if (solver != "direct" && solver != "quick") {
-            throw std::invalid_argument("--solver = " + solver +
-                                        ": must be direct or quick with --engine ode");
+            throw std::invalid_argument("--solver = " + solver + ": must be " +
+                                        std::string(ode_solvers) + " with --engine ode");
         }
-        require_in_ode(method);
         stepper_ = std::make_unique<ductile::ode::World>(
             world_, solver == "direct" ? ductile::ode::Solver::direct : ductile::ode::Solver::quick);
         dRandSetSeed(0); // the iterative solver shuffles its rows
@@ -66,12 +72,14 @@ class OdeScene {
         using clock = std::chrono::steady_clock;
         dWorldSetERP(world_, dReal(drift_correction(dt)));
         for (const Spring& spring : springs_) set_spring(spring, dt);
+        for (const Spring& spring : motor_springs_) set_motor_spring(spring, dt);
         auto start = clock::now();
         collide(dt);
         std::chrono::duration<double> wall = clock::now() - start;
         meter_->before_step();
         start = clock::now();
         stepper_->step(dt);
+        break_joints();
         wall += clock::now() - start;
         meter_->after_step(dt);
         dJointGroupEmpty(contacts_);
@@ -106,15 +114,13 @@ class OdeScene {
         return sum;
     }
     [[nodiscard]] double joint_work() const {
-        double sum = 0;
-        for (const auto& hinge : plastic_) sum += hinge->absorbed_energy();
+        double sum = plastic_.absorbed();
         for (dJointID joint : engine_joints_) sum += meter_->taken_by(joint);
         return sum;
     }
+    [[nodiscard]] double stored() const { return plastic_.stored(); }
     [[nodiscard]] double joint_travel() const {
-        double sum = 0;
-        for (const auto& hinge : plastic_) sum += hinge->plastic_rotation();
-        return plastic_.empty() ? std::abs(rotation()) : sum;
+        return plastic_.empty() ? std::abs(rotation()) : plastic_.travel();
     }
     /// Angle between the outermost parts: the bend of the whole specimen [rad].
     [[nodiscard]] double rotation() const {
@@ -122,20 +128,12 @@ class OdeScene {
         return std::atan2(relative(0, 2), relative(0, 0));
     }
     [[nodiscard]] bool broken() const {
-        return std::any_of(plastic_.begin(), plastic_.end(),
-                           [](const auto& hinge) { return hinge->broken(); });
+        return plastic_.broken() ||
+               std::any_of(engine_joints_.begin(), engine_joints_.end(),
+                           [](dJointID joint) { return dJointIsEnabled(joint) == 0; });
     }
-    /// True where a hinge says that the last step's solve should not be believed.
-    [[nodiscard]] bool unreliable() const {
-        return std::any_of(plastic_.begin(), plastic_.end(), [](const auto& hinge) {
-            return hinge->outcome() == ductile::Outcome::unreliable;
-        });
-    }
-    [[nodiscard]] double residual_max() const {
-        double worst = 0;
-        for (const auto& hinge : plastic_) worst = std::max(worst, hinge->residual_max());
-        return worst;
-    }
+    [[nodiscard]] bool unreliable() const { return plastic_.unreliable(); }
+    [[nodiscard]] double residual_max() const { return plastic_.residual_max(); }
 
   private:
     /// One edge against one face; the striker is null for an anvil.
@@ -215,35 +213,69 @@ class OdeScene {
         for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
             const bool notched = i + 1 == parts_.size() / 2;
             const Vector anchor = (position(parts_[i]) + position(parts_[i + 1])) / 2;
-            join(parts_[i], parts_[i + 1], anchor, notched ? s_.notched_moment() : s_.full_moment());
+            join(parts_[i], parts_[i + 1], anchor, notched);
         }
     }
 
-    void join(dBodyID a, dBodyID b, const Vector& anchor, double moment) {
-        if (method_ == Method::plastic_hinge) {
-            ductile::OneAxisJoint<ductile::Perfect<double>> law(
-                ductile::Perfect<double>({.strength = moment}),
-                ductile::TravelLimit<double>({.limit = s_.max_plastic_rotation}));
-            plastic_.push_back(std::make_unique<Hinge>(
-                world_, a, b, ductile::ode::HingeFrame{.anchor = anchor, .axis = Vector::UnitY()},
-                std::move(law)));
-            plastic_.back()->add_to(*stepper_);
-            meter_->add(*plastic_.back());
-            return;
+    template <template <class> class Constraint, class Frame, class Law>
+    void add_plastic(dBodyID a, dBodyID b, const Frame& frame, Law law) {
+        auto& joint = plastic_.add(
+            std::make_unique<Constraint<Law>>(world_, a, b, frame, std::move(law)));
+        joint.add_to(*stepper_);
+        meter_->add(joint);
+    }
+
+    void join(dBodyID a, dBodyID b, const Vector& anchor, bool notched) {
+        using ductile::ode::PlasticHinge, ductile::ode::PlasticJoint;
+        // x of the section along y, its y along -x, z along the specimen
+        const Rotation along = Eigen::AngleAxisd(std::numbers::pi / 2, Vector::UnitZ()).matrix();
+        const ductile::JointFrame<double> section{.origin = anchor, .axes = along};
+        const ductile::ode::HingeFrame hinge{.anchor = anchor, .axis = Vector::UnitY()};
+        const double moment = notched ? s_.notched_moment() : s_.full_moment();
+        switch (method_) {
+            case Method::rigid: return;
+            case Method::plastic_hinge:
+                return add_plastic<PlasticHinge>(a, b, hinge, hinge_law(s_, notched));
+            case Method::elastic_plastic:
+                return add_plastic<PlasticJoint>(a, b, section, axes_law(s_, notched));
+            case Method::elastic_plastic_2:
+                return add_plastic<PlasticJoint>(a, b, section, surface_law(s_, notched));
+            case Method::zero_limits: {
+                dJointID joint = add_hinge(a, b, anchor);
+                stop_at_zero(joint);
+                dJointSetFeedback(joint, &feedback_.emplace_back());
+                return;
+            }
+            case Method::spring: {
+                dJointID joint = add_hinge(a, b, anchor);
+                stop_at_zero(joint);
+                springs_.push_back({joint, moment}); // the source's stiffness: M_p per radian
+                return;
+            }
+            case Method::spring2: {
+                motor_springs_.push_back({add_hinge(a, b, anchor), moment});
+                return;
+            }
+            case Method::hinge_motor: {
+                dJointID joint = add_hinge(a, b, anchor);
+                dJointSetHingeParam(joint, dParamVel, 0);
+                dJointSetHingeParam(joint, dParamFMax, dReal(moment));
+                return;
+            }
         }
+    }
+
+    dJointID add_hinge(dBodyID a, dBodyID b, const Vector& anchor) {
         dJointID joint = dJointCreateHinge(world_, nullptr);
         dJointAttach(joint, a, b);
         dJointSetHingeAnchor(joint, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
         dJointSetHingeAxis(joint, 0, 1, 0);
         engine_joints_.push_back(joint);
-        if (method_ == Method::hinge_motor) {
-            dJointSetHingeParam(joint, dParamVel, 0);
-            dJointSetHingeParam(joint, dParamFMax, dReal(moment));
-        } else {
-            dJointSetHingeParam(joint, dParamLoStop, 0);
-            dJointSetHingeParam(joint, dParamHiStop, 0);
-            springs_.push_back({joint, moment}); // the seed's stiffness: M_p per radian
-        }
+        return joint;
+    }
+    static void stop_at_zero(dJointID joint) {
+        dJointSetHingeParam(joint, dParamLoStop, 0);
+        dJointSetHingeParam(joint, dParamHiStop, 0);
     }
 
     /// ODE's spring: a stop with lo = hi and, by its manual, ERP = dt k/(dt k + c) and CFM = 1/(dt k + c)
@@ -253,14 +285,39 @@ class OdeScene {
         dJointSetHingeParam(spring.joint, dParamStopCFM, dReal(1 / (dt * spring.stiffness)));
     }
 
+    /// The spring's moment as that of a motor whose target is out of reach [rad/s].
+    void set_motor_spring(const Spring& spring, double dt) const {
+        constexpr double out_of_reach = 1e6, phase = 0.25; // [rad/s], [rad a step]
+        const double mass = s_.specimen_mass() / double(parts_.size());
+        const double length = s_.length / double(parts_.size());
+        // of two parts that turn about the joint between them
+        const double inertia = mass * (length * length / 3 + s_.height * s_.height / 12) / 2;
+        const double softened = std::min(spring.stiffness, inertia * phase * phase / (dt * dt));
+        const double moment = -softened * double(dJointGetHingeAngle(spring.joint));
+        dJointSetHingeParam(spring.joint, dParamFMax, dReal(std::abs(moment)));
+        dJointSetHingeParam(spring.joint, dParamVel, dReal(std::copysign(out_of_reach, moment)));
+    }
+
+    /// As Bullet's breaking threshold: where a force or a moment is above M_p.
+    void break_joints() {
+        if (method_ != Method::zero_limits) return;
+        for (dJointID joint : engine_joints_) {
+            const dJointFeedback* feedback = dJointGetFeedback(joint);
+            const double most = std::max(ductile::ode::to_core(feedback->f1).cwiseAbs().maxCoeff(),
+                                         ductile::ode::to_core(feedback->t1).cwiseAbs().maxCoeff());
+            if (most >= s_.notched_moment()) dJointDisable(joint);
+        }
+    }
+
     /// Every edge may touch every part.
     void pair_edges() {
-        const double reach_y = s_.hammer_height / 2;
         for (dBodyID part : parts_) {
+            for (const Edge& edge : hammer_edges(s_.flat(), s_.nose_length, s_.hammer_thickness,
+                                                 s_.hammer_height / 2)) {
+                pairs_.push_back(
+                    {hammer_, {nose_local_ + edge.from, nose_local_ + edge.to}, part, 1, false});
+            }
             for (const double side : {-1.0, 1.0}) {
-                const Vector nose = nose_local_ + Vector(0, 0, side * s_.nose_width / 2);
-                const Vector up(0, reach_y, 0);
-                pairs_.push_back({hammer_, {nose - up, nose + up}, part, 1, false});
                 const Vector anvil(0, s_.specimen_bottom + s_.width / 2, side * s_.anvil_gap / 2);
                 const Vector high(0, 2.5 * s_.width, 0);
                 pairs_.push_back({nullptr, {anvil - high, anvil + high}, part, -1, false});
@@ -289,11 +346,10 @@ class OdeScene {
 
     void add_contact(const Pair& pair, const ContactPoint& point, double dt) {
         dContact contact{};
-        contact.surface.mode = dContactApprox1 | dContactBounce | dContactMotionN | dContactSoftCFM;
+        contact.surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
         // keeps the direct solver from failing on redundant contacts; 10 kN yield at 1 mm/s
         contact.surface.soft_cfm = dReal(1e-7);
         contact.surface.mu = dReal(s_.friction);
-        contact.surface.bounce = dReal(s_.restitution);
         // the direct solver's pivoting stalls where symmetric contacts reach their bound at once: no
         // two are quite alike
         const double unlike = 1e-6 * (1 + 0.37 * contact_count_++);
@@ -339,9 +395,11 @@ class OdeScene {
     dJointGroupID contacts_ = dJointGroupCreate(0);
     std::unique_ptr<ductile::ode::World> stepper_;
     std::unique_ptr<ductile::ode::EnergyMeter> meter_;
-    std::vector<std::unique_ptr<Hinge>> plastic_;
+    Joints plastic_;
     std::vector<dJointID> engine_joints_;
     std::vector<Spring> springs_;
+    std::vector<Spring> motor_springs_;
+    std::deque<dJointFeedback> feedback_;
     dBodyID hammer_ = nullptr;
     std::vector<dBodyID> parts_;
     Vector nose_local_{0, 0, 0};

@@ -17,6 +17,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 WINDOW_MS = (0.0, 8.0)
+OURS = ("plastic-hinge", "elastic-plastic", "elastic-plastic-2")
 
 
 def read(path):
@@ -53,7 +54,7 @@ def draw(runs, panels, title, unit, path):
                 inside = window(run)
                 if not inside:
                     continue
-                ours = key[3] == "plastic-hinge"
+                ours = key[3] in OURS
                 axis.plot([1e3 * run["time_after_strike_s"][i] for i in inside],
                           [value(run, i) for i in inside],
                           label=f"{key[3]} ({key[2]}, {key[1]})", color=colour[key[3]],

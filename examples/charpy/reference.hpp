@@ -8,12 +8,16 @@
 //   a    half the anvil gap; w half the nose flat; l, h specimen length and height     [m]
 //   d(φ) = a tan φ - (h/2)(sec φ - 1)        travel of the hinge                    [m]
 //   D(φ) = (a - w) tan φ - h (sec φ - 1)     travel of the nose                     [m]
+//   k    bending stiffness of the joint, infinite but for the elastic-plastic methods   [N m/rad]
 //   M    mass of the nose, hammer inertia / radius²                                  [kg]
 //   M_s(φ) inertia of both halves as they turn: kinetic energy M_s φ'²/2             [kg m²]
 //
 // The halves slip through when a lower end corner reaches the anvil edge,
 //   (l/2) cos φ + (h/2) sin φ = a,   φ = atan(h/l) + acos(2a/√(l² + h²)).
-// First contact is perfectly inelastic, and then (M D'² + M_s) φ'²/2 + M_p 2φ is constant.
+// First contact is perfectly inelastic, and then (M D'² + M_s) φ'²/2 + M_p 2φ is constant. An elastic
+// joint has turned by M_p/k of the hinge angle without flow: it dissipates M_p (2φ - M_p/k), and
+// M_p²/2k springs back once the halves are free. That is the mechanism of two parts; the elastic
+// bend of further joints between more parts is left out.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +29,18 @@ namespace charpy {
 
 struct Reference {
     double rotation = 0;         ///< hinge angle when the specimen passes or breaks [rad]
-    double plastic_work = 0;     ///< M_p × rotation [J]
+    double plastic_work = 0;     ///< M_p × plastic part of the rotation [J]
+    double stored = 0;           ///< elastic, at that rotation [J]
+    double strike_energy = 0;    ///< of the hammer before contact [J]
     double strike_speed = 0;     ///< of the nose before contact [m/s]
     double contact_loss = 0;     ///< of the perfectly inelastic first contact [J]
     double hammer_loss = 0;      ///< kinetic energy the hammer loses until then [J]
     double specimen_kinetic = 0; ///< of the halves then [J]
 };
 
-[[nodiscard]] inline Reference reference(const Scenario& s) {
-    const double a = s.anvil_gap / 2, w = s.nose_width / 2, l = s.length, h = s.height;
+[[nodiscard]] inline Reference reference(const Scenario& s,
+                                        Method method = Method::plastic_hinge) {
+    const double a = s.anvil_gap / 2, w = s.flat() / 2, l = s.length, h = s.height;
     const double half_mass = s.specimen_mass() / 2;
     const double half_inertia = half_mass * (l * l / 4 + h * h) / 12;
     const double nose_mass = s.hammer_inertia() / (s.swing_radius * s.swing_radius);
@@ -51,17 +58,21 @@ struct Reference {
     };
 
     Reference r;
-    const double pass = 2 * (std::atan(h / l) + std::acos(2 * a / std::hypot(l, h)));
-    r.rotation = std::min(pass, s.max_plastic_rotation);
-    r.plastic_work = s.notched_moment() * r.rotation;
+    const double moment = s.notched_moment();
+    const double elastic = is_elastic(method) ? moment / s.notched_stiffness() : 0;
+    const double plastic = std::min(s.pass_rotation() - elastic, s.max_plastic_rotation);
+    r.rotation = elastic + plastic;
+    r.plastic_work = moment * plastic;
+    r.stored = moment * elastic / 2;
     const double dropped = s.total_hammer_mass() * s.gravity * s.hammer_centre() *
                            (1 - std::cos(s.start_angle));
+    r.strike_energy = dropped;
     r.strike_speed = s.swing_radius * std::sqrt(2 * dropped / s.hammer_inertia());
 
     const double momentum = nose_mass * nose_rate(0) * r.strike_speed;
     const double after_contact = momentum * momentum / inertia(0) / 2;
     r.contact_loss = dropped - after_contact;
-    const double left = std::max(after_contact - r.plastic_work, 0.0);
+    const double left = std::max(after_contact - r.plastic_work - r.stored, 0.0);
     const double phi = r.rotation / 2;
     r.specimen_kinetic = left * specimen_inertia(phi) / inertia(phi);
     r.hammer_loss = dropped - (left - r.specimen_kinetic);

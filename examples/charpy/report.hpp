@@ -30,6 +30,7 @@ namespace charpy {
             {"strike_speed_m_per_s", r.strike_speed},
             {"hammer_loss_J", r.hammer_loss},
             {"plastic_work_J", r.plastic_work},
+            {"stored_J", r.stored},
             {"plastic_rotation_rad", r.plastic_rotation},
             {"rotation_rad", r.rotation},
             {"specimen_kinetic_J", r.specimen_kinetic},
@@ -84,14 +85,14 @@ inline constexpr std::string_view history_header =
 
 inline constexpr std::string_view table_rule =
     "------------------------------------------------------------------------------------------------"
-    "-----------------------------------------------";
+    "---------------------------------------------------";
 
 [[nodiscard]] inline std::string table_header() {
-    return fmt::format("{:<7}{:<8}{:<8}{:<14}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}  {}\n{}\n",
+    return fmt::format("{:<7}{:<8}{:<8}{:<18}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}  {}\n{}\n",
                        "engine", "solver", "scalar", "method", "hammer", "plastic", "rotation",
                        "halves", "friction", "contact", "unexplained", "steps", "time", "verdict",
                        table_rule) +
-           fmt::format("{:<37}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}\n", "", "loss J",
+           fmt::format("{:<41}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}{:>7}{:>9}\n", "", "loss J",
                        "work J", "rad", "J", "J", "J", "J", "", "ms");
 }
 
@@ -101,7 +102,7 @@ inline constexpr std::string_view table_rule =
         return r.at(key).is_number() ? r.at(key).get<double>() : NAN;
     };
     return fmt::format(
-        "{:<7}{:<8}{:<8}{:<14}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.3f}{:>9.2f}{:>9.2f}{:>12.1e}{:>7}{:>9.1f}  "
+        "{:<7}{:<8}{:<8}{:<18}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.3f}{:>9.2f}{:>9.2f}{:>12.1e}{:>7}{:>9.1f}  "
         "{}\n",
         r.at("engine").get<std::string>(), r.at("solver").get<std::string>(),
         r.at("precision").get<std::string>(), r.at("method").get<std::string>(),

@@ -32,6 +32,7 @@ concept Simulation = requires(T simulation, const T constant, double dt) {
     { constant.touching() } -> std::same_as<bool>;           ///< the nose has reached the specimen
     { constant.specimen_kinetic() } -> std::same_as<double>; ///< [J]
     { simulation.joint_work() } -> std::same_as<double>; ///< taken by the specimen's joints [J]
+    { simulation.stored() } -> std::same_as<double>; ///< elastic, in the joints [J]
     { simulation.joint_travel() } -> std::same_as<double>; ///< plastic rotation, all joints [rad]
     { constant.rotation() } -> std::same_as<double>;  ///< bend of the specimen's middle [rad]
     { simulation.broken() } -> std::same_as<bool>;
@@ -68,6 +69,7 @@ struct Result {
     double strike_energy = 0;    ///< of the hammer before it, kinetic + potential [J]
     double hammer_loss = 0;      ///< kinetic + potential, from first contact to the end [J]
     double plastic_work = 0;     ///< for other methods: what the joint took from the bodies [J]
+    double stored = 0;           ///< elastic, in the joints, at the end [J]
     double plastic_rotation = 0; ///< [rad]
     double rotation = 0;         ///< bend of the middle at the end [rad]
     double specimen_kinetic = 0; ///< at the end [J]

@@ -38,9 +38,28 @@ refuses '--parts = 3: must be an even number' $one --parts 3
 refuses '--max-plastic-rotation = 0 rad' $one --max-plastic-rotation 0
 refuses '--method: rubber not in' --engine bullet --method rubber
 refuses '--engine: physx not in' --engine physx
-refuses '--solver = direct: must be mlcp or si with --engine bullet' $one --solver direct
+refuses '--solver = direct: must be mlcp, lemke, pgs, si or nncg with --engine bullet' $one --solver direct
+refuses '--solver = nncg: must be direct or quick with --engine ode' --engine ode --solver nncg
+refuses '--solver: newton not in' $one --solver newton
+refuses '--hammer-thickness = 0.04 m: must be in [0.002, 0.04) m' $one --hammer-thickness 0.04
+refuses '--hammer-thickness = 0.025 m' $one --hammer-thickness 0.025 --draft 0.005
+refuses '--hammer-thickness = 0 m' $one --hammer-thickness 0
+refuses '--draft = -0.01 m: must be finite and >= 0' $one --draft -0.01
+refuses '--nose-width: must be left out here' $one --draft 0 --nose-width 0.003
+refuses '--nose-width = 0.03 m' $one --nose-width 0.03
+refuses '--anvil-gap = 0.06 m: must be in (0, 0.055) m' $one --anvil-gap 0.06
+refuses '--restitution = 0.5: must be 0' $one --restitution 0.5
+refuses '--restitution = -0.1: must be 0' $one --restitution -0.1
+refuses '--iterations = 0: must be >= 1' $one --iterations 0
+refuses '--iterations: must be left out here, it acts on iterative solvers' --engine ode --iterations 50
+refuses '--max-plastic-rotation: must be left out here' --method hinge-motor --max-plastic-rotation 1.5
+refuses '--youngs-modulus: must be left out here' $one --youngs-modulus 100e9
+refuses '--youngs-modulus = 0 Pa: must be finite and > 0' --method elastic-plastic --youngs-modulus 0
+refuses '--parts: must be left out here' --method rigid --parts 4
+refuses '--ccd: maybe not in' $one --ccd maybe
+refuses '--table = /dev/null/figures: cannot be made' --table /dev/null/figures
+refuses '--engine: must be left out here' --engine ode --table figures
 refuses '--precision = float: must be double with --engine ode' --engine ode --precision float
-refuses '--method = spring2: must be rigid, spring, hinge-motor' --engine ode --method spring2
 refuses '--json = /nowhere/at/all.json: cannot be written' $one --json /nowhere/at/all.json --csv good.csv
 refuses '--csv = /nowhere/at/all.csv: cannot be written' $one --json good.json --csv /nowhere/at/all.csv
 refuses '--json = .: is a folder' $one --json .
@@ -54,6 +73,16 @@ for key in engine solver precision method dt_s friction steps wall_s hammer_loss
     grep -q "\"$key\":" out.json; check "the JSON has $key" $?
 done
 [ "$(wc -l <out.csv)" -gt 100 ]; check "the history has samples" $?
+"$charpy" --engine ode --method elastic-plastic-2 --ccd on >out 2>err
+check "a run with --ccd exits with zero" $?
+grep -q -- '--ccd on: no effect' out; check "--ccd says that it has no effect" $?
+"$charpy" --table figures >out 2>err
+check "the table of published figures exits with zero" $?
+for file in published.txt published.md published.csv; do
+    for method in rigid zero-limits spring spring2 hinge-motor plastic-hinge elastic-plastic elastic-plastic-2; do
+        [ "$(grep -cE "[ ,|]$method[ ,|]" figures/$file)" -ge 4 ]; check "$file has $method on every engine" $?
+    done
+done
 "$charpy" --help | grep -q -- '--yield-stress.*\[Pa\]'; check "the help states units" $?
 
 echo "$passed passed, $failed failed"
