@@ -13,6 +13,7 @@
 #include "ductile/detail/step_control.hpp"
 #include "engines/settings.hpp"
 #include "methods/holder.hpp"
+#include "methods/names.hpp"
 #include "scenes/scene.hpp"
 
 namespace bench {
@@ -118,6 +119,8 @@ RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
     const double end = scene.duration - (settings.adaptive() ? 0 : settings.dt / 2);
     do {
         const double dt = stepping.next(world);
+        bool unreliable =
+            is_ours(settings.method) && ductile::may_pass_through(motion(scene, world), dt);
         world.step(dt);
         o.time += dt;
         ++r.steps;
@@ -130,7 +133,6 @@ RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
         const double now = energy(scene, world);
         r.finite = std::isfinite(now);
         r.energy_highest = std::max(r.energy_highest, now);
-        bool unreliable = false;
         o.absorbed = 0;
         for (const auto& holder : world.holders()) {
             unreliable = unreliable || holder->unreliable();

@@ -6,7 +6,8 @@
 //   blown-up       a number was no longer one, or energy rose tenfold above all there was
 //   energy-gained  kinetic and potential energy rose by more than 5 % of the scene's energy
 //   right          the scene's first quantity is within 5 % and rest is rest
-//   refused        not right, and the method itself said in some step not to be believed
+//   refused        not right, and the method itself said in some step not to be believed: unsolved
+//                  rows, or steps too long for its flow or for what the scene told to close in
 //   drift, jitter  joints that should rest move by more than 2 % of the scene's travel, mostly one
 //                  way, or to and fro
 //   off            more than 5 % off otherwise

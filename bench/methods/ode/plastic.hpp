@@ -31,7 +31,8 @@ class Plastic final : public Holder {
     }
     [[nodiscard]] bool broken() override { return constraint_.broken(); }
     [[nodiscard]] bool unreliable() override {
-        return constraint_.outcome() == ductile::Outcome::unreliable;
+        const auto report = constraint_.report();
+        return report.outcome == ductile::Outcome::unreliable || report.coarse;
     }
 
   private:

@@ -52,6 +52,13 @@ struct SceneMotion {
     S elastic_frequency = 0;       ///< of the stiffest elastic part [Hz]
 };
 
+/// True where the parts named in `motion` close by more than the thickness of the thinner one in a
+/// step of `dt` [s]: engines look for contacts between steps, and may miss that these ever met.
+template <std::floating_point S>
+[[nodiscard]] bool may_pass_through(const SceneMotion<S>& motion, S dt) noexcept {
+    return motion.closing_speed * dt > std::max(motion.thickness, motion.gap);
+}
+
 /// Not thread-safe; O(1) and noexcept after construction.
 template <std::floating_point S>
 class StepControl {

@@ -19,6 +19,7 @@
 #include <cmath>
 #include <concepts>
 
+#include "ductile/joint/step_error.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -43,9 +44,38 @@ struct StepEnd {
     S start_speed;        ///< largest |u| [m/s | rad/s]
     S absolute_residual;  ///< [m/s | rad/s]
     S allowed_residual;   ///< [m/s | rad/s]
+    StepError<S> error;   ///< of all rows [J]
+    S strength;           ///< R [N | N m]
+    S least_travel;       ///< against which small travels are judged [m | rad]
+    S allowed_step_error; ///< [-]
     S dt;                 ///< [s]
     bool at_bound;
 };
+
+/// Share of the full strength that uses up the travel `left` in a step that starts at `speed`, in
+/// (0, 1]. The travel of the step is predicted from below, so that a step that can break does
+/// break: with the deceleration since the start of the last step, at `before`, where the joint
+/// flowed in it, else with a stop inside this one. All along the motion [m | rad, m/s | rad/s].
+template <std::floating_point S>
+[[nodiscard]] S unspent_share(S left, S speed, S before, bool flowing, S dt) noexcept {
+    const S lost = std::max(before - speed, S(0));
+    const S slowed = flowing ? std::max(speed - lost, S(0)) : S(0);
+    const S travel = (speed + slowed) / 2 * dt;
+    return left < travel ? left / travel : S(1);
+}
+
+/// Says whether the steps of a flow that ends, or a swing, were too long: step_error.hpp.
+template <class State, class Step, std::floating_point S, class Axes>
+void judge_step(State& state, Step& step, const StepEnd<S, Axes>& end) noexcept {
+    if (!(state.misplaced + end.error.flow + end.error.swing > 0)) return;
+    const S per_work = end.strength > 0 ? 1 / end.strength : S(0);
+    state.misplaced += end.error.flow * per_work;
+    step.step_error =
+        (state.misplaced + end.error.swing * per_work) / (state.plastic_travel + end.least_travel);
+    const bool moved = state.flowing || end.error.flow > 0 || end.error.swing > 0;
+    const bool ends = !end.at_bound || state.broken;
+    step.coarse = moved && ends && step.step_error > end.allowed_step_error;
+}
 
 /// Carries a step into the state, which says already whether this step broke the joint, and names
 /// its outcome.
@@ -63,6 +93,7 @@ void settle(State& state, Step& step, const StepEnd<S, Axes>& end) noexcept {
     state.other_work += step.other_work;
     state.lost += step.lost;
     state.residual_max = std::max(state.residual_max, step.residual);
+    judge_step(state, step, end);
     state.start_velocity = end.start;
     state.velocity = end.velocity;
     state.force = end.force;

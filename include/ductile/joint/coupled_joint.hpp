@@ -45,6 +45,7 @@
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/fracture/travel_limit.hpp"
 #include "ductile/joint/account.hpp"
+#include "ductile/joint/coupled_row.hpp"
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
 #include "ductile/law/law.hpp"
@@ -144,7 +145,8 @@ class CoupledJoint {
         Taken taken{.force = reaction.force};
         Scalar most = 0;
         for (int i = 0; i < dimension; ++i) {
-            const Booked booked = book(i, reaction, dt);
+            const RowBooking<Scalar> booked = open_row(i).book(
+                {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
             taken.flow += booked.flow;
             if (booked.flow > most) {
                 most = booked.flow;
@@ -154,6 +156,7 @@ class CoupledJoint {
             step.elastic += booked.elastic;
             step.other_work += booked.other;
             step.residual = std::max(step.residual, booked.residual);
+            taken.error += booked.error;
             taken.at_bound[i] = booked.at_bound;
             if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
             if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
@@ -170,23 +173,21 @@ class CoupledJoint {
                                        .start_speed = start_.cwiseAbs().maxCoeff(),
                                        .absolute_residual = parameters_.absolute_residual,
                                        .allowed_residual = allowed_residual(reaction.velocity),
+                                       .error = taken.error,
+                                       .strength = first_strength_ * grown_,
+                                       .least_travel = least_travel(taken.error),
+                                       .allowed_step_error = parameters_.allowed_step_error,
                                        .dt = dt,
                                        .at_bound = taken.at_bound.any()});
         return step;
     }
 
   private:
-    /// What one row did in a step [J], and how far it flowed [m | rad].
-    struct Booked {
-        Scalar flow = 0, elastic = 0, other = 0, residual = 0, travel = 0;
-        bool at_bound = false;
-        bool moved = false; ///< a rigid row that goes on from where it is
-    };
-
     /// What all rows together did in a step.
     struct Taken {
         Vector force;    ///< f; once the step has broken the joint, that just before [N | N m]
         Scalar flow = 0; ///< [J]
+        StepError<Scalar> error{};
         int axis = 0;    ///< that did most of it
         Eigen::Array<bool, dimension, 1> at_bound = Eigen::Array<bool, dimension, 1>::Zero();
     };
@@ -229,13 +230,9 @@ class CoupledJoint {
         const Scalar power = std::abs(predicted.dot(start_));
         grown_ = flows ? growth(power * rate / 2) : now.by; // at the midpoint of the travel ahead
 
-        // the travel of the step, predicted from below, so that a step that can break does break
         const Scalar before = std::abs(predicted.dot(state_.start_velocity));
-        const Scalar lost = std::max(before - power, Scalar(0));
-        const Scalar slowed = state_.flowing ? std::max(power - lost, Scalar(0)) : Scalar(0);
-        const Scalar travel = (power + slowed) / 2 * rate;
         left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
-        share_ = left_ < travel ? left_ / travel : Scalar(1);
+        share_ = unspent_share(left_, power, before, state_.flowing, rate);
         cap_ = criterion_.force_cap(state_.criterion, 0) / first_strength_;
         const bool capped = cap_ <= grown_ * share_;
         if (capped) share_ = 1; // the cap is met before the travel left is used up
@@ -260,44 +257,20 @@ class CoupledJoint {
 
     // ---- after the solve --------------------------------------------------------------------------
 
-    [[nodiscard]] Booked book(int i, const Reaction& reaction, Scalar dt) const noexcept {
-        const RowLimits<Scalar>& limits = rows_[std::size_t(i)];
-        const Scalar f = reaction.force[i];
-        const bool at_upper = f >= upper_[i] - tolerance_, at_lower = f <= lower_[i] + tolerance_;
-        const Scalar travel = (start_[i] + reaction.velocity[i]) / 2 * dt;
-        const Scalar work = -f * travel;
-        Booked booked;
-        booked.at_bound = at_upper || at_lower;
-        if (rigid(i) || limits.lower != limits.upper) {
-            const Scalar excess = reaction.velocity[i] + limits.compliance * f * dt - limits.bias;
-            booked.residual = at_upper   ? std::max(excess, Scalar(0))
-                              : at_lower ? std::max(-excess, Scalar(0))
-                                         : std::abs(excess);
-        }
-        if (rigid(i)) {
-            const bool slips = (at_lower && travel > 0) || (at_upper && travel < 0);
-            // a row that stood does not stop: round-off must not decide where it rests
-            const bool stops = !booked.at_bound && work > 0 && (state_.flowing || kicked(i)) &&
-                               std::abs(start_[i]) > parameters_.absolute_residual;
-            // a row may also be driven by the flow of the others
-            (slips || stops ? booked.flow : booked.other) = work;
-            booked.travel = slips || stops ? travel : Scalar(0);
-            booked.moved = booked.at_bound || stops;
-            return booked;
-        }
-        const Scalar k = parameters_.stiffness[i];
-        const Scalar trial = reaction.position[i] - state_.plastic_offset[i];
-        const Scalar strained = std::clamp(trial, -upper_[i] / (share_ * k), -lower_[i] / (share_ * k));
-        booked.travel = trial - strained;
-        booked.elastic = k * (strained * strained - elastic_[i] * elastic_[i]) / 2;
-        const Scalar rest = work - booked.elastic;
-        const Scalar slipped = std::abs(k * strained * booked.travel);
-        if (booked.travel != 0) {
-            booked.flow =
-                (1 - implicit_[i]) * slipped + implicit_[i] * std::max(rest, Scalar(0));
-        }
-        booked.other = rest - booked.flow;
-        return booked;
+    [[nodiscard]] OpenRow<Scalar> open_row(int i) const noexcept {
+        return {.limits = rows_[std::size_t(i)],
+                .lower = lower_[i],
+                .upper = upper_[i],
+                .share = share_,
+                .tolerance = tolerance_,
+                .stiffness = parameters_.stiffness[i],
+                .implicit = implicit_[i],
+                .start = start_[i],
+                .noise = parameters_.absolute_residual,
+                .elastic = elastic_[i],
+                .offset = state_.plastic_offset[i],
+                .may_stop = (state_.flowing || kicked(i)) &&
+                            std::abs(start_[i]) > parameters_.absolute_residual};
     }
 
     /// True where somebody changed the velocity between the steps, well above solver noise.
@@ -307,6 +280,18 @@ class CoupledJoint {
     [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
         const Scalar speed = std::max(start_.cwiseAbs().maxCoeff(), velocity.cwiseAbs().maxCoeff());
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
+    }
+
+    /// That of the parameters, or the equivalent of the elastic rows' energy at yield.
+    [[nodiscard]] Scalar least_travel(const StepError<Scalar>& error) const noexcept {
+        const bool rest = !(state_.misplaced + error.flow + error.swing > 0);
+        if (all_rigid_ || rest) return parameters_.least_travel;
+        Scalar energy = 0;
+        for (int i = 0; i < dimension; ++i) {
+            const Scalar bound = std::max(upper_[i], -lower_[i]);
+            energy = std::max(energy, bound * bound / (2 * parameters_.stiffness[i]));
+        }
+        return energy / (first_strength_ * grown_);
     }
 
     /// True where the forces reached the cap, which need not be where a row reached its bound.

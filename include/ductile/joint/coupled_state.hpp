@@ -44,6 +44,8 @@ struct CoupledStep {
     S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
     S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
     S residual = 0;     ///< largest violation of a row's complementarity, >= 0 [m/s | rad/s]
+    S step_error = 0;   ///< share of the plastic travel that steps may have misplaced (step_error.hpp)
+    bool coarse = false; ///< the flow that ended in this step had steps too long for it
     Eigen::Matrix<S, N, 1> direction = Eigen::Matrix<S, N, 1>::Zero(); ///< flow [m | rad]
 };
 
@@ -61,6 +63,7 @@ struct CoupledState {
     S other_work = 0;     ///< [J]
     S lost = 0;           ///< [J]
     S residual_max = 0;   ///< [m/s | rad/s]
+    S misplaced = 0;      ///< equivalent travel that the steps may have misplaced, summed
     double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     CriterionState criterion{};
     int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact
@@ -78,6 +81,8 @@ struct CoupledParameters {
     S drift_time = S(0.02);        ///< as OneAxisParameters [s], > 0
     S absolute_residual = S(1e-3); ///< [m/s | rad/s], > 0
     S relative_residual = S(1e-2); ///< [-], in [0, 1]
+    S allowed_step_error = S(0.04); ///< as OneAxisParameters [-], > 0
+    S least_travel = S(2e-3);       ///< as OneAxisParameters, equivalent travel [m | rad], > 0
 
     /// @throws std::invalid_argument where a parameter is out of range.
     void validate() const {
@@ -88,6 +93,8 @@ struct CoupledParameters {
         check::positive("CoupledJoint.drift_time", drift_time, "s");
         check::positive("CoupledJoint.absolute_residual", absolute_residual, "m/s or rad/s");
         check::between("CoupledJoint.relative_residual", relative_residual, S(0), S(1), "", true);
+        check::positive_or_infinite("CoupledJoint.allowed_step_error", allowed_step_error, "");
+        check::positive("CoupledJoint.least_travel", least_travel, "m or rad");
     }
 };
 

@@ -66,8 +66,7 @@
 
 namespace ductile {
 
-/// Not thread-safe: one joint belongs to one thread at a time. After construction nothing allocates
-/// or throws, and both calls are O(1).
+/// Not thread-safe. After construction nothing allocates or throws, and both calls are O(1).
 template <class Law, FractureCriterion Criterion = TravelLimit<typename Law::Scalar>>
     requires CyclicLaw<typename CyclicForm<Law>::type>
 class OneAxisJoint {
@@ -163,6 +162,10 @@ class OneAxisJoint {
                                        .start_speed = std::abs(start_),
                                        .absolute_residual = parameters_.absolute_residual,
                                        .allowed_residual = allowed_residual(reaction.velocity),
+                                       .error = error_of(step, taken),
+                                       .strength = resistance(taken.travel),
+                                       .least_travel = least_travel(),
+                                       .allowed_step_error = parameters_.allowed_step_error,
                                        .dt = dt,
                                        .at_bound = taken.at_bound()});
         if (state_.broken) [[unlikely]]
@@ -171,17 +174,7 @@ class OneAxisJoint {
     }
 
   private:
-    /// What the engine's step did to the row.
-    struct Taken {
-        Scalar force;    ///< f [N | N m]
-        Scalar work;     ///< W [J]
-        Scalar travel;   ///< (u + u')/2 dt, signed [m | rad]
-        Scalar position; ///< q after the step [m | rad]
-        Scalar dt;       ///< [s]
-        bool at_upper, at_lower;
-
-        [[nodiscard]] bool at_bound() const noexcept { return at_upper || at_lower; }
-    };
+    using Taken = RowTaken<Scalar>;
 
     /// A force this close to its bound is at it; wider than the round-off of λ/dt in float.
     static constexpr Scalar bound_tolerance = Scalar(4e-6);
@@ -211,7 +204,8 @@ class OneAxisJoint {
         left_ = std::min(
             criterion_.remaining(state_.criterion, resistance(direction), direction),
             fading_distance());
-        const Scalar share = unspent_share(dt);
+        const Scalar share = unspent_share(left_, std::abs(start_), std::abs(state_.start_velocity),
+                                           state_.flowing, dt);
         upper_ = std::min(-flow_lower_ * share, criterion_.force_cap(state_.criterion, Scalar(1)));
         lower_ = std::max(-flow_upper_ * share, -criterion_.force_cap(state_.criterion, Scalar(-1)));
         share_ = share;
@@ -230,17 +224,6 @@ class OneAxisJoint {
         } else {
             return std::numeric_limits<Scalar>::infinity();
         }
-    }
-
-    /// Share of the full strength that uses up the travel left in this step, in (0, 1]. The travel of
-    /// the step is predicted from below, so that a step that can break does break: with the
-    /// deceleration of the last step where the row flowed in it, else with a stop inside this one.
-    [[nodiscard]] Scalar unspent_share(Scalar dt) const noexcept {
-        const Scalar speed = std::abs(start_);
-        const Scalar lost = std::max(std::abs(state_.start_velocity) - speed, Scalar(0));
-        const Scalar slowed = state_.flowing ? std::max(speed - lost, Scalar(0)) : Scalar(0);
-        const Scalar travel = (speed + slowed) / 2 * dt;
-        return left_ < travel ? left_ / travel : Scalar(1);
     }
 
     // ---- after the solve ----------------------------------------------------------------------------
@@ -263,6 +246,27 @@ class OneAxisJoint {
         if (taken.at_upper) return std::max(excess, Scalar(0));
         if (taken.at_lower) return std::max(-excess, Scalar(0));
         return std::abs(excess);
+    }
+
+    [[nodiscard]] StepError<Scalar> error_of(const Step<Scalar>& step,
+                                             const Taken& taken) const noexcept {
+        const Scalar k = rigid() ? Scalar(0) : parameters_.stiffness;
+        return step_error<Scalar>({.force = taken.force,
+                                   .start = start_,
+                                   .travel = taken.travel,
+                                   .dt = taken.dt,
+                                   .noise = parameters_.absolute_residual,
+                                   .strength = resistance(taken.travel),
+                                   .stiffness = parameters_.stiffness,
+                                   .implicit = implicit_,
+                                   .stored = k * elastic_ * elastic_ / 2 + step.elastic,
+                                   .other_work = step.other_work,
+                                   .flowed = step.plastic_work > 0});
+    }
+    /// That of the parameters; of a spring the travel that takes the energy it holds at yield.
+    [[nodiscard]] Scalar least_travel() const noexcept {
+        if (rigid()) return parameters_.least_travel;
+        return std::max(resistance(1), resistance(-1)) / (2 * parameters_.stiffness);
     }
 
     /// True where the force reached a cap before the row could yield.
@@ -359,8 +363,7 @@ class OneAxisJoint {
         step.other_work = rest - step.release;
     }
 
-    /// Puts time and force of the state to the break within the step that `settle` booked as a
-    /// whole.
+    /// Puts time and force of the state to the break, the step being booked as a whole by `settle`.
     void place_break(const Step<Scalar>& step, const Taken& taken) noexcept {
         const bool flowed = step.plastic_work > 0;
         const Scalar direction = std::copysign(Scalar(1), flowed ? taken.travel : -taken.force);

@@ -24,6 +24,21 @@ struct Step {
     S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
     S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
     S residual = 0;     ///< violation of the row's complementarity, >= 0 [m/s | rad/s]
+    S step_error = 0;   ///< share of the plastic travel that steps may have misplaced (step_error.hpp)
+    bool coarse = false; ///< the flow that ended in this step had steps too long for it
+};
+
+/// What the engine's step did to a row.
+template <std::floating_point S>
+struct RowTaken {
+    S force;    ///< f [N | N m]
+    S work;     ///< W [J]
+    S travel;   ///< (u + u')/2 dt, signed [m | rad]
+    S position; ///< q after the step [m | rad]
+    S dt;       ///< [s]
+    bool at_upper, at_lower;
+
+    [[nodiscard]] bool at_bound() const noexcept { return at_upper || at_lower; }
 };
 
 /// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
@@ -38,6 +53,7 @@ struct OneAxisState {
     S start_velocity = 0; ///< u of the last step [m/s | rad/s]
     S velocity = 0;       ///< u' of the last step [m/s | rad/s]
     S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
+    S misplaced = 0;      ///< travel that the steps' length may have misplaced, summed [m | rad]
     S force = 0;          ///< of the last step; once broken, just before the break [N | N m]
     double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     LawState law{};
@@ -60,6 +76,12 @@ struct OneAxisParameters {
     /// [m/s | rad/s], > 0.
     S absolute_residual = S(1e-3);
     S relative_residual = S(1e-2); ///< [-], in [0, 1]
+    /// A step is too coarse where the steps so far may have misplaced more than this share of the
+    /// plastic travel [-], > 0; infinity: never.
+    S allowed_step_error = S(0.04);
+    /// Plastic travel of a rigid row below which its errors do not matter [m | rad], > 0: smaller
+    /// ones are judged as if they were this large. An elastic row has its yield strain instead.
+    S least_travel = S(2e-3);
 
     /// @throws std::invalid_argument where a parameter is out of range.
     void validate() const {
@@ -67,6 +89,8 @@ struct OneAxisParameters {
         check::positive("OneAxisJoint.drift_time", drift_time, "s");
         check::positive("OneAxisJoint.absolute_residual", absolute_residual, "m/s or rad/s");
         check::between("OneAxisJoint.relative_residual", relative_residual, S(0), S(1), "", true);
+        check::positive_or_infinite("OneAxisJoint.allowed_step_error", allowed_step_error, "");
+        check::positive("OneAxisJoint.least_travel", least_travel, "m or rad");
     }
 };
 

@@ -21,9 +21,11 @@ template <std::floating_point S>
 struct JointReport {
     Outcome outcome = Outcome::elastic;
     bool first_yield = false; ///< it flowed in this step for the first time
+    bool coarse = false;      ///< the flow that ended had steps too long for it: step_error.hpp
     S residual = 0;           ///< worst violation of any of its rows, >= 0 [m/s | rad/s]
     S plastic_travel = 0;     ///< p [m | rad]
     S absorbed_energy = 0;    ///< D [J]
+    S step_error = 0;         ///< share of p that the steps so far may have misplaced [-]
     /// Speed now of the fastest axis that can flow, 0 once broken, >= 0.
     S rotation_rate = 0;                        ///< of rotations [rad/s]
     S elongation_rate = 0;                      ///< of displacements [m/s]
@@ -39,9 +41,11 @@ template <class Joint, class Step>
     typename Joint::Scalar rigid_residual) noexcept {
     return {.outcome = outcome,
             .first_yield = last.first_yield,
+            .coarse = last.coarse,
             .residual = std::max(last.residual, rigid_residual),
             .plastic_travel = joint.state().plastic_travel,
             .absorbed_energy = joint.state().plastic_work,
+            .step_error = last.step_error,
             .fracture = joint.fracture()};
 }
 
@@ -65,6 +69,7 @@ template <class Link, class Velocities>
 template <std::floating_point S>
 [[nodiscard]] JointReport<S> idle_report(JointReport<S> last) noexcept {
     last.residual = 0;
+    last.coarse = false;
     if (last.outcome == Outcome::broken) return last;
     last.first_yield = false;
     last.outcome = Outcome::elastic;
@@ -75,6 +80,7 @@ enum class EventKind {
     yielded,    ///< flowed for the first time
     broke,      ///< see JointEvent::fracture
     unreliable, ///< the solver left it unsolved; told once per joint
+    coarse,     ///< the step was too long for what it did; told once per joint
 };
 
 [[nodiscard]] constexpr std::string_view to_string(EventKind kind) noexcept {
@@ -85,6 +91,8 @@ enum class EventKind {
             return "broke";
         case EventKind::unreliable:
             return "unreliable";
+        case EventKind::coarse:
+            return "coarse";
     }
     return "unknown";
 }

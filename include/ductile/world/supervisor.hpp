@@ -43,6 +43,25 @@ inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n
     return line.str();
 }
 
+/// What a world says of a joint that a step was first too long for.
+[[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
+    std::ostringstream line;
+    line << "ductile: joint \"" << event.name << "\" moved too much in the step that ended at t = "
+         << event.time << " s: its plastic travel may be off by "
+         << 100 * event.report.step_error << " %; take shorter steps, or World::advance";
+    return line.str();
+}
+
+/// What a world says of a step in which parts may pass through each other.
+[[nodiscard]] inline std::string missed_contact_warning(const SceneMotion<double>& motion,
+                                                        double dt, double time) {
+    std::ostringstream line;
+    line << "ductile: parts " << motion.thickness << " m thick close by "
+         << motion.closing_speed * dt << " m in the step that starts at t = " << time
+         << " s: their contact may be missed; take shorter steps, or World::advance";
+    return line.str();
+}
+
 /// Not thread-safe.
 class Supervisor {
   public:
@@ -57,6 +76,7 @@ class Supervisor {
         : effort_(effort), warn_(std::move(warn)) {
         watch_.on_event([this](const Event& event) {
             if (event.kind == EventKind::unreliable && warn_) warn_(unreliable_warning(event));
+            if (event.kind == EventKind::coarse && warn_) warn_(coarse_warning(event));
             if (listener_) listener_(event);
         });
     }
@@ -100,6 +120,16 @@ class Supervisor {
 
     /// Forgets the events of the last step.
     void open() noexcept { watch_.open(time_); }
+
+    /// Before a step of `dt` [s] in which something moves beside the joints.
+    void look_ahead(const SceneMotion<double>& motion, double dt) {
+        may_miss_contact_ = may_pass_through(motion, dt);
+        if (may_miss_contact_ && !std::exchange(told_of_contact_, true) && warn_) {
+            warn_(missed_contact_warning(motion, dt, time_));
+        }
+    }
+    /// Of the last step whose motion was told.
+    [[nodiscard]] bool may_miss_contact() const noexcept { return may_miss_contact_; }
 
     /// Asks all joints after a part of a step that ended at `time` [s]; doubt(joint) is called for
     /// each that was left unsolved.
@@ -199,6 +229,8 @@ class Supervisor {
     Listener listener_;
     double time_ = 0;
     std::size_t added_ = 0;
+    bool may_miss_contact_ = false;
+    bool told_of_contact_ = false;
     bool reliable_ = true;
     bool looking_ = false;
 };

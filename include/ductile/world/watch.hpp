@@ -6,7 +6,7 @@
 //   const auto post = watch.add("lamp post");
 //   every step:  watch.open(time);  watch.see(post, report);  ...  watch.events()
 //
-// A joint that is told as unreliable once is not told again, but counted. A joint that is broken
+// A joint that is told as unreliable or too coarsely stepped once is not told again, but counted. A joint that is broken
 // when first seen (restored from a saved state) is not told as broken.
 #pragma once
 
@@ -40,7 +40,7 @@ class Watch {
 
     /// Number of the new joint; numbers are not used again.
     std::size_t add(std::string name, bool broken = false) {
-        joints_.push_back({std::move(name), 0, broken, false});
+        joints_.push_back({std::move(name), 0, 0, broken, false});
         return joints_.size() - 1;
     }
     /// @throws std::invalid_argument where there is no such joint.
@@ -72,6 +72,9 @@ class Watch {
             ++unreliable_;
             if (seen.unreliable_steps++ == 0) tell(EventKind::unreliable, joint, time_, report);
         }
+        if (report.coarse && seen.coarse_steps++ == 0) {
+            tell(EventKind::coarse, joint, time_, report);
+        }
         const bool broken = report.fracture.has_value();
         if (broken && !seen.broken) tell(EventKind::broke, joint, time_, report);
         seen.broken = broken;
@@ -88,11 +91,17 @@ class Watch {
     [[nodiscard]] std::size_t unreliable_steps(std::size_t joint) const {
         return at(joint).unreliable_steps;
     }
+    /// Steps, or parts of one, that were too long for what the joint did.
+    /// @throws std::invalid_argument where there is no such joint.
+    [[nodiscard]] std::size_t coarse_steps(std::size_t joint) const {
+        return at(joint).coarse_steps;
+    }
 
   private:
     struct Joint {
         std::string name;
         std::size_t unreliable_steps = 0;
+        std::size_t coarse_steps = 0;
         bool broken = false;
         bool yielded = false;
     };

@@ -49,6 +49,34 @@ TEST_CASE("a supervisor warns once, by name, and reports who is in doubt", "[wor
     CHECK(supervisor.time() == 1);
 }
 
+TEST_CASE("a supervisor warns once of steps that are too long", "[world]") {
+    std::vector<std::string> lines;
+    Supervisor supervisor({}, [&lines](const std::string& line) { lines.push_back(line); });
+    Puppet post;
+    supervisor.add(&post, "post", post.ask());
+    post.says = {.coarse = true, .plastic_travel = 1, .step_error = 0.125};
+    for (const double time : {0.5, 0.75}) {
+        supervisor.open();
+        supervisor.look(time, [](const void*) { FAIL("it was solved"); });
+        CHECK(supervisor.close() == Effort{});
+    }
+    CHECK(supervisor.watch().coarse_steps(0) == 2);
+    supervisor.look_ahead({}, 0.25);
+    CHECK_FALSE(supervisor.may_miss_contact());
+    const SceneMotion<double> closing{.closing_speed = 5, .gap = 0.5, .thickness = 0.01};
+    supervisor.look_ahead(closing, 0.05); // the gap is wider than the way
+    CHECK_FALSE(supervisor.may_miss_contact());
+    supervisor.look_ahead(closing, 0.25);
+    supervisor.look_ahead(closing, 0.25);
+    CHECK(supervisor.may_miss_contact());
+    CHECK(lines ==
+          std::vector<std::string>{
+              "ductile: joint \"post\" moved too much in the step that ended at t = 0.5 s: its "
+              "plastic travel may be off by 12.5 %; take shorter steps, or World::advance",
+              "ductile: parts 0.01 m thick close by 1.25 m in the step that starts at t = 0.75 s: "
+              "their contact may be missed; take shorter steps, or World::advance"});
+}
+
 TEST_CASE("a listener may remove any joint while all are asked", "[world]") {
     Supervisor supervisor({}, nullptr);
     Puppet first, second, third;

@@ -110,11 +110,14 @@ class World {
     // ---- stepping
 
     /// One step of `dt` > 0 [s].
+    /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it the
+    /// world says where the step is too long for a contact.
     /// @throws std::invalid_argument where the step is not finite or not positive, and what a
     /// constraint's check() throws. The world stays as it was.
-    void step(double dt) {
+    void step(double dt, const SceneMotion<double>& scene = {}) {
         check::positive("World.step.dt", dt, "s");
         supervisor_.open();
+        supervisor_.look_ahead(scene, dt);
         do_step(dt, time() + dt);
     }
 
@@ -147,6 +150,10 @@ class World {
     /// Worst certificate of the last step() or advance(); watch().name() says whose.
     [[nodiscard]] const WorstCertificate<double>& worst() const noexcept { return watch().worst(); }
     [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
+    /// True where parts may have passed through each other unseen in the last step().
+    [[nodiscard]] bool may_miss_contact() const noexcept {
+        return supervisor_.may_miss_contact();
+    }
     /// With what the next step is done.
     [[nodiscard]] const Effort& effort() const noexcept { return supervisor_.effort(); }
 

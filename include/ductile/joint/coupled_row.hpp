@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+//
+// One row of a coupled joint: what it did in a step. The rules are those of a one-axis joint
+// (one_axis_joint.hpp), but what is life and what breaks is decided for all rows together.
+//
+// Symbols as in coupled_joint.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+#include "ductile/joint/step_error.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// What one row did in a step [J], and how far it flowed [m | rad].
+template <std::floating_point S>
+struct RowBooking {
+    S flow = 0, elastic = 0, other = 0, residual = 0, travel = 0;
+    StepError<S> error{};
+    bool at_bound = false;
+    bool moved = false; ///< a rigid row that goes on from where it is
+};
+
+/// A row as its step began.
+template <std::floating_point S>
+struct OpenRow {
+    RowLimits<S> limits; ///< as the solver got them
+    S lower, upper;      ///< bounds of the force; those of a given force are narrower [N | N m]
+    S share;             ///< of the strength that the bounds allow
+    S tolerance;         ///< a force this close to its bound is at it [N | N m]
+    S stiffness;         ///< k; infinite: rigid [N/m | N m/rad]
+    S implicit;          ///< θ of an elastic row
+    S start;             ///< u [m/s | rad/s]
+    S noise;             ///< speed below which nothing moves [m/s | rad/s]
+    S elastic;           ///< q_e [m | rad]
+    S offset;            ///< q_p [m | rad]
+    bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
+
+    [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
+        const S f = reaction.force;
+        const bool at_upper = f >= upper - tolerance, at_lower = f <= lower + tolerance;
+        const S travel = (start + reaction.velocity) / 2 * dt;
+        const S work = -f * travel;
+        const bool rigid = stiffness == std::numeric_limits<S>::infinity();
+        RowBooking<S> booked;
+        booked.at_bound = at_upper || at_lower;
+        if (rigid || limits.lower != limits.upper) {
+            const S excess = reaction.velocity + limits.compliance * f * dt - limits.bias;
+            booked.residual = at_upper   ? std::max(excess, S(0))
+                              : at_lower ? std::max(-excess, S(0))
+                                         : std::abs(excess);
+        }
+        if (rigid) {
+            const bool slips = (at_lower && travel > 0) || (at_upper && travel < 0);
+            // a row that stood does not stop: round-off must not decide where it rests
+            const bool stops = !booked.at_bound && work > 0 && may_stop;
+            // a row may also be driven by the flow of the others
+            (slips || stops ? booked.flow : booked.other) = work;
+            booked.travel = slips || stops ? travel : S(0);
+            booked.moved = booked.at_bound || stops;
+            booked.error = error_of(booked, f, travel, dt);
+            return booked;
+        }
+        const S trial = reaction.position - offset;
+        const S strained =
+            std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
+        booked.travel = trial - strained;
+        booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
+        const S rest = work - booked.elastic;
+        const S slipped = std::abs(stiffness * strained * booked.travel);
+        if (booked.travel != 0) {
+            booked.flow = (1 - implicit) * slipped + implicit * std::max(rest, S(0));
+        }
+        booked.other = rest - booked.flow;
+        booked.error = error_of(booked, f, travel, dt);
+        return booked;
+    }
+
+  private:
+    [[nodiscard]] StepError<S> error_of(const RowBooking<S>& booked, S force, S moved,
+                                        S dt) const noexcept {
+        const bool rigid = stiffness == std::numeric_limits<S>::infinity();
+        return step_error<S>(
+            {.force = force,
+             .start = start,
+             .travel = moved,
+             .dt = dt,
+             .noise = noise,
+             .strength = std::max(upper, -lower) / share,
+             .stiffness = stiffness,
+             .implicit = implicit,
+             .stored = rigid ? S(0) : stiffness * elastic * elastic / 2 + booked.elastic,
+             .other_work = booked.other,
+             .flowed = booked.travel != 0});
+    }
+};
+
+} // namespace ductile

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether a step was too long for what a joint did in it. However well its rows are solved, a
+// velocity solver moves bodies with the velocity at the end of the step, and what begins or ends
+// within a step it sees a step late.
+//
+// Flow. Where the speed of a flowing row changes from u to u', up to |u' - u| dt/2 of its travel is
+// misplaced. A stop from speed u in n steps sums up to u dt/2, 1/n of its travel; a flow that a
+// contact begins within a step is as uncertain. The sum, relative to the plastic travel so far, is
+// the step error. It is judged where a flow ends: at its onset the travel so far says nothing yet.
+//
+// Spring. One that the step cannot resolve is damped: it comes to rest where it should swing on.
+// Where the row would have yielded had it kept that energy, the step is too long as well.
+//
+// Estimates for warning, not bounds: they cannot see motion that never reached the joint.
+//
+// Symbols as in one_axis_joint.hpp; θ as in elastic_row.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+namespace ductile {
+
+/// One row in one step.
+template <std::floating_point S>
+struct RowStep {
+    S force;      ///< f [N | N m]
+    S start;      ///< u [m/s | rad/s]
+    S travel;     ///< (u + u') dt/2, signed [m | rad]
+    S dt;         ///< [s]
+    S noise;      ///< speed below which nothing moves [m/s | rad/s]
+    S strength;   ///< R [N | N m]
+    S stiffness;  ///< k; infinite: rigid [N/m | N m/rad]
+    S implicit;   ///< θ of an elastic row
+    S stored;     ///< elastic energy after the step [J]
+    S other_work; ///< numerical damping and the like [J]
+    bool flowed;
+};
+
+/// Work that a step may have done in the wrong place, and that it should have done [J].
+template <std::floating_point S>
+struct StepError {
+    S flow = 0;  ///< plastic work of travel that may be misplaced, >= 0
+    S swing = 0; ///< energy that an unresolved spring lost and that would have made it yield, >= 0
+
+    StepError& operator+=(const StepError& other) noexcept {
+        flow += other.flow;
+        swing += other.swing;
+        return *this;
+    }
+};
+
+template <std::floating_point S>
+[[nodiscard]] StepError<S> step_error(const RowStep<S>& row) noexcept {
+    if (std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt) return {};
+    const bool rigid = row.stiffness == std::numeric_limits<S>::infinity();
+    const S change = std::abs(row.force * (row.travel - row.start * row.dt));
+    if (row.flowed) return {.flow = (rigid ? S(1) : row.implicit) * change};
+    if (rigid || row.implicit == 0) return {};
+    const S lost = row.implicit * std::max(row.other_work, change);
+    const S at_yield = row.strength * row.strength / (2 * row.stiffness);
+    return {.swing = row.stored + lost > at_yield ? lost : S(0)};
+}
+
+} // namespace ductile
