@@ -8,10 +8,11 @@
 // tolerance:
 //   1. axes that do not yield are rigid (joint_detail.hpp, rule 1) and do not ask for a step;
 //   2. an axis that yields is rehearsed (rehearsal.hpp) without and, where it has a stiffness, with
-//      its elastic part. The detail that bears the longer step is the cheaper one, because a row
-//      costs the same either way; where both bear the same, the one without.
+//      its elastic part. Without is cheaper unless with it the step may be longer by more than an
+//      elastic row costs, `elastic_cost`. It has to be resolved by the mass that the row feels,
+//      that of the joint's own bodies where something strikes them;
 //   3. the joint takes the shortest of its axes' steps.
-// `reserve` keeps a part of the tolerance for what a rehearsal of single axes cannot know: other
+// A share `reserve` of the tolerance is kept for what a rehearsal of single axes cannot know: other
 // joints, and the scene's geometry.
 //
 // Limit cases: tolerance → 1 the longest step; nothing yields: rigid, the longest step; k → ∞
@@ -38,10 +39,18 @@
 namespace ductile {
 
 template <std::floating_point S>
+struct ModelParameters {
+    S reserve = S(0.05); ///< share of the tolerance that is not used [-], in [0, 1)
+    /// What a step of an elastic joint costs over one of a rigid-plastic one [-], >= 1; 1.2 to 1.35
+    /// was measured for single joints in Bullet and ODE.
+    S elastic_cost = S(1.3);
+};
+
+template <std::floating_point S>
 struct ModelChoice {
     JointDetail<S> joint; ///< errors are those of detail and step together
     S dt = 0;             ///< [s]
-    S error = 0;          ///< largest of the axes' [-]; infinity: not known, or beyond the tolerance
+    S error = 0; ///< largest of the axes' [-]; infinity: not known, or beyond the tolerance
 
     /// One line for the step and one per axis.
     [[nodiscard]] std::string reason() const {
@@ -54,7 +63,7 @@ namespace detail_choice {
 /// The better of the two details for one axis that yields.
 template <std::floating_point S>
 StepFit<S> fit_axis(const AxisSystem<S>& system, const AxisEvent<S>& event, S target, S longest,
-                    S steps_per_period, AxisChoice<S>& choice) {
+                    S steps_per_period, S elastic_cost, AxisChoice<S>& choice) {
     AxisSystem<S> rigid = system;
     rigid.stiffness = std::numeric_limits<S>::infinity();
     const PeakResponse<S> exact = peak_response(system, event);
@@ -62,12 +71,13 @@ StepFit<S> fit_axis(const AxisSystem<S>& system, const AxisEvent<S>& event, S ta
     StepFit<S> without, with;
     if (ignored <= target) without = choose_step(rigid, event, exact, target, longest);
     if (!std::isinf(system.stiffness)) {
-        const S period = 2 * std::numbers::pi_v<S> * std::sqrt(system.mass / system.stiffness);
-        with = choose_step(system, event, exact, target,
-                           std::min(longest, period / steps_per_period));
+        const S felt = event.own_mass > 0 ? event.own_mass : system.mass;
+        const S period = 2 * std::numbers::pi_v<S> * std::sqrt(felt / system.stiffness);
+        with =
+            choose_step(system, event, exact, target, std::min(longest, period / steps_per_period));
         choice.steps_per_period = with.dt > 0 ? period / with.dt : choice.steps_per_period;
     }
-    const bool elastic = with.dt > without.dt;
+    const bool elastic = with.dt > elastic_cost * without.dt;
     const StepFit<S>& fit = elastic ? with : without;
     choice.detail = elastic ? AxisDetail::elastic_plastic : AxisDetail::rigid_plastic;
     choice.error = fit.error;
@@ -86,30 +96,33 @@ StepFit<S> fit_axis(const AxisSystem<S>& system, const AxisEvent<S>& event, S ta
 
 } // namespace detail_choice
 
-/// `p.dt`: the longest step. `reserve`: share of the tolerance that is not used, in [0, 1).
+/// `p.dt`: the longest step.
 /// @throws std::invalid_argument where a parameter is missing or out of range.
 template <std::floating_point S>
-[[nodiscard]] ModelChoice<S> choose_model(const JointDetailParameters<S>& p, S reserve = S(0.1)) {
+[[nodiscard]] ModelChoice<S> choose_model(const JointDetailParameters<S>& p,
+                                          const ModelParameters<S>& by = {}) {
     using namespace detail_choice;
     constexpr S infinity = std::numeric_limits<S>::infinity();
-    if (reserve != S(0)) check::between("ModelChoice.reserve", reserve, S(0), S(1), "");
+    if (by.reserve != S(0)) check::between("Model.reserve", by.reserve, S(0), S(1), "");
+    if (!(by.elastic_cost >= 1)) check::fail("Model.elastic_cost", by.elastic_cost, "", ">= 1");
     const auto systems = checked_axes(p);
+    const S target = p.tolerance * (1 - by.reserve);
     ModelChoice<S> model{.joint = choose_detail(p), .dt = p.dt};
-    const S target = p.tolerance * (1 - reserve);
+    const auto fit = [&](std::size_t i) {
+        return fit_axis(systems[i], *p.event[i], target, model.dt, p.steps_per_period,
+                        by.elastic_cost, model.joint.axis[i]);
+    };
+    S shortest = p.dt;
     for (std::size_t i = 0; i < 6; ++i) {
-        AxisChoice<S>& axis = model.joint.axis[i];
-        if (axis.detail == AxisDetail::rigid || !p.event[i]) continue;
-        const StepFit<S> fit =
-            fit_axis(systems[i], *p.event[i], target, p.dt, p.steps_per_period, axis);
-        if (fit.dt > 0) model.dt = std::min(model.dt, fit.dt);
+        if (model.joint.axis[i].detail == AxisDetail::rigid || !p.event[i]) continue;
+        if (const S dt = fit(i).dt; dt > 0) shortest = std::min(shortest, dt);
     }
+    model.dt = shortest;
     for (std::size_t i = 0; i < 6; ++i) {
         AxisChoice<S>& axis = model.joint.axis[i];
         if (axis.detail == AxisDetail::rigid) continue;
         // with the shorter step of another axis the elastic part may not be needed any more
-        if (p.event[i] && axis.detail == AxisDetail::elastic_plastic) {
-            fit_axis(systems[i], *p.event[i], target, model.dt, p.steps_per_period, axis);
-        }
+        if (p.event[i] && axis.detail == AxisDetail::elastic_plastic) (void)fit(i);
         model.error = p.event[i] ? std::max(model.error, axis.error) : infinity;
     }
     return model;

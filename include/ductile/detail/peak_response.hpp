@@ -61,9 +61,10 @@ struct AxisEvent {
     S load = 0;                                      ///< F [N | N m], >= 0
     S duration = std::numeric_limits<S>::infinity(); ///< t_d [s], > 0; infinity: the load stays
     S held = 0;                                      ///< G [N | N m], >= 0
-    /// The speed comes from a contact, which an engine makes somewhere within a step. The closed
-    /// form does not ask; a stepped axis does (rehearsal.hpp).
-    bool by_contact = false;
+    /// Where the speed comes from a contact: mass of the axis's own bodies, without what strikes
+    /// them [kg | kg m²]; 0: no contact. The closed form does not ask; a stepped axis does
+    /// (rehearsal.hpp).
+    S own_mass = 0;
 
     bool operator==(const AxisEvent&) const = default;
 };
@@ -90,6 +91,7 @@ void check_event(const AxisEvent<S>& event) {
     check::non_negative("AxisEvent.load", event.load, "N or N m");
     check::positive_or_infinite("AxisEvent.duration", event.duration, "s");
     check::non_negative("AxisEvent.held", event.held, "N or N m");
+    check::non_negative("AxisEvent.own_mass", event.own_mass, "kg or kg m^2");
 }
 
 namespace detail_response {

@@ -176,8 +176,8 @@ TEST_CASE("a response refuses numbers that make no oscillator, by name", "[peak_
 TEST_CASE("a break takes its energy and leaves the rest of the motion", "[peak_response]") {
     // P02 a, b: ω_res² = ω₀² - 2 (M_p/I) θ_max
     for (const auto& [limit, left] : {std::pair{1.6, 6.0}, std::pair{1.3, 6.92820323}}) {
-        const auto r = peak_response<double>({.mass = 2, .strength = 40, .limit = limit},
-                                             {.speed = 10});
+        const auto r =
+            peak_response<double>({.mass = 2, .strength = 40, .limit = limit}, {.speed = 10});
         CHECK(r.speed == Approx(left).epsilon(2e-9)); // printed digits
         CHECK(r.plastic == limit);
         CHECK(r.displacement == limit);
@@ -189,7 +189,8 @@ TEST_CASE("a break takes its energy and leaves the rest of the motion", "[peak_r
     CHECK(r.displacement == Approx(1.4).epsilon(1e-14));
     // one that stops before does not break
     CHECK(peak_response(soft, {.speed = 5}).speed == 0);
-    CHECK(peak_response<double>({.mass = 2, .strength = 40, .limit = 1.3}, {.speed = 5}).speed == 0);
+    CHECK(peak_response<double>({.mass = 2, .strength = 40, .limit = 1.3}, {.speed = 5}).speed ==
+          0);
 }
 
 TEST_CASE("a load that ends before the break, or after it, or keeps pulling", "[peak_response]") {
