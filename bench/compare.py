@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Compares two stored results: compare.py bench/results/A bench/results/B
 
-Every accuracy column must be the same to the last digit. Costs are compared as ratios to the median row of
-their own run, so that a machine that is faster as a whole does not count. Exit status 1 where an error
-differs; the spread of the costs is printed.
+Every accuracy column of pareto.csv, stability.csv and detail.csv must be the same to the last digit. Costs are
+compared as ratios to the median row of their own run, so that a machine that is faster as a whole does not
+count. Exit status 1 where an error differs; the spread of the costs is printed.
 """
 
 import csv
@@ -12,30 +12,54 @@ import statistics
 import sys
 from pathlib import Path
 
-KEY = ("scene", "engine", "solver", "precision", "method", "dt_s", "iterations", "quantity")
+# table -> columns that name a row, columns that must repeat; all cost columns but these vary
+TABLES = {
+    "pareto.csv": (("scene", "engine", "solver", "precision", "method", "dt_s", "iterations", "quantity"),
+                   ("error_rel",)),
+    "stability.csv": (("scene", "engine", "solver", "precision", "method", "x_name", "x", "y_name", "y"),
+                      ("class", "error_rel", "energy_gain_rel")),
+    "detail.csv": (("scene", "engine", "precision", "tolerance", "detail", "chosen", "joints"),
+                   ("dt_s", "error_rel", "meets", "row_steps", "count_ratio", "unreliable_steps")),
+}
+COST = "cpu_s_per_sim_s"
 
 
-def read(folder):
-    with open(Path(folder) / "pareto.csv", newline="") as file:
-        return {tuple(row[c] for c in KEY): row for row in csv.DictReader(file)}
+def read(folder, table, key):
+    path = Path(folder) / table
+    if not path.exists():
+        return None
+    with open(path, newline="") as file:
+        return {tuple(row[c] for c in key): row for row in csv.DictReader(file)}
+
+
+def compare(table, key, columns, first, second):
+    """True where both runs have the same rows with the same accuracy."""
+    a, b = read(first, table, key), read(second, table, key)
+    if a is None and b is None:
+        return True
+    if a is None or b is None:
+        print(f"{table}: in one only")
+        return False
+    common = a.keys() & b.keys()
+    only = set(a) ^ set(b)
+    differ = [k for k in common if any(a[k][c] != b[k][c] for c in columns)]
+    for k in sorted(differ)[:20]:
+        print(",".join(k), *(f"{c} {a[k][c]} {b[k][c]}" for c in columns if a[k][c] != b[k][c]))
+    print(f"{table}: {len(a)} and {len(b)} rows, {len(only)} in one only, {len(differ)} that differ")
+    ratios = [float(a[k][COST]) / float(b[k][COST]) for k in common
+              if COST in a[k] and 0 < float(b[k][COST]) < float("inf")]
+    if ratios:
+        middle = statistics.median(ratios)
+        within = sum(abs(r / middle - 1) <= 0.15 for r in ratios) / len(ratios)
+        print(f"{table}: costs: median ratio {middle:.3f}, {100 * within:.1f} % of rows within 15 % of it")
+    return not only and not differ
 
 
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
-    a, b = read(sys.argv[1]), read(sys.argv[2])
-    only = set(a) ^ set(b)
-    differ = [key for key in a.keys() & b.keys() if a[key]["error_rel"] != b[key]["error_rel"]]
-    for key in sorted(differ)[:20]:
-        print(",".join(key), a[key]["error_rel"], b[key]["error_rel"])
-    print(f"{len(a)} and {len(b)} rows, {len(only)} in one only, {len(differ)} with another error")
-    ratios = [float(a[key]["cpu_s_per_sim_s"]) / float(b[key]["cpu_s_per_sim_s"])
-              for key in a.keys() & b.keys()]
-    if ratios:
-        middle = statistics.median(ratios)
-        within = sum(abs(r / middle - 1) <= 0.15 for r in ratios) / len(ratios)
-        print(f"costs: median ratio {middle:.3f}, {100 * within:.1f} % of rows within 15 % of it")
-    return 1 if only or differ else 0
+    same = [compare(table, *columns, *sys.argv[1:]) for table, columns in TABLES.items()]
+    return 0 if all(same) else 1
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 """Draws stored results: plot.py bench/results/NAME
 
 From pareto.csv one picture per scene, pareto-SCENE.png: error over cost, both logarithmic, with the Pareto
-front drawn and our points filled and large. Nothing is run.
+front drawn and our points filled and large. From detail.csv, where it is there, detail.png: per scene the models
+at each tolerance, the chosen one large. Nothing is run.
 """
 
 import csv
@@ -73,14 +74,52 @@ def draw_scene(scene, quantity, rows, path):
     print(path)
 
 
+def draw_detail(rows, path):
+    """Error over cost of every model at the step that keeps a tolerance; a colour per tolerance."""
+    scenes = list(dict.fromkeys(r["scene"] for r in rows))
+    figure, axes = plt.subplots(3, (len(scenes) + 2) // 3, squeeze=False, figsize=(11, 9))
+    for axis in axes.flat[len(scenes):]:
+        axis.set_axis_off()
+    tolerances = sorted({float(r["tolerance"]) for r in rows}, reverse=True)
+    for axis, scene in zip(axes.flat, scenes):
+        for tolerance, colour in zip(tolerances, ("crimson", "darkorange", "navy")):
+            axis.axhline(tolerance, color=colour, linewidth=0.8, linestyle=":")
+            for engine, precision in MARKERS:
+                some = [r for r in rows if (r["scene"], r["engine"], r["precision"]) ==
+                        (scene, engine, precision) and float(r["tolerance"]) == tolerance]
+                for is_chosen, size, alpha in (("0", 3, 0.45), ("1", 9, 0.9)):
+                    points = [r for r in some if r["chosen"] == is_chosen]
+                    axis.plot([number(r, "cpu_s_per_sim_s") for r in points], [shown(r) for r in points],
+                              linestyle="", marker=MARKERS[engine, precision], markersize=size, alpha=alpha,
+                              color=colour, markeredgecolor="white", markeredgewidth=0.4)
+        axis.set(xscale="log", yscale="log", title=scene)
+        axis.title.set_fontsize(9)
+        axis.tick_params(labelsize=7)
+        axis.grid(alpha=0.25, which="major")
+    for axis in axes[-1]:
+        axis.set_xlabel("CPU seconds per simulated second", fontsize=8)
+    for axis in axes[:, 0]:
+        axis.set_ylabel("relative error", fontsize=8)
+    figure.suptitle("Models at the longest step that keeps 10 % (red), 3 % (orange), 1 % (blue); large: chosen by "
+                    "the core\ncircle Bullet double, triangle Bullet float, square ODE; beyond their line: "
+                    "models that never keep it", fontsize=9)
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    print(path)
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     folder = Path(sys.argv[1])
-    rows = read(folder / "pareto.csv")
-    for scene, quantity in primary(rows).items():
-        chosen = [r for r in rows if r["scene"] == scene and r["quantity"] == quantity]
-        draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
+    if (folder / "pareto.csv").exists():
+        rows = read(folder / "pareto.csv")
+        for scene, quantity in primary(rows).items():
+            chosen = [r for r in rows if r["scene"] == scene and r["quantity"] == quantity]
+            draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
+    if (folder / "detail.csv").exists():
+        draw_detail(read(folder / "detail.csv"), folder / "detail.png")
 
 
 if __name__ == "__main__":

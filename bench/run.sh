@@ -3,22 +3,23 @@
 #
 # Installs what is missing, builds the benchmarks, runs them with progress and time left, stores the
 # results with the machine they are of, and draws them.
-#   bench/run.sh [--quick] [--name NAME]     results in bench/results/NAME
+#   bench/run.sh [--quick] [--name NAME | --out FOLDER]     results in bench/results/NAME or in FOLDER
 # NAME: default the processor's name, with -quick where quick. --quick takes some minutes on two idle
 # cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=()
 name=
+out=
 while [ $# -gt 0 ]; do
     case $1 in
         --quick) quick=(--quick) ;;
-        --name)
-            [ $# -ge 2 ] || { echo "--name: a name is missing" >&2; exit 2; }
-            name=$2
+        --name | --out)
+            [ $# -ge 2 ] || { echo "$1: a name is missing" >&2; exit 2; }
+            if [ "$1" = --name ]; then name=$2; else out=$2; fi
             shift
             ;;
-        *) echo "usage: bench/run.sh [--quick] [--name NAME]" >&2; exit 2 ;;
+        *) echo "usage: bench/run.sh [--quick] [--name NAME | --out FOLDER]" >&2; exit 2 ;;
     esac
     shift
 done
@@ -31,15 +32,13 @@ fi
 cmake/install-packages.sh
 cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
 cmake --build --preset release --target \
-    {pareto,stability,scaling,joint_cost}-{bullet-double,bullet-float,ode-double}
-out=bench/results/$name
+    {pareto,stability,scaling,joint_cost,detail}-{bullet-double,bullet-float,ode-double}
+out=${out:-bench/results/$name}
 mkdir -p "$out"
 # the interpreter for which Debian packages matplotlib
-/usr/bin/python3 bench/pareto.py --bin build/release/bin --build build/release --out "$out" \
-    ${quick[@]+"${quick[@]}"}
-/usr/bin/python3 bench/stability.py --bin build/release/bin --build build/release --out "$out" \
-    ${quick[@]+"${quick[@]}"}
-/usr/bin/python3 bench/cost.py --bin build/release/bin --build build/release --out "$out" \
-    ${quick[@]+"${quick[@]}"}
+for question in detail pareto stability cost; do
+    /usr/bin/python3 bench/$question.py --bin build/release/bin --build build/release --out "$out" \
+        ${quick[@]+"${quick[@]}"}
+done
 /usr/bin/python3 bench/plot.py "$out"
 /usr/bin/python3 bench/plot_stability.py "$out"

@@ -23,7 +23,7 @@ ALLOWED = {
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
     "world": {"vocabulary", "fracture", "detail"},
-    "detail": {"vocabulary", "material", "section", "law", "joint"},
+    "detail": {"vocabulary", "material", "section", "law", "fracture", "joint"},
 }
 ADAPTERS = ("bullet", "ode")
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "ductile/detail/step_control.hpp"
@@ -61,12 +62,15 @@ class Stepping {
     Stepping(const Scene& scene, const Settings& settings)
         : scene_(scene),
           fixed_(settings.dt),
+          first_(settings.first),
           adaptive_(settings.adaptive()),
           control_(parameters(settings)) {}
 
     template <class World>
     double next(const World& world) {
-        return adaptive_ ? control_.next(motion(scene_, world)) : fixed_;
+        if (adaptive_) return control_.next(motion(scene_, world));
+        const double first = std::exchange(first_, 0);
+        return first > 0 ? first : fixed_;
     }
 
   private:
@@ -84,7 +88,7 @@ class Stepping {
     }
 
     const Scene& scene_;
-    double fixed_;
+    double fixed_, first_;
     bool adaptive_;
     ductile::StepControl<double> control_;
 };

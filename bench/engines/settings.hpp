@@ -14,6 +14,7 @@ struct Settings {
     int iterations = 10; ///< of an iterative solver or a direct one's fallback; 0: does not apply
     std::string method;
     double dt = 1.0 / 60; ///< fixed step [s]; not used where `tolerance` is given
+    double first = 0;     ///< first step where it is another one [s]; 0: like the others
     double tolerance =
         0; ///< > 0: StepControl chooses, with so much plastic travel per step [rad | m]
 

@@ -10,7 +10,8 @@
 //   θ'          spins of the segments, from M θ' = J_tipᵀ G V₀, M the chain's mass matrix
 //
 // The expected values are those of the N-segment chain, not of the continuum: event-driven exact
-// solutions for small displacements, for N = 5 with finite rotation.
+// solutions for small displacements, for N = 5 with finite rotation. With the segments' mass at
+// their ends they are the closed form of ductile/detail/struck_cantilever.hpp, for every N.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -18,6 +19,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "ductile/detail/struck_cantilever.hpp"
 #include "scenes/scene.hpp"
 
 namespace bench {
@@ -29,6 +31,7 @@ struct StruckCantileverParameters {
     double plastic_moment = 100;
     double tip_mass = 1;
     double speed = 4;
+    bool mass_at_ends = false; ///< half a segment's mass at either end of it, instead of a rod
 };
 
 /// Answers of P13 a for those N that the reference lists.
@@ -53,7 +56,7 @@ inline constexpr std::array<ChainAnswer, 8> struck_chain_answers{{
 [[nodiscard]] inline Scene struck_cantilever(const StruckCantileverParameters& p = {}) {
     const auto answer = std::find_if(struck_chain_answers.begin(), struck_chain_answers.end(),
                                      [&](const auto& a) { return a.segments == p.segments; });
-    if (answer == struck_chain_answers.end()) {
+    if (answer == struck_chain_answers.end() && !p.mass_at_ends) {
         throw std::invalid_argument("struck_cantilever.segments: no answer known for this number");
     }
     const int n = p.segments;
@@ -76,8 +79,10 @@ inline constexpr std::array<ChainAnswer, 8> struck_chain_answers{{
         const double tip = i + 1 == n ? p.tip_mass : 0;
         const double total = mass + tip;
         const double centre = (mass * middle + tip * p.length) / total;
-        const double about = mass * s * s / 12 + mass * std::pow(middle - centre, 2) +
-                             tip * std::pow(p.length - centre, 2);
+        const double alone =
+            p.mass_at_ends ? ductile::segment_inertia(mass, s, n) : mass * s * s / 12;
+        const double about =
+            alone + mass * std::pow(middle - centre, 2) + tip * std::pow(p.length - centre, 2);
         centre_rows.push_back(row_at(i, centre));
         inertia += total * centre_rows.back() * centre_rows.back().transpose();
         inertia(i, i) += about;
@@ -98,9 +103,22 @@ inline constexpr std::array<ChainAnswer, 8> struck_chain_answers{{
     }
     const Vector tip_in_last(p.length - scene.bodies.back().start.position.x(), 0, 0);
     scene.duration = 0.06;
+    const auto tip = [tip_in_last](const Observation& o) {
+        return o.bodies.back().point(tip_in_last).y();
+    };
+    if (p.mass_at_ends) {
+        const ductile::StruckCantilever<double> beam{.length = p.length,
+                                                     .mass_per_length = p.mass_per_length,
+                                                     .plastic_moment = p.plastic_moment,
+                                                     .tip_mass = p.tip_mass,
+                                                     .speed = p.speed};
+        const double blow = p.tip_mass * p.speed * ductile::chain_start_speed(beam, n) / 2;
+        scene.quantities = {{"tip_deflection", ductile::chain_deflection(beam, n), tip},
+                            absorbed_energy(blow)};
+        return scene;
+    }
     scene.quantities = {
-        {"tip_deflection", answer->tip,
-         [tip_in_last](const Observation& o) { return o.bodies.back().point(tip_in_last).y(); }},
+        {"tip_deflection", answer->tip, tip},
         {"root_rotation", answer->root, [](const Observation& o) { return o.travel[0]; }},
         absorbed_energy(answer->energy)};
     return scene;

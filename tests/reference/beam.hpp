@@ -37,6 +37,7 @@ struct BeamParameters {
     Support right = Support::free;
     S tip_mass = 0; ///< G, on the right end [kg]
     Kinematics kinematics = Kinematics::small;
+    S segment_inertia = S(1) / 12; ///< about a segment's middle, over its mass × length² [-]: a rod
 };
 
 /// Not copyable: the world holds on to the joints.
@@ -118,8 +119,8 @@ class Beam {
         const S rod = p_.mass_per_length * l;
         const S shift = end_mass / (rod + end_mass) * l / 2; // of the centre, towards the mass
         const S centre = (S(segments_.size()) + S(0.5)) * l + shift;
-        const S inertia =
-            rod * (l * l / 12 + shift * shift) + end_mass * (l / 2 - shift) * (l / 2 - shift);
+        const S inertia = rod * (l * l * p_.segment_inertia + shift * shift) +
+                          end_mass * (l / 2 - shift) * (l / 2 - shift);
         segments_.push_back(world_.add_body(rod + end_mass, inertia, {centre, S(0)}));
         centre_.push_back(centre);
     }

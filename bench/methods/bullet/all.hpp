@@ -40,7 +40,8 @@ inline std::unique_ptr<Holder> explicit_clamp(const BulletSite& site) {
         site, std::make_unique<btHingeConstraint>(site.a, site.b, site.in_a, site.in_b, true));
 }
 
-inline constexpr std::array<std::pair<std::string_view, Make>, 10> all{{
+inline constexpr std::array<std::pair<std::string_view, Make>, 11> all{{
+    {"rigid", one<Rigid>}, // a detail, not one of method_names
     {"zero-limits", one<ZeroLimits>},
     {"spring", one<Spring>},
     {"spring2", spring2<true>},

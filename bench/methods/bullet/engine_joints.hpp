@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bullet's own joints as a user would set them: fixed with a breaking impulse, two kinds of spring,
-// hinge and slider with a motor.
+// Bullet's own joints as a user would set them: fixed, fixed with a breaking impulse, two kinds of
+// spring, hinge and slider with a motor.
 #pragma once
 
 #include <memory>
@@ -32,6 +32,13 @@ class EngineJoint : public Holder {
 
 /// Index of the axis along which the joint moves, of six: translation 0-2, rotation 3-5.
 [[nodiscard]] inline int free_axis(const BulletSite& site) { return site.turns() ? 5 : 2; }
+
+class Rigid final : public EngineJoint<btFixedConstraint> {
+  public:
+    explicit Rigid(const BulletSite& site)
+        : EngineJoint(site.world,
+                      std::make_unique<btFixedConstraint>(site.a, site.b, site.in_a, site.in_b)) {}
+};
 
 class ZeroLimits final : public EngineJoint<btGeneric6DofConstraint> {
   public:

@@ -22,7 +22,8 @@ std::unique_ptr<Holder> one(const OdeSite& site) {
     return std::make_unique<Any>(site);
 }
 
-inline constexpr std::array<std::pair<std::string_view, Make>, 7> all{{
+inline constexpr std::array<std::pair<std::string_view, Make>, 8> all{{
+    {"rigid", one<Rigid>}, // a detail, not one of method_names
     {"spring", one<Spring>},
     {"hinge-motor", one<Motor>},
     {"seed-account", one<Accounted>},

@@ -35,6 +35,18 @@ class EngineJoint : public Holder {
     dJointID joint_;
 };
 
+class Rigid final : public Holder {
+  public:
+    explicit Rigid(const OdeSite& site) : joint_(dJointCreateFixed(site.world, nullptr)) {
+        dJointAttach(joint_, site.a, site.b);
+        dJointSetFixed(joint_);
+    }
+    ~Rigid() override { dJointDestroy(joint_); }
+
+  private:
+    dJointID joint_;
+};
+
 /// A stop with lo = hi and, by ODE's manual, ERP = dt k/(dt k + c) and CFM = 1/(dt k + c), with no
 /// damping, c = 0.
 class Spring final : public EngineJoint {

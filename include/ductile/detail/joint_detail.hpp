@@ -20,7 +20,8 @@
 //    both in closed form (peak_response.hpp). For an axis that is hit with the energy E this is
 //    U_y/(E + U_y), U_y = R²/(2k) the most it can store: a hard hit needs no elastic part. For a
 //    load F < R put on at once it is 1: without elasticity nothing moves. Under a load F < R held
-//    during a hit, u_ep - u_rp = U_y/(R - F).
+//    during a hit, u_ep - u_rp = U_y/(R - F). What the step adds to it is not in this choice, in
+//    which the step is given; model_choice.hpp chooses both.
 // 3. Whether the step resolves it. The explicit spring (symplectic Euler), a = k dt²/m, 2π/√a steps
 //    per period, moves with velocities half a step late: amplitudes are off by a/8, energies by
 //    a/4. So
@@ -79,12 +80,20 @@ template <std::floating_point S>
 struct JointDetailParameters {
     JointCapacity<S> capacity{}; ///< capacities and stiffnesses, > 0, infinity allowed
     std::array<S, 6> mass{};     ///< effective, of each axis alone [kg | kg m²], > 0
+    /// Plastic displacement at which each axis breaks [m | rad], > 0; infinity: never.
+    std::array<S, 6> limit = no_limits();
     S dt = std::numeric_limits<S>::quiet_NaN();         ///< step [s], > 0
     std::array<std::optional<AxisEvent<S>>, 6> event{}; ///< none: not known
     S lever = std::numeric_limits<S>::infinity();       ///< ℓ [m], > 0; infinity: bounds no shear
     S tolerance = S(0.05);      ///< relative error of peak displacement and of strength, in (0, 1)
     S margin = S(0.1);          ///< by which loads may turn out larger, >= 0
     S steps_per_period = S(12); ///< fewest for an elastic part, >= 2
+
+    [[nodiscard]] static constexpr std::array<S, 6> no_limits() noexcept {
+        std::array<S, 6> limits{};
+        limits.fill(std::numeric_limits<S>::infinity());
+        return limits;
+    }
 };
 
 /// What is chosen for one axis.
@@ -204,11 +213,12 @@ std::array<AxisSystem<S>, 6> checked_axes(const JointDetailParameters<S>& p) {
     }
     std::array<AxisSystem<S>, 6> axes;
     for (std::size_t i = 0; i < 6; ++i) {
-        axes[i] = {p.mass[i], p.capacity.stiffness[i], p.capacity.capacity[i]};
+        axes[i] = {p.mass[i], p.capacity.stiffness[i], p.capacity.capacity[i], p.limit[i]};
         const std::string name = "JointDetail." + std::string(joint_axis_names[i]);
         check::positive(name + ".mass", axes[i].mass, "kg or kg m^2");
         check::positive_or_infinite(name + ".stiffness", axes[i].stiffness, "N/m or N m/rad");
         check::positive_or_infinite(name + ".capacity", axes[i].strength, "N or N m");
+        check::positive_or_infinite(name + ".limit", axes[i].limit, "m or rad");
         if (p.event[i]) check_event(*p.event[i]);
     }
     return axes;

@@ -172,3 +172,45 @@ TEST_CASE("a response refuses numbers that make no oscillator, by name", "[peak_
     CHECK(message_of([&] { (void)peak_response(good, {.held = -1}); }) ==
           "AxisEvent.held = -1 N or N m: must be finite and >= 0");
 }
+
+TEST_CASE("a break takes its energy and leaves the rest of the motion", "[peak_response]") {
+    // P02 a, b: ω_res² = ω₀² - 2 (M_p/I) θ_max
+    for (const auto& [limit, left] : {std::pair{1.6, 6.0}, std::pair{1.3, 6.92820323}}) {
+        const auto r =
+            peak_response<double>({.mass = 2, .strength = 40, .limit = limit}, {.speed = 10});
+        CHECK(r.speed == Approx(left).epsilon(2e-9)); // printed digits
+        CHECK(r.plastic == limit);
+        CHECK(r.displacement == limit);
+    }
+    // what is stored is lost too: m v²/2 = R (limit + u_y/2) + m v_res²/2
+    const AxisSystem<double> soft{.mass = 2, .stiffness = 400, .strength = 40, .limit = 1.3};
+    const auto r = peak_response(soft, {.speed = 10});
+    CHECK(r.speed == Approx(std::sqrt(100 - 40 * (1.3 + 0.05))).epsilon(1e-12));
+    CHECK(r.displacement == Approx(1.4).epsilon(1e-14));
+    // one that stops before does not break
+    CHECK(peak_response(soft, {.speed = 5}).speed == 0);
+    CHECK(peak_response<double>({.mass = 2, .strength = 40, .limit = 1.3}, {.speed = 5}).speed ==
+          0);
+}
+
+TEST_CASE("a load that ends before the break, or after it, or keeps pulling", "[peak_response]") {
+    // rigid-plastic, m = 2, R = 40, hit at 10: accelerated by F for t_d, then braked by R
+    const AxisSystem<double> bar{.mass = 2, .strength = 40, .limit = 5};
+    const auto speed = [&](double load, double duration) {
+        return peak_response(bar, {.speed = 10, .load = load, .duration = duration}).speed;
+    };
+    // F = R: moves on at 10 until 0.1 s, 1 m; then 4 m at -20 m/s²: 100 - 160 < 0, it stops
+    CHECK(speed(40, 0.1) == 0);
+    // F = R until 0.4 s: 4 m at 10, then 1 m: 100 - 40
+    CHECK(speed(40, 0.4) == Approx(std::sqrt(60)).epsilon(1e-14));
+    CHECK(speed(40, 2) == Approx(10).epsilon(1e-14));
+    CHECK(speed(40, infinity) == Approx(10).epsilon(1e-14));
+    // F = 60 for ever: +10 m/s² over 5 m
+    CHECK(speed(60, infinity) == Approx(std::sqrt(200)).epsilon(1e-14));
+    // F = 20 for ever: -10 m/s²: 100 - 100 at 5 m, just stops
+    CHECK(speed(20, infinity) == 0);
+    CHECK(speed(22, infinity) == Approx(std::sqrt(10)).epsilon(1e-13));
+    CHECK(message_of([] {
+              (void)peak_response<double>({.mass = 1, .strength = 1, .limit = 0}, {});
+          }) == "AxisSystem.limit = 0 m or rad: must be > 0 (infinity: no limit)");
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+//
+// Is the detail that the core chooses for a tolerance within it, and is it the cheapest that is?
+// Every scene of scenes/detail_case.hpp on one build of one engine, at 10, 3 and 1 %: the chosen
+// model at the chosen step, and every other model at the longest step from which on every finer one
+// keeps the tolerance. Those steps are looked at 10 % apart, from a game's step down to a third of
+// the finest that the core chose: errors that happen to change sign do not count.
+//
+//   detail-ode-double [--quick] [--scene NAME]     rows as CSV on the standard output
+//   detail-ode-double --reasons                    why the core chose what it chose, as text
+//
+// Columns: scene,engine,precision,tolerance,detail,chosen,joints,dt_s,error_rel,cpu_s_per_sim_s,
+// meets,cost_ratio,row_steps,count_ratio,unreliable_steps. A model that never keeps the tolerance
+// has its finest step here. cost_ratio: CPU time over that of the cheapest model that meets;
+// count_ratio the same for row_steps, steps × six rows per joint, which repeats exactly.
+#include <fmt/core.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engines/run_scene.hpp"
+#include "scenes/detail_case.hpp"
+
+#ifdef BENCH_ODE
+#include "engines/ode_world.hpp"
+using World = bench::OdeWorld;
+constexpr const char* solver = "direct";
+#else
+#include "engines/bullet_world.hpp"
+using World = bench::BulletWorld;
+constexpr const char* solver = "soft-mlcp";
+#endif
+
+using namespace bench;
+
+namespace {
+
+constexpr double tolerances[] = {0.1, 0.03, 0.01};
+
+struct Timing {
+    int repeats;
+    double at_least; ///< [s]
+};
+
+Settings settings(const Model& model, double dt, double first = 0) {
+    return {.solver = solver, .iterations = 200, .method = model.method, .dt = dt, .first = first};
+}
+
+/// A model at a step: how far off it is.
+struct Trial {
+    double dt = 0;
+    double error = infinity;
+    long steps = 0, unreliable = 0;
+    double time = 0; ///< simulated [s]
+};
+
+Trial run_once(const Model& model, double dt, double first, double answer) {
+    Quantity quantity = model.scene.quantities.front();
+    quantity.expected = answer;
+    const RunResult run = observe<World>(model.scene, settings(model, dt, first));
+    return {dt, relative_error(quantity, run).value_or(infinity), run.steps, run.unreliable_steps,
+            run.end.time};
+}
+
+/// In a process of its own: an engine's assertion ends that one, and the model counts as wrong.
+Trial run_apart(const Model& model, double dt, double first, double answer) {
+    static_assert(std::is_trivially_copyable_v<Trial>);
+    int ends[2];
+    if (pipe(ends) != 0) throw std::runtime_error("detail: no pipe");
+    const pid_t child = fork();
+    if (child < 0) throw std::runtime_error("detail: no process");
+    if (child == 0) {
+        const Trial trial = run_once(model, dt, first, answer);
+        _exit(write(ends[1], &trial, sizeof trial) == sizeof trial ? 0 : 1);
+    }
+    close(ends[1]);
+    Trial trial{.dt = dt, .time = model.scene.duration};
+    if (read(ends[0], &trial, sizeof trial) != sizeof trial)
+        trial = {.dt = dt, .steps = 1, .time = 1};
+    close(ends[0]);
+    waitpid(child, nullptr, 0);
+    return trial;
+}
+
+/// The worst of ten starts a tenth of a step apart where there is a contact: it falls anywhere in a
+/// step, and no one can count on where.
+Trial attempt(const Model& model, double dt, double answer) {
+    const int starts = model.scene.contacts.empty() ? 1 : 10;
+    Trial worst = run_apart(model, dt, 0, answer);
+    for (int i = 1; i < starts; ++i) {
+        const Trial trial = run_apart(model, dt, i * dt / starts, answer);
+        worst.error = std::max(worst.error, trial.error);
+        worst.unreliable = std::max(worst.unreliable, trial.unreliable);
+    }
+    return worst;
+}
+
+/// Errors of a model over the step, longest first.
+std::vector<Trial> ladder(const Model& model, double answer, double finest) {
+    std::vector<Trial> trials;
+    for (double dt = longest_step; dt >= finest; dt /= 1.1) {
+        trials.push_back(attempt(model, dt, answer));
+    }
+    return trials;
+}
+
+/// The longest step from which on every finer one keeps the tolerance; else the finest.
+const Trial& reaches(const std::vector<Trial>& trials, double tolerance) {
+    std::size_t good = trials.size();
+    while (good > 0 && trials[good - 1].error <= tolerance) --good;
+    return trials[std::min(good, trials.size() - 1)];
+}
+
+struct Row {
+    std::string detail;
+    bool chosen;
+    int joints;
+    Trial trial;
+    double cpu; ///< per simulated second [-]
+
+    [[nodiscard]] double row_steps() const { return 6.0 * joints * double(trial.steps); }
+};
+
+Row row(const Model& model, const Trial& trial, bool chosen, const Timing& timing) {
+    if (!std::isfinite(trial.error)) return {model.detail, chosen, model.joints, trial, infinity};
+    const double cpu = cpu_time<World>(model.scene, settings(model, trial.dt), trial.steps,
+                                       timing.repeats, timing.at_least);
+    return {model.detail, chosen, model.joints, trial, cpu / trial.time};
+}
+
+void print(const DetailCase& c, double tolerance, const std::vector<Row>& rows) {
+    double cheapest = infinity, fewest = infinity;
+    for (const Row& r : rows) {
+        if (!(r.trial.error <= tolerance)) continue;
+        cheapest = std::min(cheapest, r.cpu);
+        fewest = std::min(fewest, r.row_steps() / r.trial.time);
+    }
+    for (const Row& r : rows) {
+        fmt::print("{},{},{},{},{},{:d},{},{:.9e},{:.9e},{:.6e},{:d},{:.3f},{:.0f},{:.3f},{}\n",
+                   c.name, World::engine, World::precision, tolerance, r.detail, r.chosen, r.joints,
+                   r.trial.dt, r.trial.error, r.cpu, r.trial.error <= tolerance, r.cpu / cheapest,
+                   r.row_steps(), r.row_steps() / r.trial.time / fewest, r.trial.unreliable);
+    }
+    std::fflush(stdout);
+}
+
+const Model& model_of(const DetailCase& c, const Chosen& chosen) {
+    for (const Model& model : c.models) {
+        if (model.detail == chosen.detail && model.joints == chosen.joints) return model;
+    }
+    throw std::runtime_error(fmt::format("{}: {} with {} joints was chosen and is not there",
+                                         c.name, chosen.detail, chosen.joints));
+}
+
+void run(const DetailCase& c, const Timing& timing) {
+    std::vector<Chosen> choices;
+    double finest = longest_step;
+    for (const double tolerance : tolerances) {
+        choices.push_back(c.choose(tolerance));
+        finest = std::min(finest, choices.back().dt / 3);
+    }
+    const double answer =
+        c.answer
+            ? *c.answer
+            : c.models.back()
+                  .scene.quantities.front()
+                  .value(
+                      observe<World>(c.models.back().scene, settings(c.models.back(), c.fine)).end)
+                  .value();
+    std::vector<std::vector<Trial>> ladders;
+    for (const Model& model : c.models) ladders.push_back(ladder(model, answer, finest));
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        const Model& model = model_of(c, choices[i]);
+        std::vector<Row> rows{row(model, attempt(model, choices[i].dt, answer), true, timing)};
+        for (std::size_t k = 0; k < c.models.size(); ++k) {
+            rows.push_back(row(c.models[k], reaches(ladders[k], tolerances[i]), false, timing));
+        }
+        print(c, tolerances[i], rows);
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    CLI::App app("The detail chosen by tolerance against every other one, on one engine build");
+    bool quick = false, reasons = false;
+    std::string only;
+    app.add_flag("--quick", quick, "fewer models and repeats");
+    app.add_flag("--reasons", reasons, "print the reasons of the choices instead");
+    app.add_option("--scene", only, "this scene only");
+    CLI11_PARSE(app, argc, argv);
+
+    bool found = false;
+    for (const DetailCase& c : detail_cases(quick)) {
+        if (!only.empty() && c.name != only) continue;
+        found = true;
+        if (reasons) {
+            for (const double tolerance : tolerances) {
+                const Chosen chosen = c.choose(tolerance);
+                fmt::print("{},{},{}\n", c.name, tolerance, chosen.reason);
+            }
+        } else {
+            run(c, quick ? Timing{3, 0.003} : Timing{5, 0.05});
+        }
+    }
+    if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");
+    return 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+}
