@@ -166,12 +166,15 @@ TEST_CASE("an elastic-plastic joint flows for the turn that its spring leaves", 
 
 TEST_CASE("a softer steel stores more and flows less", "[charpy]") {
     if (!converges) return;
-    // ODE's direct solver stops on the other method at some moduli, this one among them
-    const Method method = Method::elastic_plastic;
+    // moduli at which the rows are soft: ODE's direct solver ends the process where such rows are
+    // handed to it as they are
+    const Method method = GENERATE(from_range(elastic_methods));
+    const double modulus = GENERATE(40e9, 70e9, 100e9, 150e9);
+    INFO(to_string(method) << ", E = " << modulus << " Pa");
     Scenario scenario;
-    scenario.youngs_modulus = 40e9;
+    scenario.youngs_modulus = modulus;
     const Reference expected = reference(scenario, method);
-    CHECK(expected.plastic_work == Approx(122.01607 - 5 * 1.32).epsilon(1e-7));
+    CHECK(expected.plastic_work == Approx(122.01607 - 200e9 / modulus * 1.32).epsilon(1e-7));
     const Result r = run(scenario, solvers.front(), method);
     CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.01));
 }

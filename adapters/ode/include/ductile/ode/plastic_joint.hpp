@@ -10,7 +10,8 @@
 //
 // Rows. ODE has no joint with six bounded rows at a point, so two kinds of ODE's act together:
 //   moments  an angular motor in user mode, its axes set anew in every step; it is id()
-//   forces   rows at the joint's point, made for the step (point_rows.hpp)
+//   forces   rows at the joint's point, made for the step (point_rows.hpp), and so are the moments
+//            where one of their rows is out of the direct solver's scale: the motor then rests
 // A rigid row has infinite strength. Bounds that are not symmetric, as those of a coupled surface
 // are, become a force from outside and a symmetric row (symmetric_row.hpp). All rows together act
 // on both bodies at one point, so what one loses in momentum the other gains.
@@ -206,20 +207,23 @@ class PlasticJoint final : public PlasticConstraint {
         arm_a_ = link_.point() - a.position;
         arm_b_ = link_.point() - b.position;
         centre_ = {};
-        std::array<PointRow, 3> force_rows;
+        std::array<PointRow, 3> force_rows, moment_rows;
+        bool out_of_scale = false; // a moment's row
         for (const JointAxis axis : all_joint_axes) {
             const LinkRow<double>& row = rows[index(axis)];
             SymmetricRow symmetric = symmetric_row(row.limits, dt);
-            symmetric.cfm += softness * dt * (mobility(a, arm_a_, row) + mobility(b, arm_b_, row));
+            const double moved = mobility(a, arm_a_, row) + mobility(b, arm_b_, row);
+            symmetric.cfm += softness * dt * moved;
             (row.turns ? centre_.moment : centre_.force) += symmetric.centre * row.direction;
-            if (row.turns) {
-                set_motor(int(index(axis) % 3), row.direction, symmetric);
-            } else {
-                force_rows[index(axis)] = {.direction = row.direction, .row = symmetric};
-            }
+            const double scale = row_scale(moved + symmetric.cfm / dt);
+            out_of_scale = out_of_scale || (row.turns && scale != 1);
+            (row.turns ? moment_rows : force_rows)[index(axis) % 3] = {row.direction, symmetric,
+                                                                       scale};
         }
         forces_.make(a_, b_, link_.point(), force_rows);
-        moments_ = {}; // ODE leaves it alone where no moment has a row
+        for (int i = 0; i < 3; ++i) set_motor(i, moment_rows[std::size_t(i)], !out_of_scale);
+        if (out_of_scale) forces_.make_moments(a_, b_, moment_rows);
+        moments_ = {}; // ODE leaves it alone where the motor has no row
         add_centre(1);
     }
 
@@ -287,14 +291,15 @@ class PlasticJoint final : public PlasticConstraint {
         return (row.turns ? 0 : body.inverse_mass) + turn.dot(body.inverse_inertia * turn);
     }
 
-    void set_motor(int number, const Vector3<double>& axis, const SymmetricRow& row) {
+    void set_motor(int number, const PointRow& moment, bool on) {
         constexpr int in_world = 0;
+        const Vector3<double>& axis = moment.direction;
         dJointSetAMotorAxis(id_, number, in_world, dReal(axis.x()), dReal(axis.y()),
                             dReal(axis.z()));
         const int group = dParamGroup * number;
-        dJointSetAMotorParam(id_, dParamFMax + group, dReal(row.strength));
-        dJointSetAMotorParam(id_, dParamVel + group, dReal(row.velocity));
-        dJointSetAMotorParam(id_, dParamCFM + group, dReal(row.cfm));
+        dJointSetAMotorParam(id_, dParamFMax + group, dReal(on ? moment.row.strength : 0));
+        dJointSetAMotorParam(id_, dParamVel + group, dReal(moment.row.velocity));
+        dJointSetAMotorParam(id_, dParamCFM + group, dReal(moment.row.cfm));
     }
 
     /// The centres of the rows' bounds as an outside force on both bodies.

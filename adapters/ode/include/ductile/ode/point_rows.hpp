@@ -1,12 +1,25 @@
 // SPDX-License-Identifier: MIT
 //
-// Bounded force rows between two bodies that act at a given point, for one step. ODE has no joint
-// for that: its linear motor acts midway between the centres of mass. But the two friction rows of
-// a contact joint act at the contact's point, with a bound, a target velocity and a CFM each, so
-// contact joints are made for the step and taken away after it.
+// Bounded rows of force and moment between two bodies at a given point, for one step. ODE has no
+// joint for that: its linear motor acts midway between the centres of mass. But the two friction
+// rows of a contact joint act at the contact's point, with a bound, a target velocity and a CFM
+// each, so contact joints are made for the step and taken away after it.
 //
 // The contact's normal row, which presses only one way, is kept out by a target velocity far below
 // any motion: its force is zero, and no tie can make ODE's direct solver take it up.
+//
+// Moments. A contact at the distance L from the bodies along n with the row direction t = (e × n)/L
+// has the moment arm L n × t = e: a couple about e, but for the force M/L. L is so long that this
+// force is lost in round-off; it is reported with the others all the same.
+//
+// Scale. When ODE's direct solver (0.16: dLDLTRemove) takes a row out that has met its bound, it
+// puts a 1 in place of the row's diagonal A = J M⁻¹ Jᵀ + CFM/dt, by way of the squares of A ± 1.
+// What is left of the difference is 8/A² of a number of order one: off by ε A²/8, and nothing at
+// all above A = 1e8, where the solver then divides by zero and ends the process. Moments on bodies
+// of some grams and soft rows are there in SI units. A row u' + CFM f = Vel, |f| <= FMax is
+// therefore made as
+//   s u' + (s² CFM) (f/s) = s Vel,   |f/s| <= FMax/s,   s = 1/√A
+// by a direction of length s, wherever A is above `largest_diagonal`.
 //
 // Not thread-safe.
 #pragma once
@@ -14,6 +27,7 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 #include "ductile/joint/pair.hpp"
@@ -23,11 +37,20 @@
 
 namespace ductile::ode {
 
-/// A row along a direction; its centre is not applied here.
+/// Diagonal up to which ODE's direct solver takes rows as they are: 1e-9 off [1/kg | 1/(kg m²)].
+inline constexpr double largest_diagonal = 1e4;
+
+/// A row along or about a direction; its centre is not applied here.
 struct PointRow {
     Vector3<double> direction{0, 0, 0}; ///< world, unit
     SymmetricRow row;
+    double scale = 1; ///< s
 };
+
+/// s of a row with the diagonal A.
+[[nodiscard]] inline double row_scale(double diagonal) noexcept {
+    return diagonal > largest_diagonal ? 1 / std::sqrt(diagonal) : 1;
+}
 
 class PointRows {
   public:
@@ -36,19 +59,29 @@ class PointRows {
     PointRows(const PointRows&) = delete;
     PointRows& operator=(const PointRows&) = delete;
 
-    /// Makes the rows on `a`, opposite on `b` (null: the static world), for the coming step.
+    /// Makes force rows on `a`, opposite on `b` (null: the static world), for the coming step.
     /// Directions at right angles to each other; rows without strength are left out.
     void make(dBodyID a, dBodyID b, const Vector3<double>& point,
               const std::array<PointRow, 3>& rows) {
-        std::array<const PointRow*, 3> acting{};
-        std::size_t count = 0;
-        for (const PointRow& row : rows) {
-            if (row.row.strength > 0) acting[count++] = &row;
-        }
-        for (std::size_t i = 0; i < count; i += 2) {
-            const PointRow* second = i + 1 < count ? acting[i + 1] : nullptr;
-            attach(a, b, contact(point, *acting[i], second), feedback_[i / 2]);
-        }
+        attach(a, b, rows, [&point](const PointRow& first, const PointRow* second) {
+            const Vector3<double> along = first.scale * first.direction;
+            const Vector3<double> other = second != nullptr
+                                              ? Vector3<double>(second->scale * second->direction)
+                                              : along.unitOrthogonal() * first.scale;
+            return contact(point, along, other);
+        });
+    }
+    /// The same with moments about the directions.
+    void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows) {
+        attach(a, b, rows, [](const PointRow& first, const PointRow* second) {
+            const Vector3<double> about = first.direction;
+            const Vector3<double> other =
+                second != nullptr ? second->direction : about.unitOrthogonal();
+            const Vector3<double> normal = about.cross(other);
+            const double second_scale = second != nullptr ? second->scale : first.scale;
+            return contact(distance * normal, first.scale / distance * about.cross(normal),
+                           second_scale / distance * other.cross(normal));
+        });
     }
 
     /// What the rows did in the step, about the centres of mass; takes them away.
@@ -66,45 +99,62 @@ class PointRows {
     void clear() {
         dJointGroupEmpty(group_);
         feedback_ = {};
+        contacts_ = 0;
     }
 
   private:
-    static constexpr double never = -1e15; ///< [m/s]
+    static constexpr double never = -1e15;   ///< [m/s]
+    static constexpr double distance = 1e12; ///< L [m]
 
-    static dContact contact(const Vector3<double>& point, const PointRow& first,
-                            const PointRow* second) {
+    /// Two rows along directions at right angles.
+    static dContact contact(const Vector3<double>& point, const Vector3<double>& first,
+                            const Vector3<double>& second) {
         // ODE's second friction direction is normal × first
-        const Vector3<double> other =
-            second != nullptr ? second->direction : first.direction.unitOrthogonal();
-        const Vector3<double> normal = first.direction.cross(other);
+        const Vector3<double> normal = first.cross(second) / first.squaredNorm();
         dContact result{};
         result.surface.mode = dContactAxisDep | dContactFDir1 | dContactMotionN | dContactMotion1 |
                               dContactMotion2 | dContactSlip1 | dContactSlip2;
         for (int i = 0; i < 3; ++i) {
             result.geom.pos[i] = dReal(point[i]);
             result.geom.normal[i] = dReal(normal[i]);
-            result.fdir1[i] = dReal(first.direction[i]);
+            result.fdir1[i] = dReal(first[i]);
         }
         result.surface.motionN = dReal(never);
-        result.surface.mu = dReal(first.row.strength);
-        result.surface.motion1 = dReal(first.row.velocity);
-        result.surface.slip1 = dReal(first.row.cfm);
-        if (second == nullptr) return result;
-        result.surface.mu2 = dReal(second->row.strength);
-        result.surface.motion2 = dReal(second->row.velocity);
-        result.surface.slip2 = dReal(second->row.cfm);
         return result;
     }
 
-    void attach(dBodyID a, dBodyID b, const dContact& contact, dJointFeedback& feedback) {
-        const dJointID joint = dJointCreateContact(world_, group_, &contact);
-        dJointAttach(joint, a, b);
-        dJointSetFeedback(joint, &feedback);
+    /// One contact for two rows, `contact_of` the first and the second (null: there is none).
+    template <class ContactOf>
+    void attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows,
+                const ContactOf& contact_of) {
+        std::array<const PointRow*, 3> acting{};
+        std::size_t count = 0;
+        for (const PointRow& row : rows) {
+            if (row.row.strength > 0) acting[count++] = &row;
+        }
+        for (std::size_t i = 0; i < count; i += 2) {
+            const PointRow& first = *acting[i];
+            const PointRow* second = i + 1 < count ? acting[i + 1] : nullptr;
+            dContact contact = contact_of(first, second);
+            dSurfaceParameters& surface = contact.surface;
+            surface.mu = dReal(first.row.strength / first.scale);
+            surface.motion1 = dReal(first.row.velocity * first.scale);
+            surface.slip1 = dReal(first.row.cfm * first.scale * first.scale);
+            if (second != nullptr) {
+                surface.mu2 = dReal(second->row.strength / second->scale);
+                surface.motion2 = dReal(second->row.velocity * second->scale);
+                surface.slip2 = dReal(second->row.cfm * second->scale * second->scale);
+            }
+            const dJointID joint = dJointCreateContact(world_, group_, &contact);
+            dJointAttach(joint, a, b);
+            dJointSetFeedback(joint, &feedback_[contacts_++]);
+        }
     }
 
     dWorldID world_;
     dJointGroupID group_;
-    std::array<dJointFeedback, 2> feedback_{};
+    std::array<dJointFeedback, 4> feedback_{}; ///< two of forces, two of moments
+    std::size_t contacts_ = 0;                 ///< made for this step
 };
 
 } // namespace ductile::ode
