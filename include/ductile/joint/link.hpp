@@ -34,8 +34,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -47,6 +45,7 @@
 #include <utility>
 
 #include "ductile/joint/joint_axis.hpp"
+#include "ductile/joint/link_pose.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/pair.hpp"
 #include "ductile/joint/rotation.hpp"
@@ -82,7 +81,7 @@ class Link {
     /// `axes`: which axis of the link each row of the joint is, none twice; the others are rigid.
     /// @throws std::invalid_argument where an axis is given twice.
     Link(Joint joint, const Axes& axes, const JointFrame<S>& in_a, const JointFrame<S>& in_b)
-        : joint_(std::move(joint)), axes_(axes), in_a_(in_a), in_b_(in_b) {
+        : joint_(std::move(joint)), axes_(axes), pose_(in_a, in_b) {
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             if (plastic_[index(axes_[i])]) {
                 throw std::invalid_argument("Link.axes[" + std::to_string(i) +
@@ -95,41 +94,49 @@ class Link {
 
     /// The plastic axes start unstrained where the bodies are now.
     void start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
-        locate(a, b);
-        rest_.setIdentity();
+        pose_.look(a, b);
+        pose_.set_rest(Matrix3<S>::Identity());
         const Vector6<S> q = strain();
         set_offset(q);
         turn_rest(q.template tail<3>());
     }
 
     /// Only looks where the bodies are now.
-    void look(const BodyState<S>& a, const BodyState<S>& b) noexcept { locate(a, b); }
+    void look(const BodyState<S>& a, const BodyState<S>& b) noexcept { pose_.look(a, b); }
 
     // ---- around the solve
+
+    /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
+    /// out of what it is shown.
+    [[nodiscard]] bool reads_mass() const noexcept {
+        if constexpr (one_axis) {
+            return joint_.parameters().stiffness != std::numeric_limits<S>::infinity();
+        } else {
+            return true;
+        }
+    }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
     /// per second, >= 0 [1/s]. A broken joint asks for no force at all.
     const Rows& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate) noexcept {
-        locate(a, b);
+        pose_.look(a, b);
         const Vector6<S> error = strain();
-        const Vector6<S> velocity = twist_in_b(a, b);
-        for (const JointAxis axis : all_joint_axes) {
-            const std::size_t i = index(axis);
-            const Vector3<S> direction = frame_b_.col(Eigen::Index(i % 3));
-            rows_[i] = {.direction = direction, .turns = turns(axis), .limits = {}};
-            rows_[i].limits.bias = -rate * error[Eigen::Index(i)];
-            if (broken()) rows_[i].limits = {.lower = 0, .upper = 0};
+        const bool whole = !broken();
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            rows_[i].direction = pose_.axes().col(Eigen::Index(i % 3));
+            rows_[i].turns = i >= 3;
+            rows_[i].limits = {.bias = -rate * error[Eigen::Index(i)]};
+            if (!whole) rows_[i].limits = {.lower = 0, .upper = 0};
         }
         offset_ = offset();
-        const Vector6<S> position = error + from_joint(offset_);
         if constexpr (one_axis) {
-            const auto i = Eigen::Index(index(axes_[0]));
-            const bool rigid = joint_.parameters().stiffness == std::numeric_limits<S>::infinity();
-            const S mass = rigid ? S(0) : row_mass(a, b)(0, 0);
-            rows_[std::size_t(i)].limits = joint_.prepare({position[i], velocity[i], mass}, dt);
+            const std::size_t i = index(axes_[0]);
+            const S mass = reads_mass() ? row_mass(a, b)(0, 0) : S(0);
+            rows_[i].limits = joint_.prepare(
+                {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass}, dt);
         } else {
-            const auto limits =
-                joint_.prepare({to_joint(position), to_joint(velocity), row_mass(a, b)}, dt);
+            const auto limits = joint_.prepare(
+                {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), row_mass(a, b)}, dt);
             for (std::size_t k = 0; k < limits.size(); ++k)
                 rows_[index(axes_[k])].limits = limits[k];
         }
@@ -140,25 +147,34 @@ class Link {
     /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it.
     const Step& commit(const BodyState<S>& a, const BodyState<S>& b, const JointWrench<S>& wrench,
                        S dt) noexcept {
+        Vector6<S> forces;
+        forces.template head<3>() = pose_.axes().transpose() * wrench.force;
+        forces.template tail<3>() = pose_.axes().transpose() * wrench.moment;
+        return commit_rows(a, b, forces, dt);
+    }
+    /// The same with the forces of the rows, in the order of JointAxis [N | N m].
+    const Step& commit_rows(const BodyState<S>& a, const BodyState<S>& b, const Vector6<S>& forces,
+                            S dt) noexcept {
         // velocities belong to the rows that were solved, positions to where the bodies are now
-        const Vector6<S> velocity = twist_in_b(a, b);
-        force_ << frame_b_.transpose() * wrench.force, frame_b_.transpose() * wrench.moment;
+        const Vector6<S> velocity = pose_.twist(a, b);
+        force_ = forces;
         certify_rigid_rows(a, velocity);
-        locate(a, b);
-        const Vector6<S> position = strain() + from_joint(offset_);
-        const Vector6<S> turned = twist_in_b(a, b); // the same velocities, as the next step sees them
+        pose_.look(a, b);
         if constexpr (one_axis) {
-            const auto i = Eigen::Index(index(axes_[0]));
-            last_ = joint_.commit({force_[i], velocity[i], position[i]}, dt);
-            joint_.carry(turned[i]);
-            flow_ = Vector6<S>::Unit(i);
+            const std::size_t axis = index(axes_[0]);
+            const auto i = Eigen::Index(axis);
+            last_ = joint_.commit({force_[i], velocity[i], strain_along(axis) + offset_[0]}, dt);
+            // the same velocity, as the next step sees it
+            joint_.carry(pose_.twist_along(axis, a, b));
         } else {
-            last_ = joint_.commit({to_joint(force_), to_joint(velocity), to_joint(position)}, dt);
-            joint_.carry(to_joint(turned));
-            flow_ = from_joint(last_.direction);
+            last_ = joint_.commit(
+                {to_joint(force_), to_joint(velocity), to_joint(strain()) + offset_}, dt);
+            joint_.carry(to_joint(pose_.twist(a, b)));
         }
-        const Vector6<S> flowed = from_joint(offset() - offset_);
-        turn_rest(flowed.template tail<3>());
+        const JointVector flowed = offset() - offset_;
+        if (!flowed.isZero(0)) {
+            turn_rest(Vector6<S>(from_joint(flowed)).template tail<3>());
+        }
         return last_;
     }
 
@@ -167,16 +183,17 @@ class Link {
     [[nodiscard]] BreakRelease<S> release(const BodyState<S>& a,
                                           const BodyState<S>& b) const noexcept {
         if (!(last_.release > 0)) return {};
-        return break_release(at_joint(a), at_joint(b), flow_in_world(), twist_in_world(a, b),
-                             last_.release);
+        return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
+                             pose_.in_world(pose_.twist(a, b)), last_.release);
     }
 
     /// The same as an impulse on A at the joint, for engines that take it as six given forces.
     [[nodiscard]] JointImpulse<S> release_impulse(const BodyState<S>& a,
                                                   const BodyState<S>& b) const noexcept {
         if (!(last_.release > 0)) return {};
-        return ductile::release_impulse(at_joint(a), at_joint(b), flow_in_world(),
-                                        twist_in_world(a, b), last_.release);
+        return ductile::release_impulse(pose_.at_joint(a), pose_.at_joint(b),
+                                        pose_.in_world(flow()), pose_.in_world(pose_.twist(a, b)),
+                                        last_.release);
     }
 
     /// The engine left the link out of a step; what the bodies did meanwhile is not to be taken for
@@ -196,23 +213,23 @@ class Link {
 
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
     [[nodiscard]] const Axes& axes() const noexcept { return axes_; }
-    [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return in_a_; }
-    [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return in_b_; }
+    [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
+    [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }
     [[nodiscard]] const Rows& rows() const noexcept { return rows_; } ///< of the last prepare
     [[nodiscard]] const Step& last() const noexcept { return last_; }
     [[nodiscard]] bool broken() const noexcept { return joint_.state().broken; }
     [[nodiscard]] bool is_plastic(JointAxis axis) const noexcept { return plastic_[index(axis)]; }
 
-    /// Where the joint was when last looked at, world axes [m].
-    [[nodiscard]] const Vector3<S>& point() const noexcept { return joint_point_; }
-    /// Axes of frame B when last looked at: columns, world.
-    [[nodiscard]] const Matrix3<S>& axes_in_world() const noexcept { return frame_b_; }
+    /// Where the joint was when last looked at.
+    [[nodiscard]] const LinkPose<S>& pose() const noexcept { return pose_; }
+    [[nodiscard]] const Vector3<S>& point() const noexcept { return pose_.point(); }
+    [[nodiscard]] const Matrix3<S>& axes_in_world() const noexcept { return pose_.axes(); }
 
     /// Velocities of the six rows if the bodies moved as these do, at the joint and along the axes
     /// of the last look [m/s | rad/s].
     [[nodiscard]] Vector6<S> velocities(const BodyState<S>& a,
                                         const BodyState<S>& b) const noexcept {
-        return twist_in_b(a, b);
+        return pose_.twist(a, b);
     }
     /// Position of A in frame B: d, and rotation angles that go on over many turns; of a rigid axis
     /// what it is off by [m | rad].
@@ -237,10 +254,10 @@ class Link {
                                                                    : last_.outcome;
     }
 
-    [[nodiscard]] State state() const noexcept { return {joint_.state(), rest_}; }
+    [[nodiscard]] State state() const noexcept { return {joint_.state(), pose_.rest()}; }
     void restore(const State& state) noexcept {
         joint_.restore(state.joint);
-        rest_ = state.rest;
+        pose_.set_rest(state.rest);
     }
 
   private:
@@ -248,56 +265,37 @@ class Link {
     using JointVector = Eigen::Matrix<S, dimension, 1>;
     using JointMatrix = Eigen::Matrix<S, dimension, dimension>;
 
-    /// Frames and arms from the bodies' present transforms.
-    void locate(const BodyState<S>& a, const BodyState<S>& b) noexcept {
-        frame_b_ = b.orientation * in_b_.axes;
-        arm_a_ = a.orientation * in_a_.origin;
-        joint_point_ = a.position + arm_a_;
-        arm_b_ = joint_point_ - b.position;
-        displacement_ = frame_b_.transpose() * (arm_b_ - b.orientation * in_b_.origin);
-        orientation_ = frame_b_.transpose() * (a.orientation * in_a_.axes);
-    }
-
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept {
         Vector6<S> result;
-        result << displacement_, rotation_vector<S>(orientation_ * rest_.transpose());
-        const Vector6<S> offset_now = from_joint(offset());
-        result.template head<3>() -= offset_now.template head<3>();
+        result.template head<3>() = pose_.displacement();
+        result.template tail<3>() = pose_.elastic_rotation();
+        for (std::size_t k = 0; k < axes_.size(); ++k) {
+            const auto i = Eigen::Index(index(axes_[k]));
+            if (i < 3) result[i] -= offset()[Eigen::Index(k)];
+        }
         return result;
     }
-
-    /// Twist of A minus B at the joint, along the axes of frame B of the last look [m/s, rad/s].
-    [[nodiscard]] Vector6<S> twist_in_b(const BodyState<S>& a,
-                                        const BodyState<S>& b) const noexcept {
-        Vector6<S> result;
-        result << frame_b_.transpose() *
-                      (a.velocity + a.spin.cross(arm_a_) - b.velocity - b.spin.cross(arm_b_)),
-            frame_b_.transpose() * (a.spin - b.spin);
-        return result;
+    /// One entry of it, of a joint with one axis.
+    [[nodiscard]] S strain_along(std::size_t axis) const noexcept {
+        if (axis >= 3) return pose_.elastic_rotation()[Eigen::Index(axis - 3)];
+        return pose_.displacement()[Eigen::Index(axis)] - offset()[0];
     }
 
-    [[nodiscard]] Vector6<S> in_world(const Vector6<S>& of_frame_b) const noexcept {
-        Vector6<S> result;
-        result << frame_b_ * of_frame_b.template head<3>(),
-            frame_b_ * of_frame_b.template tail<3>();
-        return result;
-    }
-    [[nodiscard]] Vector6<S> flow_in_world() const noexcept { return in_world(flow_); }
-    [[nodiscard]] Vector6<S> twist_in_world(const BodyState<S>& a,
-                                            const BodyState<S>& b) const noexcept {
-        return in_world(twist_in_b(a, b));
-    }
-
-    [[nodiscard]] BodyAtJoint<S> at_joint(const BodyState<S>& body) const noexcept {
-        return {body.inverse_mass, body.inverse_inertia, joint_point_ - body.position};
+    /// Direction of the last flow, axes of frame B.
+    [[nodiscard]] Vector6<S> flow() const noexcept {
+        if constexpr (one_axis) {
+            return Vector6<S>::Unit(Eigen::Index(index(axes_[0])));
+        } else {
+            return from_joint(last_.direction);
+        }
     }
 
     /// M; the identity where the bodies cannot tell (both without mass on some axis).
     [[nodiscard]] JointMatrix row_mass(const BodyState<S>& a,
                                        const BodyState<S>& b) const noexcept {
         const Matrix6<S> mass =
-            inverse_mass_of_rows(a, b, joint_point_, frame_b_).partialPivLu().inverse();
+            inverse_by_blocks(inverse_mass_of_rows(a, b, pose_.point(), pose_.axes()));
         JointMatrix result;
         for (int i = 0; i < dimension; ++i) {
             for (int j = 0; j < dimension; ++j) {
@@ -310,19 +308,19 @@ class Link {
     }
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept {
-        const S moving = (a.velocity + a.spin.cross(arm_a_)).norm();
-        const S turning = a.spin.norm();
-        rigid_residual_ = 0;
-        rigid_unsolved_ = false;
+        std::array<S, 2> worst{}; // of translations and rotations
         for (std::size_t i = 0; i < rows_.size(); ++i) {
             if (plastic_[i]) continue;
             const S residual = std::abs(velocity[Eigen::Index(i)] - rows_[i].limits.bias);
-            const S allowed =
-                joint_.parameters().absolute_residual +
-                joint_.parameters().relative_residual * (rows_[i].turns ? turning : moving);
-            rigid_residual_ = std::max(rigid_residual_, residual);
-            rigid_unsolved_ = rigid_unsolved_ || residual > allowed;
+            worst[i / 3] = std::max(worst[i / 3], residual);
         }
+        rigid_residual_ = std::max(worst[0], worst[1]);
+        const auto& allowed = joint_.parameters();
+        rigid_unsolved_ =
+            rigid_residual_ > allowed.absolute_residual &&
+            (worst[0] >
+                 allowed.absolute_residual + allowed.relative_residual * pose_.speed_of_a(a) ||
+             worst[1] > allowed.absolute_residual + allowed.relative_residual * a.spin.norm());
     }
 
     /// Turns the rest orientation by what flowed about the plastic axes [rad].
@@ -331,11 +329,7 @@ class Link {
         for (int i = 0; i < 3; ++i) {
             if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
         }
-        const S angle = turn.norm();
-        if (!(angle > 0)) return;
-        const Eigen::Quaternion<S> turned =
-            Eigen::AngleAxis<S>(angle, turn / angle) * Eigen::Quaternion<S>(rest_);
-        rest_ = turned.normalized().toRotationMatrix();
+        pose_.set_rest(turn.isZero(0) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
     }
 
     // ---- between the joint's rows and the six axes
@@ -375,22 +369,12 @@ class Link {
     Joint joint_;
     Axes axes_;
     std::array<bool, 6> plastic_{};
-    JointFrame<S> in_a_, in_b_;
-    Matrix3<S> rest_ = Matrix3<S>::Identity(); ///< R_p
-
-    // as last looked at
-    Matrix3<S> frame_b_ = Matrix3<S>::Identity(); ///< axes of frame B, world
-    Vector3<S> joint_point_ = Vector3<S>::Zero(); ///< world [m]
-    Vector3<S> arm_a_ = Vector3<S>::Zero();       ///< joint minus centre of mass, world [m]
-    Vector3<S> arm_b_ = Vector3<S>::Zero();
-    Vector3<S> displacement_ = Vector3<S>::Zero();    ///< d
-    Matrix3<S> orientation_ = Matrix3<S>::Identity(); ///< R
+    LinkPose<S> pose_;
 
     // between prepare and commit, and what the last step did
     Rows rows_{};
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
     Vector6<S> force_ = Vector6<S>::Zero();    ///< axes of frame B [N | N m]
-    Vector6<S> flow_ = Vector6<S>::Zero();     ///< direction of the last flow, axes of frame B
     Step last_{};
     S rigid_residual_ = 0;
     bool rigid_unsolved_ = false;

@@ -51,17 +51,12 @@ template <std::floating_point S>
 [[nodiscard]] Matrix6<S> inverse_mass_of_rows(const BodyState<S>& a, const BodyState<S>& b,
                                               const Vector3<S>& joint,
                                               const Matrix3<S>& axes_in_world) noexcept {
-    const Matrix6<S> k = inverse_mass_at_joint(
-        BodyAtJoint<S>{a.inverse_mass, a.inverse_inertia, joint - a.position},
-        BodyAtJoint<S>{b.inverse_mass, b.inverse_inertia, joint - b.position});
-    Matrix6<S> turned;
-    for (int row = 0; row < 6; row += 3) {
-        for (int column = 0; column < 6; column += 3) {
-            turned.template block<3, 3>(row, column) =
-                axes_in_world.transpose() * k.template block<3, 3>(row, column) * axes_in_world;
-        }
-    }
-    return turned;
+    const auto along_axes = [&](const BodyState<S>& body) noexcept {
+        const Matrix3<S> inertia = axes_in_world.transpose() * body.inverse_inertia * axes_in_world;
+        return BodyAtJoint<S>{body.inverse_mass, inertia,
+                              axes_in_world.transpose() * (joint - body.position)};
+    };
+    return inverse_mass_at_joint(along_axes(a), along_axes(b));
 }
 
 } // namespace ductile

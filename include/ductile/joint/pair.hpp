@@ -25,6 +25,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 #include <concepts>
 
@@ -72,19 +73,45 @@ template <std::floating_point S>
 template <std::floating_point S>
 [[nodiscard]] Matrix6<S> inverse_mass_at_joint(const BodyAtJoint<S>& a,
                                                const BodyAtJoint<S>& b) noexcept {
-    Matrix6<S> k = Matrix6<S>::Zero();
+    Matrix3<S> moving = Matrix3<S>::Identity() * (a.inverse_mass + b.inverse_mass);
+    Matrix3<S> turned = Matrix3<S>::Zero(); // [r]ₓ I⁻¹; its transpose is -I⁻¹ [r]ₓ
     for (const BodyAtJoint<S>* body : {&a, &b}) {
-        Matrix3<S> cross;
-        cross << 0, -body->arm.z(), body->arm.y(), body->arm.z(), 0, -body->arm.x(), -body->arm.y(),
-            body->arm.x(), 0;
-        const Matrix3<S> turned = body->inverse_inertia * cross;
-        k.template topLeftCorner<3, 3>() +=
-            body->inverse_mass * Matrix3<S>::Identity() - cross * turned;
-        k.template topRightCorner<3, 3>() -= cross * body->inverse_inertia;
-        k.template bottomLeftCorner<3, 3>() += turned;
-        k.template bottomRightCorner<3, 3>() += body->inverse_inertia;
+        Matrix3<S> own;
+        for (int i = 0; i < 3; ++i) own.col(i) = body->arm.cross(body->inverse_inertia.col(i));
+        turned += own;
+        // [r]ₓ ([r]ₓ I⁻¹)ᵀ = -[r]ₓ I⁻¹ [r]ₓ
+        for (int i = 0; i < 3; ++i) {
+            const Vector3<S> row = own.row(i);
+            moving.col(i) += body->arm.cross(row);
+        }
     }
+    Matrix6<S> k;
+    k.template topLeftCorner<3, 3>() = moving;
+    k.template topRightCorner<3, 3>() = -turned;
+    k.template bottomLeftCorner<3, 3>() = -turned.transpose();
+    k.template bottomRightCorner<3, 3>() = a.inverse_inertia + b.inverse_inertia;
     return k;
+}
+
+/// Inverse of a symmetric, positive definite 6×6 matrix such as K, by its 3×3 blocks; not finite
+/// where it has none.
+///
+///   [ P  Q  ]⁻¹   [  Z           -Z Q R⁻¹             ]
+///   [ Qᵀ R  ]   = [ -R⁻¹ Qᵀ Z    R⁻¹ + R⁻¹ Qᵀ Z Q R⁻¹ ],   Z = (P - Q R⁻¹ Qᵀ)⁻¹
+template <std::floating_point S>
+[[nodiscard]] Matrix6<S> inverse_by_blocks(const Matrix6<S>& k) noexcept {
+    const Matrix3<S> q = k.template topRightCorner<3, 3>();
+    const Matrix3<S> r = k.template bottomRightCorner<3, 3>().inverse();
+    const Matrix3<S> qr = q * r;
+    const Matrix3<S> z =
+        Matrix3<S>(k.template topLeftCorner<3, 3>() - qr * q.transpose()).inverse();
+    const Matrix3<S> zqr = z * qr;
+    Matrix6<S> result;
+    result.template topLeftCorner<3, 3>() = z;
+    result.template topRightCorner<3, 3>() = -zqr;
+    result.template bottomLeftCorner<3, 3>() = -zqr.transpose();
+    result.template bottomRightCorner<3, 3>() = r + qr.transpose() * zqr;
+    return result;
 }
 
 /// h: impulse that changes the velocity along the unit `axis` by one, changes none along the

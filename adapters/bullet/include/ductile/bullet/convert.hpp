@@ -9,6 +9,7 @@
 #include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>
 
+#include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/pair.hpp"
 
@@ -32,12 +33,18 @@ namespace ductile::bullet {
     return {to_core(frame.getOrigin()), to_core(frame.getBasis())};
 }
 
+/// Place and velocities of the body as they are now, without its mass.
+[[nodiscard]] inline BodyState<double> body_motion(const btRigidBody& body) noexcept {
+    const btTransform& at = body.getCenterOfMassTransform();
+    return {.position = to_core(at.getOrigin()),
+            .orientation = to_core(at.getBasis()),
+            .velocity = to_core(body.getLinearVelocity()),
+            .spin = to_core(body.getAngularVelocity())};
+}
+
 /// The body as it is now. Static and kinematic bodies cannot be moved by a joint.
 [[nodiscard]] inline BodyState<double> body_state(const btRigidBody& body) noexcept {
-    BodyState<double> state{.position = to_core(body.getCenterOfMassPosition()),
-                            .orientation = to_core(body.getCenterOfMassTransform().getBasis()),
-                            .velocity = to_core(body.getLinearVelocity()),
-                            .spin = to_core(body.getAngularVelocity())};
+    BodyState<double> state = body_motion(body);
     if (!body.isStaticOrKinematicObject()) {
         state.inverse_mass = double(body.getInvMass());
         state.inverse_inertia = to_core(body.getInvInertiaTensorWorld());
@@ -45,16 +52,21 @@ namespace ductile::bullet {
     return state;
 }
 
-/// The body where it is now, with the velocities that the last tick left it: Bullet keeps them as
+/// Where the body is now, with the velocities that the last tick left it: Bullet keeps them as
 /// its interpolation velocities, whoever changed the velocities since (damping at the start of the
-/// next tick, for one).
-[[nodiscard]] inline BodyState<double> body_state_of_last_tick(const btRigidBody& body) noexcept {
-    BodyState<double> state = body_state(body);
+/// next tick, for one). Without its mass.
+[[nodiscard]] inline BodyState<double> body_motion_of_last_tick(const btRigidBody& body) noexcept {
+    BodyState<double> state = body_motion(body);
     if (!body.isStaticOrKinematicObject()) {
         state.velocity = to_core(body.getInterpolationLinearVelocity());
         state.spin = to_core(body.getInterpolationAngularVelocity());
     }
     return state;
+}
+
+/// What the solvers move the body by.
+[[nodiscard]] inline PrincipalMass<double> principal_mass(const btRigidBody& body) noexcept {
+    return {double(body.getInvMass()), to_core(body.getInvInertiaDiagLocal())};
 }
 
 /// The velocities that the body would have after a tick of `dt` [s] if nothing held it.

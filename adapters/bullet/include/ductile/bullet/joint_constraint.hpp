@@ -11,7 +11,9 @@
 //   Only with `add_to` may bodies be moved by hand (not only given velocities) between a tick and
 //   what comes first.
 //
-// Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance.
+// Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance,
+// and how rigid rows are combined. Sequential impulse is spared the sweeps that would change
+// nothing where the constraint was added by `add_to` (sweep_watch.hpp).
 //
 // Traps of Bullet 3.24 that this header deals with
 //   - The solver leaves the impulse of a constraint's last row in `m_appliedImpulse`: with one
@@ -32,6 +34,7 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -42,6 +45,8 @@
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/reaction.hpp"
+#include "ductile/bullet/sweep_watch.hpp"
+#include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/link.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -115,14 +120,15 @@ class JointConstraint : public PlasticConstraint {
     /// All that the joint remembers: with the bodies' transforms and velocities a run goes on from
     /// it bit for bit. state_bytes.hpp turns it into bytes.
     [[nodiscard]] State state() { return settled().state(); }
-    /// To be called when the bodies are back where they were. Also mends a broken joint where `state` is from before the break, and breaks it where it is
-    /// from after. Forces, outcome and residuals of the last tick are not restored.
+    /// To be called when the bodies are back where they were. Also mends a broken joint where
+    /// `state` is from before the break, and breaks it where it is from after. Forces, outcome and
+    /// residuals of the last tick are not restored.
     void restore(const State& state) {
         const bool was_broken = link_.broken();
         open_ = Open::nothing;
         release_ = {};
         link_.restore(state);
-        link_.look(body_state(m_rbA), body_state(m_rbB));
+        link_.look(body_motion(m_rbA), body_motion(m_rbB));
         if (link_.broken() != was_broken) setEnabled(was_broken);
     }
 
@@ -141,7 +147,8 @@ class JointConstraint : public PlasticConstraint {
 
     [[nodiscard]] JointReport<double> report() override {
         settle();
-        const auto now = link_report(link_, link_.velocities(body_state(m_rbA), body_state(m_rbB)));
+        const auto now =
+            link_report(link_, link_.velocities(body_motion(m_rbA), body_motion(m_rbB)));
         return acts() ? now : idle_report(now);
     }
 
@@ -149,6 +156,7 @@ class JointConstraint : public PlasticConstraint {
 
     /// Bullet's own: called for every constraint when a tick opens.
     void buildJacobian() override {
+        sweeps_.close();
         if (reads_ == Reads::all_rows && m_jointFeedback == nullptr) m_jointFeedback = &feedback_;
         settle_late(true);
     }
@@ -165,10 +173,23 @@ class JointConstraint : public PlasticConstraint {
             return;
         }
         const double erp = double(rigid_erp_ < 0 ? info->erp : rigid_erp_);
-        link_.prepare(body_state(m_rbA), body_state(m_rbB), dt_, erp * double(info->fps));
+        const bool masses = link_.reads_mass();
+        link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
+                      masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
+                      erp * double(info->fps));
         if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
-        write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact());
+        if (dimension < 6 && all_hard(link_)) {
+            write_hard_rows(*info, link_, order_, decoupled());
+        } else {
+            write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact());
+        }
+        sweeps_.open(*info, 6, world_);
         open_ = Open::tick;
+    }
+
+    /// Bullet's own: sequential impulse calls it after each sweep.
+    void solveConstraintObsolete(btSolverBody& a, btSolverBody& b, btScalar) override {
+        sweeps_.look(a, b);
     }
 
     /// BT_CONSTRAINT_ERP and BT_CONSTRAINT_STOP_ERP: share of the rigid rows' error that is removed
@@ -198,14 +219,10 @@ class JointConstraint : public PlasticConstraint {
           frame_in_a_(frame_in_a),
           frame_in_b_(frame_in_b),
           link_(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)),
-          reads_(reads) {
-        std::size_t row = 0;
-        for (const JointAxis axis : all_joint_axes) {
-            if (!link_.is_plastic(axis)) order_[row++] = index(axis);
-        }
-        for (const JointAxis axis : axes) order_[row++] = index(axis);
+          reads_(reads),
+          order_(rigid_rotations_first(axes)) {
         if (reads_ == Reads::all_rows) m_jointFeedback = &feedback_;
-        link_.start(body_state(m_rbA), body_state(m_rbB));
+        link_.start(body_motion(m_rbA), body_motion(m_rbB));
     }
     ~JointConstraint() override = default;
 
@@ -217,9 +234,7 @@ class JointConstraint : public PlasticConstraint {
 
     /// Reaction on A in the last tick, nothing once the joint is broken: the force of a break is
     /// that of its FractureEvent [N | N m].
-    double reaction_along(JointAxis axis) {
-        return settled().broken() ? 0 : link_.force(axis);
-    }
+    double reaction_along(JointAxis axis) { return settled().broken() ? 0 : link_.force(axis); }
 
   private:
     static constexpr bool one_axis = !requires { Joint::dimension; };
@@ -243,12 +258,12 @@ class JointConstraint : public PlasticConstraint {
 
     /// Commits the open tick at its end, with the bodies as they are.
     void settle_now() {
-        if (open_ != Open::nothing) settle(body_state(m_rbA), body_state(m_rbB), false);
+        if (open_ != Open::nothing) settle(body_motion(m_rbA), body_motion(m_rbB), false);
     }
     /// Commits the open tick some time after it.
     void settle_late(bool in_solver) {
         if (open_ == Open::nothing) return;
-        settle(body_state_of_last_tick(m_rbA), body_state_of_last_tick(m_rbB), in_solver);
+        settle(body_motion_of_last_tick(m_rbA), body_motion_of_last_tick(m_rbB), in_solver);
     }
     void settle() { settle_late(false); }
 
@@ -256,7 +271,7 @@ class JointConstraint : public PlasticConstraint {
         const Open was = std::exchange(open_, Open::nothing);
         if (was == Open::hand_back) setEnabled(false);
         if (was != Open::tick) return;
-        if (link_.commit(a, b, reaction(), dt_).outcome != Outcome::broken) return;
+        if (link_.commit_rows(a, b, reaction(), dt_).outcome != Outcome::broken) return;
         const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
         release_ = link_.release(now_a, now_b);
         if (in_solver && release_.energy > 0) {
@@ -271,9 +286,9 @@ class JointConstraint : public PlasticConstraint {
         }
     }
 
-    /// What the six rows put on A. With one plastic row its force is exact; the others are as exact
-    /// as joint feedback.
-    [[nodiscard]] JointWrench<double> reaction() {
+    /// Forces of the six rows on A. With one plastic row its force is exact; the others are as
+    /// exact as joint feedback, and zero where that is not read.
+    [[nodiscard]] Vector6<double> reaction() {
         Vector6<double> forces = Vector6<double>::Zero();
         if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
             forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows());
@@ -281,12 +296,48 @@ class JointConstraint : public PlasticConstraint {
         if constexpr (one_axis) {
             forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
         }
-        JointWrench<double> wrench;
-        for (std::size_t i = 0; i < 6; ++i) {
-            const LinkRow<double>& row = link_.rows()[i];
-            (row.turns ? wrench.moment : wrench.force) += row.direction * forces[Eigen::Index(i)];
+        return forces;
+    }
+
+    /// Bullet's order of rows, by axis: turning ones first, as their combination with the others is
+    /// the sparsest; those of the joint last.
+    static std::array<std::size_t, 6> rigid_rotations_first(const Axes& axes) {
+        std::array<std::size_t, 6> order{};
+        std::size_t row = 0;
+        for (const bool turning : {true, false}) {
+            for (const JointAxis axis : all_joint_axes) {
+                const bool plastic = std::find(axes.begin(), axes.end(), axis) != axes.end();
+                if (!plastic && turns(axis) == turning) order[row++] = index(axis);
+            }
         }
-        return wrench;
+        for (const JointAxis axis : axes) order[row++] = index(axis);
+        return order;
+    }
+    /// The rows as they do not push each other: of the joint as it is where it flows, else as it is
+    /// at rest, which stays the same for as long as it holds. Both are functions of what a restored
+    /// joint has as well.
+    [[nodiscard]] const CombinedRows<double>& decoupled() {
+        const LinkPose<double>& pose = link_.pose();
+        const PrincipalMass<double> a = principal_mass(m_rbA), b = principal_mass(m_rbB);
+        const bool flowing = link_.joint().state().flowing;
+        const bool known = !flowing && !combined_flowing_ && combined_at_ == pose.rest_changes() &&
+                           combined_a_ == a && combined_b_ == b;
+        if (known) return combined_;
+        combined_flowing_ = flowing;
+        combined_at_ = pose.rest_changes();
+        combined_a_ = a;
+        combined_b_ = b;
+        Vector3<double> offset = Vector3<double>::Zero();
+        for (const JointAxis axis : link_.axes()) {
+            if (!turns(axis)) offset[Eigen::Index(index(axis))] = link_.plastic_offset(axis);
+        }
+        // a solver drops rows with less than its epsilon
+        constexpr double least = 4 * double(SIMD_EPSILON);
+        const Matrix6<double> k =
+            flowing ? inverse_mass_along_b(pose, pose.orientation(), pose.displacement(), a, b)
+                    : inverse_mass_along_b(pose, pose.rest(), offset, a, b);
+        combined_ = decoupled_rows<6 - dimension>(k, order_, least);
+        return combined_;
     }
 
     btTransform frame_in_a_;
@@ -296,7 +347,12 @@ class JointConstraint : public PlasticConstraint {
     CommitAction action_{*this};
     btJointFeedback feedback_;
     ReactionArm reaction_arm_;
-    std::array<std::size_t, 6> order_{}; ///< axis of each row
+    std::array<std::size_t, 6> order_; ///< axis of each row
+    CombinedRows<double> combined_;    ///< as below
+    PrincipalMass<double> combined_a_, combined_b_;
+    unsigned combined_at_ = 0;     ///< LinkPose::rest_changes
+    bool combined_flowing_ = true; ///< or never worked out
+    SweepWatch sweeps_;
     BreakRelease<double> release_;
     JointImpulse<double> handed_; ///< what Open::hand_back gives
     double dt_ = 0;

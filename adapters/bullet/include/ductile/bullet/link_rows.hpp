@@ -8,7 +8,8 @@
 //   where
 //                   nothing else acts on the two bodies within the step.
 // Where that is not right (a chain of stiff rows; btMLCPSolver, which does not read C m) the row
-// misses u' + C λ = b, and the joint's certificate says so.
+// misses u' + C λ = b, and the joint's certificate says so. Where no row is soft, the rigid ones
+// are combined so that they do not push each other (decoupled_rows.hpp).
 //
 // btMLCPSolver also wants bounds that enclose zero: for solvers other than our own a given force is
 // a row of bounds 0 and f whose target velocity is out of reach.
@@ -29,25 +30,33 @@
 #include <cstddef>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/isolated_pair.hpp"
 #include "ductile/joint/link.hpp"
 
 namespace ductile::bullet {
 
-/// Jacobian of a force along, or a moment about, `direction` at the point `joint`, world axes.
-inline void write_direction(btTypedConstraint::btConstraintInfo2& info, int row,
-                            const btRigidBody& a, const btRigidBody& b,
-                            const Vector3<double>& joint, const Vector3<double>& direction,
-                            bool turns) noexcept {
-    const btVector3 n = to_bullet(direction), at_joint = to_bullet(joint);
-    const btVector3 on_a = turns ? n : (at_joint - a.getCenterOfMassPosition()).cross(n);
-    const btVector3 on_b = turns ? -n : -(at_joint - b.getCenterOfMassPosition()).cross(n);
-    const int at = row * info.rowskip;
+/// Jacobian of a moment about `about`, world axes. `at`: where the row's entries begin.
+inline void write_moment(btTypedConstraint::btConstraintInfo2& info, int at,
+                         const Vector3<double>& about) noexcept {
     for (int i = 0; i < 3; ++i) {
-        info.m_J1linearAxis[at + i] = turns ? btScalar(0) : n[i];
-        info.m_J2linearAxis[at + i] = turns ? btScalar(0) : -n[i];
-        info.m_J1angularAxis[at + i] = on_a[i];
-        info.m_J2angularAxis[at + i] = on_b[i];
+        info.m_J1linearAxis[at + i] = info.m_J2linearAxis[at + i] = 0;
+        info.m_J1angularAxis[at + i] = btScalar(about[i]);
+        info.m_J2angularAxis[at + i] = btScalar(-about[i]);
+    }
+}
+
+/// Jacobian of a force along `along` at the joint and a moment about `about`, world axes; `arm_a`,
+/// `arm_b`: joint minus centres of mass.
+inline void write_jacobian(btTypedConstraint::btConstraintInfo2& info, int at,
+                           const Vector3<double>& arm_a, const Vector3<double>& arm_b,
+                           const Vector3<double>& along, const Vector3<double>& about) noexcept {
+    const Vector3<double> on_a = arm_a.cross(along) + about, on_b = arm_b.cross(along) + about;
+    for (int i = 0; i < 3; ++i) {
+        info.m_J1linearAxis[at + i] = btScalar(along[i]);
+        info.m_J1angularAxis[at + i] = btScalar(on_a[i]);
+        info.m_J2linearAxis[at + i] = btScalar(-along[i]);
+        info.m_J2angularAxis[at + i] = btScalar(-on_b[i]);
     }
 }
 
@@ -66,9 +75,17 @@ inline void write_given(btTypedConstraint::btConstraintInfo2& info, int row,
 inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
                           const btRigidBody& b, const Vector3<double>& joint,
                           const JointImpulse<double>& impulse) noexcept {
+    const Vector3<double> arm_a = joint - to_core(a.getCenterOfMassPosition());
+    const Vector3<double> arm_b = joint - to_core(b.getCenterOfMassPosition());
+    const Vector3<double> none = Vector3<double>::Zero();
     for (int row = 0; row < 6; ++row) {
         const bool turns = row >= 3;
-        write_direction(info, row, a, b, joint, Vector3<double>::Unit(row % 3), turns);
+        const Vector3<double> unit = Vector3<double>::Unit(row % 3);
+        if (turns) {
+            write_moment(info, row * info.rowskip, unit);
+        } else {
+            write_jacobian(info, row * info.rowskip, arm_a, arm_b, unit, none);
+        }
         write_given(info, row, (turns ? impulse.angular : impulse.linear)[row % 3]);
     }
 }
@@ -88,6 +105,54 @@ inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRi
     return sum;
 }
 
+/// Impulse of a force over a step, within what Bullet takes for infinite [N s | N m s].
+[[nodiscard]] inline btScalar as_impulse(double force, double dt) noexcept {
+    return btScalar(std::clamp(force * dt, -double(SIMD_INFINITY), double(SIMD_INFINITY)));
+}
+
+/// True where no row of the link's last `prepare` is soft or given.
+template <class Joint>
+[[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
+    for (const JointAxis axis : link.axes()) {
+        const RowLimits<double>& limits = link.rows()[index(axis)].limits;
+        if (limits.compliance > 0 || !(limits.lower < limits.upper)) return false;
+    }
+    return true;
+}
+
+/// Hard rows of the link's last `prepare`, combined as `combined` says; that of axis `order[i]` is
+/// row i.
+template <class Joint>
+void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Joint>& link,
+                     const std::array<std::size_t, 6>& order,
+                     const CombinedRows<double>& combined) noexcept {
+    const LinkPose<double>& pose = link.pose();
+    const auto& rows = link.rows();
+    const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
+    const Vector3<double> turning(rows[3].limits.bias, rows[4].limits.bias, rows[5].limits.bias);
+    int at = 0;
+    for (const CombinedRow<double>& row : combined) {
+        const Vector3<double> about = pose.axes() * row.moment;
+        double target = row.moment.dot(turning);
+        if (row.force.isZero(0)) {
+            write_moment(info, at, about);
+        } else {
+            write_jacobian(info, at, pose.arm_a(), pose.arm_b(), pose.axes() * row.force, about);
+            target += row.force.dot(moving);
+        }
+        info.m_constraintError[at] = btScalar(target);
+        info.cfm[at] = 0;
+        at += info.rowskip;
+    }
+    // Bullet leaves a row without bounds
+    const double dt = 1 / double(info.fps);
+    for (int row = 6 - Link<Joint>::dimension; row < 6; ++row) {
+        const RowLimits<double>& limits = rows[order[std::size_t(row)]].limits;
+        info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
+        info.m_upperLimit[row * info.rowskip] = as_impulse(limits.upper, dt);
+    }
+}
+
 /// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver
 /// honours C.
 template <class Joint>
@@ -96,9 +161,6 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
                 const std::array<std::size_t, 6>& order, bool exact) noexcept {
     constexpr double largest_slack = 0.5; // C m
     const double dt = 1 / double(info.fps);
-    const auto impulse = [dt](double force) {
-        return btScalar(std::clamp(force * dt, -double(SIMD_INFINITY), double(SIMD_INFINITY)));
-    };
     Vector6<double> alone = Vector6<double>::Zero();
     bool solved_alone = false;
     const auto force_alone = [&](std::size_t axis) {
@@ -115,11 +177,16 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
         const std::size_t axis = order[std::size_t(row)];
         const LinkRow<double>& wanted = link.rows()[axis];
         const RowLimits<double>& limits = wanted.limits;
-        write_direction(info, row, a, b, link.point(), wanted.direction, wanted.turns);
         const int at = row * info.rowskip;
+        if (wanted.turns) {
+            write_moment(info, at, wanted.direction);
+        } else {
+            write_jacobian(info, at, link.pose().arm_a(), link.pose().arm_b(), wanted.direction,
+                           Vector3<double>::Zero());
+        }
         info.m_constraintError[at] = btScalar(limits.bias);
-        info.m_lowerLimit[at] = impulse(limits.lower);
-        info.m_upperLimit[at] = impulse(limits.upper);
+        info.m_lowerLimit[at] = as_impulse(limits.lower, dt);
+        info.m_upperLimit[at] = as_impulse(limits.upper, dt);
         info.cfm[at] = btScalar(limits.compliance);
         if (exact) continue;
         if (limits.lower == limits.upper) write_given(info, row, limits.lower * dt);

@@ -211,23 +211,24 @@ class MotorAxis {
     }
 
     /// Distance of B's half of the pin from A's [m]: what ODE pulls together by its ERP; NaN for
-    /// kinds without a pin of their own.
-    [[nodiscard]] Vector3<double> pin_error() const {
-        dVector3 first, second;
+    /// kinds without a pin of their own. `point`: as returned by point().
+    [[nodiscard]] Vector3<double> pin_error(const Vector3<double>& point) const {
+        dVector3 other;
         switch (kind_) {
             case dJointTypeHinge:
-                dJointGetHingeAnchor(joint_, first);
-                dJointGetHingeAnchor2(joint_, second);
-                break;
+                if (bodies_.reversed) {
+                    dJointGetHingeAnchor(joint_, other);
+                } else {
+                    dJointGetHingeAnchor2(joint_, other);
+                }
+                return to_core(other) - point;
             case dJointTypeUniversal:
-                dJointGetUniversalAnchor(joint_, first);
-                dJointGetUniversalAnchor2(joint_, second);
-                break;
+                dJointGetUniversalAnchor2(joint_, other);
+                return bodies_.reversed ? Vector3<double>(point - to_core(other))
+                                        : Vector3<double>(to_core(other) - point);
             default:
                 return Vector3<double>::Constant(std::nan(""));
         }
-        const Vector3<double> apart = to_core(second) - to_core(first);
-        return bodies_.reversed ? Vector3<double>(-apart) : apart;
     }
 
     friend MotorAxis hinge_axis(dJointID hinge);

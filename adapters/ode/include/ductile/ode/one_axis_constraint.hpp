@@ -35,7 +35,7 @@
 
 #include <ode/ode.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -46,6 +46,7 @@
 #include "ductile/joint/pair.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/motor_axis.hpp"
+#include "ductile/ode/motor_pose.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world.hpp"
 
@@ -79,12 +80,8 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] bool broken() const { return joint_.state().broken; }
     /// Unreliable where the solver left the plastic row or one of the rigid ones unsolved.
     [[nodiscard]] Outcome outcome() const {
-        const auto& p = joint_.parameters();
-        const bool unsolved = rigid_residual_.head<3>().norm() >
-                                  p.absolute_residual + p.relative_residual * speed_[0] ||
-                              rigid_residual_.tail<3>().norm() >
-                                  p.absolute_residual + p.relative_residual * speed_[1];
-        return unsolved && last_.outcome != Outcome::broken ? Outcome::unreliable : last_.outcome;
+        return rigid_unsolved_ && last_.outcome != Outcome::broken ? Outcome::unreliable
+                                                                   : last_.outcome;
     }
     /// Certificate: violation of the plastic row in the last step, and the largest so far
     /// [m/s | rad/s].
@@ -97,7 +94,8 @@ class OneAxisConstraint : public PlasticConstraint {
         auto now =
             joint_report(joint_, last_, broken() ? Outcome::broken : outcome(), rigid_residual());
         if (broken() || !row_.attached() || dJointIsEnabled(id()) == 0) return now;
-        (row_.turns() ? now.rotation_rate : now.elongation_rate) = std::abs(row_.velocity());
+        const double velocity = is_where_left() ? pose_.velocity(row_) : row_.velocity();
+        (row_.turns() ? now.rotation_rate : now.elongation_rate) = std::abs(velocity);
         return now;
     }
     /// True where one of the bodies was destroyed or the joint was attached anew: the row does
@@ -142,10 +140,11 @@ class OneAxisConstraint : public PlasticConstraint {
             return;
         }
         acting_ = true;
-        locate();
-        follow_hands();
-        const double velocity = row_velocity();
-        Motion<double> motion{position_, velocity};
+        if (restored_ || !is_where_left()) {
+            pose_.look(row_);
+            follow_hands();
+        }
+        Motion<double> motion{position_, pose_.velocity(row_)};
         if (std::isfinite(joint_.parameters().stiffness)) motion.mass = mass();
         set_motor(joint_.prepare(motion, dt), dt);
         rigid_target_ = rigid_target(dt);
@@ -159,14 +158,16 @@ class OneAxisConstraint : public PlasticConstraint {
             suspend();
             return;
         }
-        const double velocity = row_velocity();
-        certify_rigid_rows();
+        const Vector6<double> twist = pose_.twist(row_);
+        const double velocity = pose_.along(row_, twist);
+        certify_rigid_rows(twist);
         force_ = row_force();
         position_ = row_.measured() ? row_.measure(position_ + velocity * dt)
-                                    : position_ + row_.increment(placement_, axis_, point_);
+                                    : position_ + row_.increment(pose_.placement(), pose_.axis(),
+                                                                 pose_.point());
         last_ = joint_.commit({force_, velocity, position_}, dt);
-        locate();
-        joint_.carry(row_velocity()); // seen from where the bodies are now
+        pose_.look(row_);
+        joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
         if (last_.outcome == Outcome::broken) {
             part();
             if (last_.release > 0) hand_back(last_.release);
@@ -191,6 +192,7 @@ class OneAxisConstraint : public PlasticConstraint {
     }
 
     [[nodiscard]] const MotorAxis& row() const noexcept { return row_; }
+    [[nodiscard]] const MotorPose& pose() const noexcept { return pose_; }
 
     /// Velocities that the rigid rows ask for in a step of `dt` [s], linear and angular, world
     /// axes; NaN where they are not known. ODE pulls the halves of a pin together by the world's
@@ -198,7 +200,7 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] virtual Vector6<double> rigid_target(double dt) const {
         Vector6<double> target =
             Vector6<double>::Constant(std::numeric_limits<double>::quiet_NaN());
-        target.head<3>() = erp() / dt * row_.pin_error();
+        target.head<3>() = erp() / dt * row_.pin_error(pose_.point());
         return target;
     }
     [[nodiscard]] double erp() const {
@@ -238,7 +240,11 @@ class OneAxisConstraint : public PlasticConstraint {
         joint_.restore(state);
         last_ = {};
         rigid_residual_.setZero();
+        rigid_unsolved_ = false;
     }
+
+    /// True where the bodies are as the last step left them, and nobody else can turn the axis.
+    [[nodiscard]] bool is_where_left() const { return owned_ && pose_.is_now(row_); }
 
     /// Somebody moved the bodies since the last step: the rest position goes along.
     void follow_hands() {
@@ -259,23 +265,13 @@ class OneAxisConstraint : public PlasticConstraint {
 
     // ---- the row
 
-    /// Axis and arms of the row at the bodies' present positions.
-    void locate() {
-        point_ = row_.point();
-        axes_ = row_.axes();
-        axis_ = axes_.col(row_.number());
-        placement_ = row_.placement();
-        arm_a_ = point_ - placement_.position_a;
-        arm_b_.setZero();
-        if (row_.bodies().b != nullptr) arm_b_ = point_ - placement_.position_b;
-    }
-
     [[nodiscard]] Vector6<double> response() const {
-        return row_.response(at_joint(row_.bodies().a, point_), at_joint(row_.bodies().b, point_));
+        return row_.response(at_joint(row_.bodies().a, pose_.point()),
+                             at_joint(row_.bodies().b, pose_.point()));
     }
     [[nodiscard]] Vector6<double> direction() const {
         Vector6<double> result = Vector6<double>::Zero();
-        result.segment<3>(row_.turns() ? 3 : 0) = axis_;
+        result.segment<3>(row_.turns() ? 3 : 0) = pose_.axis();
         return result;
     }
     /// What the row moves while the joint's other rows hold [kg | kg m²]; 0: not known.
@@ -299,12 +295,12 @@ class OneAxisConstraint : public PlasticConstraint {
 
     void apply_centre() {
         if (row_.turns()) {
-            outside_.torque_a = centre_ * axis_;
+            outside_.torque_a = centre_ * pose_.axis();
             outside_.torque_b = -outside_.torque_a;
         } else {
-            outside_.force = centre_ * axis_;
-            outside_.torque_a = arm_a_.cross(outside_.force);
-            outside_.torque_b = -arm_b_.cross(outside_.force);
+            outside_.force = centre_ * pose_.axis();
+            outside_.torque_a = pose_.arm_a().cross(outside_.force);
+            outside_.torque_b = -pose_.arm_b().cross(outside_.force);
         }
         add_outside(1);
     }
@@ -325,48 +321,43 @@ class OneAxisConstraint : public PlasticConstraint {
         dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
     }
 
-    /// Linear and angular velocity of A minus B where the row acts, world axes [m/s, rad/s].
-    [[nodiscard]] Vector6<double> twist() const {
-        const auto& [a, b, reversed] = row_.bodies();
-        const Vector3<double> wa = angular_velocity(a);
-        const Vector3<double> wb = angular_velocity(b);
-        Vector6<double> result;
-        result << linear_velocity(a) + wa.cross(arm_a_) - linear_velocity(b) - wb.cross(arm_b_),
-            wa - wb;
-        return result;
-    }
-
-    [[nodiscard]] double row_velocity() const {
-        const Vector6<double> t = twist();
-        return axis_.dot(row_.turns() ? t.tail<3>() : t.head<3>());
-    }
-
-    /// A solved rigid row moves at its target velocity, whatever else happens.
-    void certify_rigid_rows() {
-        const dBodyID a = row_.bodies().a;
-        speed_ = {(linear_velocity(a) + angular_velocity(a).cross(arm_a_)).norm(),
-                  angular_velocity(a).norm()};
-        rigid_residual_ = twist() - rigid_target_;
+    /// A solved rigid row moves at its target velocity, whatever else happens. `twist`: after the
+    /// solve.
+    void certify_rigid_rows(const Vector6<double>& twist) {
+        rigid_residual_ = twist - rigid_target_;
         const int plastic = row_.turns() ? 3 : 0;
         const Vector3<double> part = rigid_residual_.segment<3>(plastic);
-        rigid_residual_.segment<3>(plastic) = part - axis_ * axis_.dot(part);
+        rigid_residual_.segment<3>(plastic) = part - pose_.axis() * pose_.axis().dot(part);
         if (rigid_target_.head<3>().hasNaN()) rigid_residual_.head<3>().setZero();
         if (rigid_target_.tail<3>().hasNaN()) rigid_residual_.tail<3>().setZero();
+
+        const auto& allowed = joint_.parameters();
+        const double linear = rigid_residual_.head<3>().norm();
+        const double angular = rigid_residual_.tail<3>().norm();
+        rigid_unsolved_ = false;
+        if (std::max(linear, angular) <= allowed.absolute_residual) return;
+        const dBodyID a = row_.bodies().a;
+        const Vector3<double> w = angular_velocity(a);
+        const double speed = (linear_velocity(a) + w.cross(pose_.arm_a())).norm();
+        rigid_unsolved_ =
+            linear > allowed.absolute_residual + allowed.relative_residual * speed ||
+            angular > allowed.absolute_residual + allowed.relative_residual * w.norm();
     }
 
     /// λ/dt of the plastic row.
     [[nodiscard]] double row_force() const {
         const dJointFeedback* feedback = dJointGetFeedback(id());
         if (!(strength_ > 0) || feedback == nullptr) return centre_;
-        return centre_ + row_.force(*feedback, axes_, arm_a_);
+        return centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a());
     }
 
     /// Gives the energy that the breaking step took in excess back to the motion along the axis.
     void hand_back(double energy) {
-        const auto a = at_joint(row_.bodies().a, point_);
-        const auto b = at_joint(row_.bodies().b, point_);
+        const auto a = at_joint(row_.bodies().a, pose_.point());
+        const auto b = at_joint(row_.bodies().b, pose_.point());
         release_ = break_release(
-            a, b, release_impulse(row_.response(a, b), direction(), twist(), energy), energy);
+            a, b, release_impulse(row_.response(a, b), direction(), pose_.twist(row_), energy),
+            energy);
         if (a.inverse_mass > 0) apply(row_.bodies().a, release_.a);
         if (b.inverse_mass > 0) apply(row_.bodies().b, release_.b);
     }
@@ -376,15 +367,10 @@ class OneAxisConstraint : public PlasticConstraint {
     bool owned_;
     Joint joint_;
     dJointFeedback feedback_{};
-    Placement placement_; ///< at the start of the step, as are the axis, the point and the arms
-    Matrix3<double> axes_ = Matrix3<double>::Zero();
-    Vector3<double> axis_ = Vector3<double>::Zero();
-    Vector3<double> point_ = Vector3<double>::Zero();
-    Vector3<double> arm_a_ = Vector3<double>::Zero();
-    Vector3<double> arm_b_ = Vector3<double>::Zero();
+    MotorPose pose_; ///< at the start of the step, from commit on at its end
     Vector6<double> rigid_target_ = Vector6<double>::Zero();
     Vector6<double> rigid_residual_ = Vector6<double>::Zero();
-    std::array<double, 2> speed_{}; ///< of A at the joint [m/s], and its turning [rad/s]
+    bool rigid_unsolved_ = false;
     OutsideForce outside_;
     double centre_ = 0;   ///< c [N | N m]
     double strength_ = 0; ///< h [N | N m]

@@ -67,7 +67,7 @@ class PlasticHinge final : public OneAxisConstraint<Joint> {
         Vector6<double> target = Base::rigid_target(dt);
         const Vector3<double> axis_b =
             b != nullptr ? matrix_to_core(dBodyGetRotation(b)) * axis_in_b_ : axis_in_b_;
-        target.template tail<3>() = this->erp() / dt * this->row().axis().cross(axis_b);
+        target.template tail<3>() = this->erp() / dt * this->pose().axis().cross(axis_b);
         return target;
     }
 

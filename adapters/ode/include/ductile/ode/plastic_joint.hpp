@@ -54,22 +54,30 @@
 
 namespace ductile::ode {
 
-/// The body as a link sees it; null: the static world. A kinematic body moves but cannot be moved.
-[[nodiscard]] inline BodyState<double> body_state(dBodyID body) noexcept {
+/// Place and velocities of a body as a link sees it, without its mass; null: the static world.
+[[nodiscard]] inline BodyState<double> body_motion(dBodyID body) noexcept {
     if (body == nullptr) return {};
-    BodyState<double> result{.position = to_core(dBodyGetPosition(body)),
-                             .orientation = matrix_to_core(dBodyGetRotation(body)),
-                             .velocity = linear_velocity(body),
-                             .spin = angular_velocity(body)};
-    if (dBodyIsKinematic(body)) return result;
-    result.inverse_mass = 1 / mass(body);
-    result.inverse_inertia = inertia(body).inverse();
+    return {.position = to_core(dBodyGetPosition(body)),
+            .orientation = matrix_to_core(dBodyGetRotation(body)),
+            .velocity = linear_velocity(body),
+            .spin = angular_velocity(body)};
+}
+
+/// The body as a link sees it. A kinematic body moves but cannot be moved.
+[[nodiscard]] inline BodyState<double> body_state(dBodyID body) noexcept {
+    BodyState<double> result = body_motion(body);
+    if (body == nullptr || dBodyIsKinematic(body)) return result;
+    dMass m;
+    dBodyGetMass(body, &m);
+    result.inverse_mass = 1 / double(m.mass);
+    const Matrix3<double> turned = result.orientation * matrix_to_core(m.I).inverse();
+    result.inverse_inertia = turned * result.orientation.transpose();
     return result;
 }
 
 /// A frame given in the world, in the axes of a body (null: the static world), from its centre.
 [[nodiscard]] inline JointFrame<double> frame_in(dBodyID body, const JointFrame<double>& world) {
-    const BodyState<double> at = body_state(body);
+    const BodyState<double> at = body_motion(body);
     return {.origin = at.orientation.transpose() * (world.origin - at.position),
             .axes = at.orientation.transpose() * world.axes};
 }
@@ -115,7 +123,7 @@ class PlasticJoint final : public PlasticConstraint {
         dJointAttach(id_, a_, b_);
         dJointSetAMotorNumAxes(id_, 3);
         dJointSetFeedback(id_, &moments_);
-        link_.start(body_state(a_), body_state(b_));
+        link_.start(body_motion(a_), body_motion(b_));
     }
 
     /// As above with one frame, in the world, where the bodies are now.
@@ -166,7 +174,7 @@ class PlasticJoint final : public PlasticConstraint {
     [[nodiscard]] double rigid_residual() const { return link_.rigid_residual(); }
     [[nodiscard]] JointReport<double> report() const override {
         if (!detached() && dJointIsEnabled(id_) != 0) {
-            return link_report(link_, link_.velocities(body_state(a_), body_state(b_)));
+            return link_report(link_, link_.velocities(body_motion(a_), body_motion(b_)));
         }
         return link_report(link_, Vector6<double>(Vector6<double>::Zero()));
     }
@@ -243,8 +251,9 @@ class PlasticJoint final : public PlasticConstraint {
         outside_.torque_a += arm_a_.cross(centre_.force) + centre_.moment;
         outside_.torque_b -= arm_b_.cross(centre_.force) + centre_.moment;
         const Vector3<double> torque = outside_.torque_a + to_core(moments_.t1);
-        link_.commit(body_state(a_), body_state(b_),
-                     {.force = outside_.force, .moment = torque - arm_a_.cross(outside_.force)},
+        link_.commit(body_motion(a_), body_motion(b_),
+                     JointWrench<double>{.force = outside_.force,
+                                         .moment = torque - arm_a_.cross(outside_.force)},
                      dt);
         if (broken()) let_go();
     }
