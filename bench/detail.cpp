@@ -3,8 +3,9 @@
 // Is the detail that the core chooses for a tolerance within it, and is it the cheapest that is?
 // Every scene of scenes/detail_case.hpp on one build of one engine, at 10, 3 and 1 %: the chosen
 // model at the chosen step, and every other model at the longest step from which on every finer one
-// keeps the tolerance. Those steps are looked at 10 % apart, from a game's step down to a third of
-// the finest that the core chose: errors that happen to change sign do not count.
+// keeps the tolerance. Those steps are looked at 10 % apart (20 % with --quick), from a game's step
+// down to a third of the finest that the core chose: errors that happen to change sign do not
+// count.
 //
 //   detail-ode-double [--quick] [--scene NAME]     rows as CSV on the standard output
 //   detail-ode-double --reasons                    why the core chose what it chose, as text
@@ -44,10 +45,13 @@ namespace {
 
 constexpr double tolerances[] = {0.1, 0.03, 0.01};
 
-struct Timing {
-    int repeats;
-    double at_least; ///< [s]
+struct Plan {
+    double ratio;    ///< of a step to the next finer one
+    int starts;      ///< within a step, where there is a contact
+    int repeats;     ///< of the timing
+    double at_least; ///< CPU time of all repeats of a row [s]
 };
+constexpr Plan full{1.1, 10, 5, 0.05}, quick_plan{1.2, 5, 3, 0.003};
 
 Settings settings(const Model& model, double dt, double first = 0) {
     return {.solver = solver, .iterations = 200, .method = model.method, .dt = dt, .first = first};
@@ -89,10 +93,10 @@ Trial run_apart(const Model& model, double dt, double first, double answer) {
     return trial;
 }
 
-/// The worst of ten starts a tenth of a step apart where there is a contact: it falls anywhere in a
+/// The worst of several starts spread over a step where there is a contact: it falls anywhere in a
 /// step, and no one can count on where.
-Trial attempt(const Model& model, double dt, double answer) {
-    const int starts = model.scene.contacts.empty() ? 1 : 10;
+Trial attempt(const Model& model, double dt, double answer, const Plan& plan) {
+    const int starts = model.scene.contacts.empty() ? 1 : plan.starts;
     Trial worst = run_apart(model, dt, 0, answer);
     for (int i = 1; i < starts; ++i) {
         const Trial trial = run_apart(model, dt, i * dt / starts, answer);
@@ -103,10 +107,10 @@ Trial attempt(const Model& model, double dt, double answer) {
 }
 
 /// Errors of a model over the step, longest first.
-std::vector<Trial> ladder(const Model& model, double answer, double finest) {
+std::vector<Trial> ladder(const Model& model, double answer, double finest, const Plan& plan) {
     std::vector<Trial> trials;
-    for (double dt = longest_step; dt >= finest; dt /= 1.1) {
-        trials.push_back(attempt(model, dt, answer));
+    for (double dt = longest_step; dt >= finest; dt /= plan.ratio) {
+        trials.push_back(attempt(model, dt, answer, plan));
     }
     return trials;
 }
@@ -128,10 +132,10 @@ struct Row {
     [[nodiscard]] double row_steps() const { return 6.0 * joints * double(trial.steps); }
 };
 
-Row row(const Model& model, const Trial& trial, bool chosen, const Timing& timing) {
+Row row(const Model& model, const Trial& trial, bool chosen, const Plan& plan) {
     if (!std::isfinite(trial.error)) return {model.detail, chosen, model.joints, trial, infinity};
     const double cpu = cpu_time<World>(model.scene, settings(model, trial.dt), trial.steps,
-                                       timing.repeats, timing.at_least);
+                                       plan.repeats, plan.at_least);
     return {model.detail, chosen, model.joints, trial, cpu / trial.time};
 }
 
@@ -159,7 +163,7 @@ const Model& model_of(const DetailCase& c, const Chosen& chosen) {
                                          c.name, chosen.detail, chosen.joints));
 }
 
-void run(const DetailCase& c, const Timing& timing) {
+void run(const DetailCase& c, const Plan& plan) {
     std::vector<Chosen> choices;
     double finest = longest_step;
     for (const double tolerance : tolerances) {
@@ -175,12 +179,12 @@ void run(const DetailCase& c, const Timing& timing) {
                       observe<World>(c.models.back().scene, settings(c.models.back(), c.fine)).end)
                   .value();
     std::vector<std::vector<Trial>> ladders;
-    for (const Model& model : c.models) ladders.push_back(ladder(model, answer, finest));
+    for (const Model& model : c.models) ladders.push_back(ladder(model, answer, finest, plan));
     for (std::size_t i = 0; i < choices.size(); ++i) {
         const Model& model = model_of(c, choices[i]);
-        std::vector<Row> rows{row(model, attempt(model, choices[i].dt, answer), true, timing)};
+        std::vector<Row> rows{row(model, attempt(model, choices[i].dt, answer, plan), true, plan)};
         for (std::size_t k = 0; k < c.models.size(); ++k) {
-            rows.push_back(row(c.models[k], reaches(ladders[k], tolerances[i]), false, timing));
+            rows.push_back(row(c.models[k], reaches(ladders[k], tolerances[i]), false, plan));
         }
         print(c, tolerances[i], rows);
     }
@@ -207,7 +211,7 @@ int main(int argc, char** argv) try {
                 fmt::print("{},{},{}\n", c.name, tolerance, chosen.reason);
             }
         } else {
-            run(c, quick ? Timing{3, 0.003} : Timing{5, 0.05});
+            run(c, quick ? quick_plan : full);
         }
     }
     if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");

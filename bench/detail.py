@@ -81,7 +81,7 @@ def report(rows, reasons, failed, meta):
              "Error against the closed form of the elastic-plastic joint, or the most detailed model at a fine "
              "step. Cost: CPU time over that of the cheapest model that keeps the tolerance at its step and at "
              "every finer one; counted: the same for steps × six rows per joint, which repeats exactly. Where "
-             "there is a contact, the worst of ten starts within a step.", "",
+             "there is a contact, the worst of several starts within a step.", "",
              f"Kept: {len(chosen) - len(missed)} of {len(chosen)}. Cost at most {WANTED} of the cheapest: "
              f"{len(chosen) - len(missed) - len(dear)} of {len(chosen)}.", ""]
     for title, some in (("Tolerance not kept", missed), (f"Kept, at more than {WANTED} of the cost", dear)):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// What the core costs by itself: prepare + commit of one-axis joints without any engine.
+// What the core costs by itself: prepare + commit of one-axis joints without any engine. What the
+// adapters add to it is in microbench_adapters.cpp, cases of the same program.
 //
 //   scalar  an array of OneAxisJoint, one after the other
 //   batch   OneAxisBatch over arrays
