@@ -26,12 +26,13 @@ int main() {
     btBoxShape shape({width / 2, width / 2, length / 2});
     btVector3 inertia;
     shape.calculateLocalInertia(mass, inertia);
-    btRigidBody body({mass, nullptr, &shape, inertia});
+    using Parameters = btRigidBody::btRigidBodyConstructionInfo;
+    btRigidBody body(Parameters(mass, nullptr, &shape, inertia));
     body.getWorldTransform().setOrigin({0, 0, length / 2});
     body.setAngularVelocity({8, 0, 0});
     body.setLinearVelocity(btVector3(8, 0, 0).cross({0, 0, length / 2}));
     btEmptyShape nothing;
-    btRigidBody ground({0, nullptr, &nothing});
+    btRigidBody ground(Parameters(0, nullptr, &nothing));
     dynamics_world.addRigidBody(&body, 0, 0); // what it falls on is not looked at here
     dynamics_world.addRigidBody(&ground, 0, 0);
     btTransform frame_in_body, frame_in_ground; // z along the member
