@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What the bench's scripts share: progress with time left, and on what a result was measured."""
+"""What the bench's scripts share: options and tables, progress with time left, and on what a result was
+measured."""
 
+import argparse
+import csv
 import datetime
 import json
 import os
@@ -8,6 +11,34 @@ import re
 import subprocess
 import sys
 import time
+from pathlib import Path
+
+
+def run_options(description):
+    """Options of a script that runs programs; makes the folder for what they find."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--bin", required=True, help="folder of the programs")
+    parser.add_argument("--build", required=True, help="CMake's build folder, for the machine's description")
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    os.makedirs(options.out, exist_ok=True)
+    return options
+
+
+def results_folder(usage):
+    """The one argument of a script that draws stored results."""
+    if len(sys.argv) != 2:
+        sys.exit(usage)
+    return Path(sys.argv[1])
+
+
+def write_rows(rows, columns, path, others="raise"):
+    """A table as CSV; `others`: what becomes of entries that are no column, "raise" or "ignore"."""
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, extrasaction=others, restval="", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 class Progress:

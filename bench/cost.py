@@ -6,24 +6,17 @@ Runs the joint_cost and scaling programs of every engine build, whose tables go 
 their rows into joint_cost.csv and scaling.csv in --out.
 """
 
-import argparse
 import os
 import subprocess
 import tempfile
 
-from common import Progress, write_meta
+from common import Progress, run_options, write_meta
 
 BUILDS = ("bullet-double", "bullet-float", "ode-double")
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--bin", required=True, help="folder of the programs")
-    parser.add_argument("--build", required=True, help="CMake's build folder, for the machine's description")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--quick", action="store_true")
-    options = parser.parse_args()
-    os.makedirs(options.out, exist_ok=True)
+    options = run_options(__doc__.splitlines()[0])
     extra = ["--quick"] if options.quick else []
     progress = Progress("cost", 2 * len(BUILDS))
     for question in ("joint_cost", "scaling"):

@@ -27,17 +27,8 @@
 #include <vector>
 
 #include "engines/run_scene.hpp"
+#include "engines/world.hpp"
 #include "scenes/detail_case.hpp"
-
-#ifdef BENCH_ODE
-#include "engines/ode_world.hpp"
-using World = bench::OdeWorld;
-constexpr const char* solver = "direct";
-#else
-#include "engines/bullet_world.hpp"
-using World = bench::BulletWorld;
-constexpr const char* solver = "soft-mlcp";
-#endif
 
 using namespace bench;
 
@@ -54,7 +45,7 @@ struct Plan {
 constexpr Plan full{1.1, 10, 5, 0.05}, quick_plan{1.2, 5, 3, 0.003};
 
 Settings settings(const Model& model, double dt, double first = 0) {
-    return {.solver = solver, .iterations = 200, .method = model.method, .dt = dt, .first = first};
+    return {.solver = std::string(World::exact_solver), .iterations = 200, .method = model.method, .dt = dt, .first = first};
 }
 
 /// A model at a step: how far off it is.

@@ -12,13 +12,11 @@ Runs the detail program of every engine build, scene by scene, and writes into -
 A cost ratio of 1 is the cheapest model that keeps the tolerance; up to 1.2 is what is wanted.
 """
 
-import argparse
-import csv
 import os
 import subprocess
 import sys
 
-from common import Progress, write_meta
+from common import Progress, run_options, write_meta, write_rows
 
 RUNNERS = ("detail-bullet-double", "detail-bullet-float", "detail-ode-double")
 COLUMNS = ("scene", "engine", "precision", "tolerance", "detail", "chosen", "joints", "dt_s", "error_rel",
@@ -96,18 +94,9 @@ def report(rows, reasons, failed, meta):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--bin", required=True, help="folder of the detail programs")
-    parser.add_argument("--build", required=True, help="CMake's build folder, for the machine's description")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--quick", action="store_true")
-    options = parser.parse_args()
-    os.makedirs(options.out, exist_ok=True)
+    options = run_options(__doc__.splitlines()[0])
     rows, reasons, failed = run_all(options.bin, options.quick)
-    with open(os.path.join(options.out, "detail.csv"), "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(rows, COLUMNS, os.path.join(options.out, "detail.csv"))
     text = report(rows, reasons, failed, write_meta(options.out, options.build, quick=options.quick))
     with open(os.path.join(options.out, "detail.md"), "w") as file:
         file.write(text)

@@ -24,16 +24,9 @@
 #include <vector>
 
 #include "engines/run_scene.hpp"
+#include "engines/world.hpp"
 #include "methods/names.hpp"
 #include "scenes/all.hpp"
-
-#ifdef BENCH_ODE
-#include "engines/ode_world.hpp"
-using World = bench::OdeWorld;
-#else
-#include "engines/bullet_world.hpp"
-using World = bench::BulletWorld;
-#endif
 
 using namespace bench;
 

@@ -16,8 +16,6 @@ precision and iterations stays within it; the finest alone is not enough. This k
 happen to change sign. The cost is that of its cheapest such series.
 """
 
-import argparse
-import csv
 import os
 import re
 import shutil
@@ -26,7 +24,7 @@ import sys
 import tempfile
 from collections import defaultdict
 
-from common import Progress, write_meta
+from common import Progress, run_options, write_meta, write_rows
 
 RUNNERS = ("pareto-bullet-double", "pareto-bullet-float", "pareto-ode-double")
 RAW = ("scene", "engine", "solver", "precision", "method", "dt_s", "tolerance", "iterations", "quantity",
@@ -121,13 +119,6 @@ def count_instructions(rows):
     progress.finish()
 
 
-def write_rows(rows, path):
-    with open(path, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def reaches(series, target):
     """The row at which a series, coarsest step first, reaches a target and keeps it; None."""
     good = None
@@ -174,7 +165,23 @@ def cell(value, form):
     return "-" if value is None else form(value)
 
 
-def report(summary, failed, meta):
+def comparison(title, summary, cost):
+    """What 1 % costs with ours and with the cheapest of the others, scene by scene; lines of a table."""
+    lines = [f"## {title}", "", "| scene | ours | cost | other | cost | ours / other |",
+             "|---|---|---|---|---|---|"]
+    for scene in dict.fromkeys(line["scene"] for line in summary):
+        reached = [line for line in summary if line["scene"] == scene and line["cost_0.01"] is not None]
+        best = lambda group: min(group, key=lambda line: line["cost_0.01"], default=None)
+        ours = best([line for line in reached if is_ours(line["method"])])
+        other = best([line for line in reached if not is_ours(line["method"])])
+        named = lambda line: (f"{line['method']} | {cost(line['cost_0.01'])}" if line
+                              else "none reaches it | -")
+        ratio = f"{ours['cost_0.01'] / other['cost_0.01']:.2f}" if ours and other else "-"
+        lines.append(f"| {scene} | {named(ours)} | {named(other)} | {ratio} |")
+    return [*lines, ""]
+
+
+def report(summary, of_energy, failed, meta):
     """summary.md as text."""
     scenes = list(dict.fromkeys(line["scene"] for line in summary))
     cost = lambda v: f"{v * 1e3:.3g}"
@@ -197,34 +204,19 @@ def report(summary, failed, meta):
                          f"{cell(line['energy_error_at_60Hz'], error)} | {line.get('with_0.01', '-')} |")
         lines.append("")
 
-    lines += ["## Ours against the cheapest other method at 1 %", "",
-              "| scene | ours | cost | other | cost | ours / other |", "|---|---|---|---|---|---|"]
-    for scene in scenes:
-        reached = [line for line in summary if line["scene"] == scene and line["cost_0.01"] is not None]
-        best = lambda group: min(group, key=lambda line: line["cost_0.01"], default=None)
-        ours = best([line for line in reached if is_ours(line["method"])])
-        other = best([line for line in reached if not is_ours(line["method"])])
-        named = lambda line: (f"{line['method']} | {cost(line['cost_0.01'])}" if line
-                              else "none reaches it | -")
-        ratio = f"{ours['cost_0.01'] / other['cost_0.01']:.2f}" if ours and other else "-"
-        lines.append(f"| {scene} | {named(ours)} | {named(other)} | {ratio} |")
+    lines += comparison("Ours against the cheapest other method at 1 %", summary, cost)
+    lines += comparison("The same at 1 % of the absorbed energy, of methods that keep an account", of_energy, cost)
     present = {line["method"].removesuffix("-adaptive") for line in summary}
     missing = [method for method in ALL_METHODS if method not in present]
     if missing:
-        lines += ["", "Not there yet: " + ", ".join(missing) + "."]
+        lines += ["Not there yet: " + ", ".join(missing) + "."]
     if failed:
-        lines += ["", "Did not run to the end:", ""] + [f"- {text}" for text in failed]
+        lines += ["Did not run to the end:", ""] + [f"- {text}" for text in failed]
     return "\n".join(lines) + "\n"
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--bin", required=True, help="folder of the pareto programs")
-    parser.add_argument("--build", required=True, help="CMake's build folder, for meta.json")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--quick", action="store_true")
-    options = parser.parse_args()
-    os.makedirs(options.out, exist_ok=True)
+    options = run_options(__doc__.splitlines()[0])
 
     rows, failed = run_all(options.bin, options.quick)
     quantity_of = primary(rows)
@@ -232,17 +224,15 @@ def main():
         fronts = [row for scene, quantity in quantity_of.items()
                   for row in front([r for r in rows if r["scene"] == scene and r["quantity"] == quantity])]
         count_instructions(fronts)
-    write_rows(rows, os.path.join(options.out, "pareto.csv"))
+    write_rows(rows, COLUMNS, os.path.join(options.out, "pareto.csv"), others="ignore")
 
     summary = summarise(rows, quantity_of)
-    with open(os.path.join(options.out, "summary.csv"), "w", newline="") as file:
-        columns = (["scene", "method", "quantity"] + [f"cost_{t:g}" for t in TARGETS] +
-                   ["with_0.01", "error_at_60Hz", "energy_error_at_60Hz"])
-        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(summary)
+    of_energy = summarise(rows, {scene: "absorbed_energy" for scene in quantity_of})
+    columns = (["scene", "method", "quantity"] + [f"cost_{t:g}" for t in TARGETS] +
+               ["with_0.01", "error_at_60Hz", "energy_error_at_60Hz"])
+    write_rows(summary + of_energy, columns, os.path.join(options.out, "summary.csv"))
     meta = write_meta(options.out, options.build, quick=options.quick)
-    text = report(summary, failed, meta)
+    text = report(summary, of_energy, failed, meta)
     with open(os.path.join(options.out, "summary.md"), "w") as file:
         file.write(text)
     print(text)

@@ -8,15 +8,14 @@ at each tolerance, the chosen one large. Nothing is run.
 """
 
 import csv
-import sys
 from collections import defaultdict
-from pathlib import Path
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+from common import results_folder  # noqa: E402
 from pareto import ALL_METHODS, front, is_ours, number, primary  # noqa: E402
 
 BEST, WORST = 1e-9, 10.0  # errors beyond are drawn at the rim
@@ -110,9 +109,7 @@ def draw_detail(rows, path):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    folder = Path(sys.argv[1])
+    folder = results_folder(__doc__)
     if (folder / "pareto.csv").exists():
         rows = read(folder / "pareto.csv")
         for scene, quantity in primary(rows).items():

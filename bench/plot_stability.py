@@ -7,9 +7,6 @@ and engine, solver and precision (column), the same colours everywhere, with the
 scaling.csv, where it is there, scaling.png. Nothing is run.
 """
 
-import sys
-from pathlib import Path
-
 import matplotlib
 
 matplotlib.use("Agg")
@@ -17,6 +14,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
+from common import results_folder  # noqa: E402
 from pareto import ALL_METHODS, is_ours  # noqa: E402
 from plot import read  # noqa: E402
 
@@ -95,9 +93,7 @@ def draw_scaling(rows, path):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    folder = Path(sys.argv[1])
+    folder = results_folder(__doc__)
     if (folder / "stability.csv").exists():
         rows = read(folder / "stability.csv")
         for scene, x_name in dict.fromkeys((r["scene"], r["x_name"]) for r in rows):

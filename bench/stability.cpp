@@ -23,18 +23,9 @@
 #include <string_view>
 #include <vector>
 
+#include "engines/world.hpp"
 #include "methods/names.hpp"
 #include "stability/classify.hpp"
-
-#ifdef BENCH_ODE
-#include "engines/ode_world.hpp"
-using World = bench::OdeWorld;
-constexpr int default_iterations = 20; // of dWorldQuickStep
-#else
-#include "engines/bullet_world.hpp"
-using World = bench::BulletWorld;
-constexpr int default_iterations = 10; // of btContactSolverInfo
-#endif
 
 using namespace bench;
 using namespace bench::stability;
@@ -53,7 +44,7 @@ void run_job(const Grid& grid, const std::string& solver, const std::string& met
             const bool skip = died && index == from + 1;
             const Settings settings{
                 .solver = solver,
-                .iterations = grid.over_iterations() ? int(x) : default_iterations,
+                .iterations = grid.over_iterations() ? int(x) : World::default_iterations,
                 .method = method,
                 .dt = grid.over_iterations() ? step_of_iterations : x};
             const Cell c = skip ? Cell{.verdict = "not-finished"}

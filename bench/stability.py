@@ -10,14 +10,13 @@ Runs the stability program of every engine build over its grids and writes into 
 A program that dies in a cell goes on with the next one; that cell is not-finished.
 """
 
-import argparse
-import csv
 import os
 import subprocess
 import sys
 from collections import Counter, defaultdict
+from concurrent.futures import ThreadPoolExecutor
 
-from common import Progress, write_meta
+from common import Progress, run_options, write_meta, write_rows
 from pareto import is_ours
 
 RUNNERS = ("stability-bullet-double", "stability-bullet-float", "stability-ode-double")
@@ -27,28 +26,28 @@ COLUMNS = RAW[:12]
 CLASSES = ("right", "off", "energy-gained", "jitter", "drift", "blown-up", "not-finished", "refused")
 
 
-def run_job(path, options, job, cells, rows, failed):
-    """Appends the rows of a job; goes on after a cell in which the program died."""
-    done, died = 0, []
-    while done < cells:
-        process = subprocess.Popen([path, *options, "--job", job, "--from", str(done), *died],
+def run_job(path, options, job, cells):
+    """The rows of a job, and where the program died; goes on after such a cell."""
+    rows, failed, died = [], [], []
+    while len(rows) < cells:
+        process = subprocess.Popen([path, *options, "--job", job, "--from", str(len(rows)), *died],
                                    stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        start = done
-        for line in process.stdout:
-            rows.append(dict(zip(RAW, line.strip().split(","))))
-            done += 1
+        start = len(rows)
+        rows += [dict(zip(RAW, line.strip().split(","))) for line in process.stdout]
         code = process.wait()
         if code == 2:
             sys.exit(f"stability: {path} --job {job}: refused")
-        if died and code < 0 and done == start:
+        if died and code < 0 and len(rows) == start:
             sys.exit(f"stability: {path} --job {job}: dies without running")
-        if done < cells:
-            failed.append(f"{os.path.basename(path)} {' '.join(options)} --job {job} --from {done}: "
-                          f"exit {code}")
+        if len(rows) < cells:
+            failed.append(f"{os.path.basename(path)} {' '.join(options)} --job {job} "
+                          f"--from {len(rows)}: exit {code}")
             died = ["--died"]
+    return rows, failed
 
 
 def run_all(folder, quick):
+    """Jobs side by side, one a core: nothing here is timed."""
     options = ["--quick"] if quick else []
     plan = []
     for runner in RUNNERS:
@@ -64,9 +63,12 @@ def run_all(folder, quick):
     weight = lambda job, cells: cells * (8 if "cantilever" in job else 1)
     progress = Progress("stability", sum(weight(job, cells) for _, job, cells in plan))
     rows, failed = [], []
-    for path, job, cells in plan:
-        run_job(path, options, job, cells, rows, failed)
-        progress.advance(weight(job, cells), f"{os.path.basename(path)} {job}")
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        done = pool.map(lambda entry: run_job(entry[0], options, *entry[1:]), plan)
+        for (path, job, cells), (found, deaths) in zip(plan, done):
+            rows += found
+            failed += deaths
+            progress.advance(weight(job, cells), f"{os.path.basename(path)} {job}")
     progress.finish()
     return rows, failed
 
@@ -127,18 +129,9 @@ def report(rows, failed, meta):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--bin", required=True, help="folder of the stability programs")
-    parser.add_argument("--build", required=True, help="CMake's build folder, for the machine's description")
-    parser.add_argument("--out", required=True)
-    parser.add_argument("--quick", action="store_true")
-    options = parser.parse_args()
-    os.makedirs(options.out, exist_ok=True)
+    options = run_options(__doc__.splitlines()[0])
     rows, failed = run_all(options.bin, options.quick)
-    with open(os.path.join(options.out, "stability.csv"), "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, extrasaction="ignore", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write_rows(rows, COLUMNS, os.path.join(options.out, "stability.csv"), others="ignore")
     text = report(rows, failed, write_meta(options.out, options.build, quick=options.quick))
     with open(os.path.join(options.out, "stability.md"), "w") as file:
         file.write(text)

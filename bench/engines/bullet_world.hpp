@@ -28,10 +28,13 @@ class BulletWorld {
     static constexpr std::string_view engine = "bullet";
     static constexpr std::string_view precision =
         sizeof(btScalar) == sizeof(double) ? "double" : "float";
-    static constexpr std::array<SolverName, 4> solvers{{{"mlcp", Iterations::fallback},
+    static constexpr int default_iterations = 10; ///< of btContactSolverInfo
+    static constexpr std::string_view exact_solver = "soft-mlcp"; ///< elastic rows included
+    static constexpr std::array<SolverName, 5> solvers{{{"mlcp", Iterations::fallback},
                                                         {"soft-mlcp", Iterations::fallback},
                                                         {"si", Iterations::solve},
-                                                        {"nncg", Iterations::solve}}};
+                                                        {"nncg", Iterations::solve},
+                                                        {"soft-nncg", Iterations::solve}}};
 
     [[nodiscard]] static bool has(std::string_view method) {
         return std::any_of(bullet_methods::all.begin(), bullet_methods::all.end(),
@@ -91,9 +94,11 @@ class BulletWorld {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
         } else if (settings.solver == "nncg") {
             solver_ = std::make_unique<btNNCGConstraintSolver>();
+        } else if (settings.solver == "soft-nncg") {
+            solver_ = std::make_unique<ductile::bullet::SoftNncgSolver>();
         } else {
             throw std::invalid_argument("solver = " + settings.solver +
-                                        ": must be mlcp, soft-mlcp, si or nncg");
+                                        ": must be mlcp, soft-mlcp, si, nncg or soft-nncg");
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_,
                                                            solver_.get(), &configuration_);

@@ -24,6 +24,8 @@ class OdeWorld {
     static constexpr std::string_view engine = "ode";
     static constexpr std::string_view precision =
         sizeof(dReal) == sizeof(double) ? "double" : "float";
+    static constexpr int default_iterations = 20; ///< of dWorldQuickStep
+    static constexpr std::string_view exact_solver = "direct"; ///< elastic rows included
     static constexpr std::array<SolverName, 2> solvers{
         {{"direct", Iterations::none}, {"quick", Iterations::solve}}};
 

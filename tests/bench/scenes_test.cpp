@@ -9,16 +9,9 @@
 #include <string>
 
 #include "engines/run_scene.hpp"
+#include "engines/world.hpp"
 #include "methods/names.hpp"
 #include "scenes/all.hpp"
-
-#ifdef BENCH_ODE
-#include "engines/ode_world.hpp"
-using World = bench::OdeWorld;
-#else
-#include "engines/bullet_world.hpp"
-using World = bench::BulletWorld;
-#endif
 
 using namespace bench;
 
