@@ -161,6 +161,8 @@ class CoupledJoint {
             if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
             if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
         }
+        taken.error.flow =
+            std::max(taken.error.flow, astray(reaction.force, step.direction, taken.flow));
         if (brittle(reaction.force)) {
             snap(step, taken, reaction, dt);
         } else {
@@ -292,6 +294,14 @@ class CoupledJoint {
             energy = std::max(energy, bound * bound / (2 * parameters_.stiffness[i]));
         }
         return energy / (first_strength_ * grown_);
+    }
+
+    /// Plastic work that the flow did along another direction than the surface's normal at the force
+    /// [J]: more than round-off where the box was made around the wrong force.
+    [[nodiscard]] Scalar astray(const Vector& force, const Vector& travel, Scalar work) const noexcept {
+        if (!(work > 0)) return 0;
+        const Vector associated = -work / surface_.value(force) * surface_.normal(force);
+        return force.cwiseProduct(travel - associated).cwiseAbs().sum() / 2;
     }
 
     /// True where the forces reached the cap, which need not be where a row reached its bound.

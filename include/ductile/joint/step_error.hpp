@@ -9,6 +9,9 @@
 // contact begins within a step is as uncertain. The sum, relative to the plastic travel so far, is
 // the step error. It is judged where a flow ends: at its onset the travel so far says nothing yet.
 //
+// Direction. Rows that share a yield surface flow along its normal as far as their bounds were set around the
+// right force. Plastic work done along another direction is misplaced as well (CoupledJoint::astray).
+//
 // Spring. One that the step cannot resolve is damped: it comes to rest where it should swing on.
 // Where the row would have yielded had it kept that energy, the step is too long as well.
 //
