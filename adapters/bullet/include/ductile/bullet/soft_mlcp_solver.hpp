@@ -31,6 +31,7 @@
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 #include <vector>
 
@@ -39,13 +40,19 @@
 
 namespace ductile::bullet {
 
-/// Share of its own effect by which a joint's row yields [-]. Rows that repeat each other, as those
-/// of a beam held at both ends, would leave a direct solver to divide by round-off; they then share
-/// their force, and a single row is off by this share. Only where Dantzig's method failed
+/// Shares of its own effect by which a row yields, tried in turn [-]. Rows that repeat each other, as
+/// those of a beam held at both ends, would leave a direct solver to divide by round-off; they then
+/// share their force, and a single row is off by this share. Only where Dantzig's method failed
 /// without: what it can solve changes no bit. In float, structures of up to 30 rows are solved best
 /// from 1e-7, its round-off, to 3e-6, and less and less well beyond.
 template <class Scalar>
-inline constexpr Scalar row_softness = std::is_same_v<Scalar, float> ? Scalar(1e-6) : Scalar(1e-12);
+inline constexpr auto row_softness = [] {
+    if constexpr (std::is_same_v<Scalar, float>) {
+        return std::array{1e-6F};
+    } else {
+        return std::array{1e-12, 1e-10, 1e-8};
+    }
+}();
 
 class SoftMlcpSolver : public btMLCPSolver {
   public:
@@ -86,12 +93,9 @@ class SoftMlcpSolver : public btMLCPSolver {
 
     bool solveMLCP(const btContactSolverInfo& info) override {
         if (m_A.rows() == 0) return true;
-        if (!solve_velocities(info)) {
-            if (!pivots_) return false;
-            break_ties();
-            if (!solve_velocities(info)) return false;
-        }
-        return !info.m_splitImpulse || solve_penetration(info);
+        if (!solved_with_ties([&] { return solve_velocities(info); })) return false;
+        if (info.m_splitImpulse) push_apart(info);
+        return true;
     }
 
   private:
@@ -117,12 +121,17 @@ class SoftMlcpSolver : public btMLCPSolver {
         }
     }
 
-    /// Lets every row of a joint yield to its own impulse by a share too small to matter: rows that
-    /// repeat each other become independent.
-    void break_ties() {
-        for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
-            m_A.setElem(i, i, m_A(i, i) * (1 + row_softness<btScalar>));
+    /// Whether `solve` succeeds, at last with every row yielding to its own impulse by a share too small
+    /// to matter: rows that repeat each other, joints' or contacts', become independent.
+    template <class Solve>
+    bool solved_with_ties(const Solve& solve) {
+        if (solve()) return true;
+        if (!pivots_) return false;
+        for (const btScalar share : row_softness<btScalar>) {
+            for (int i = 0; i < m_A.rows(); ++i) m_A.setElem(i, i, m_A(i, i) * (1 + share));
+            if (solve()) return true;
         }
+        return false;
     }
 
     bool solve_velocities(const btContactSolverInfo& info) {
@@ -130,22 +139,26 @@ class SoftMlcpSolver : public btMLCPSolver {
                                   info.m_numIterations);
     }
 
-    /// The push apart of what overlaps: the same rows, whose right side is a contact's depth.
-    bool solve_penetration(const btContactSolverInfo& info) {
+    /// The push apart of what overlaps: the same rows, whose right side is a contact's depth. Where it
+    /// cannot be solved nothing is pushed in this step; the velocities, which are, stay.
+    void push_apart(const btContactSolverInfo& info) {
         bool nothing_to_push = true;
         for (int i = 0; i < m_bSplit.rows(); ++i) {
             nothing_to_push = nothing_to_push && m_bSplit[i] == 0;
         }
         m_xSplit.setZero();
-        if (nothing_to_push) return true;
+        if (nothing_to_push) return;
         for (int i = 0; i < m_lo.rows(); ++i) {
             if (m_limitDependencies[i] >= 0) continue;
             const btScalar given = std::min(std::max(btScalar(0), m_lo[i]), m_hi[i]);
             m_lo[i] -= given;
             m_hi[i] -= given;
         }
-        return shifted_.solveMLCP(m_A, m_bSplit, m_xSplit, m_lo, m_hi, m_limitDependencies,
-                                  info.m_numIterations);
+        const bool solved = solved_with_ties([&] {
+            return shifted_.solveMLCP(m_A, m_bSplit, m_xSplit, m_lo, m_hi, m_limitDependencies,
+                                      info.m_numIterations);
+        });
+        if (!solved) m_xSplit.setZero();
     }
 
     ShiftedLcp shifted_;
