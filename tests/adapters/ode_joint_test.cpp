@@ -273,6 +273,46 @@ TEST_CASE("bodies that sleep on a six-axis joint wake as they fell asleep", "[si
     CHECK(joint.absorbed_energy() == 0);
 }
 
+TEST_CASE("hands that move the bodies of a six-axis joint bend nothing", "[six]") {
+    const auto solver = GENERATE(from_range(Rig::solvers()));
+    const double stiffness = GENERATE(as<double>{}, infinity, 2e3);
+    INFO(solver << ", k = " << stiffness);
+    struct Braked {
+        Rig rig;
+        dBodyID rotor;
+        ode::PlasticJoint<Six>& joint;
+        Braked(const std::string& solver, double k)
+            : rig(solver, none),
+              rotor(rig.body(1, sphere(2), none, none, {0, 0, 10})),
+              joint(rig.six_axis(rotor, nullptr, Frame{},
+                                 six(V6::Constant(40), infinity, V6::Constant(k)))) {}
+    };
+    Braked moved(solver, stiffness), twin(solver, stiffness);
+    const double dt = 1.0 / 240;
+    double hands = 0;
+    for (int i = 0; i < 300; ++i) {
+        if (i == 60 || i == 200) { // while it flows, and when it has stopped or swings
+            const Eigen::Quaterniond by(Eigen::AngleAxisd(0.7, V3::UnitZ()));
+            const dReal* q = dBodyGetQuaternion(moved.rotor);
+            const Eigen::Quaterniond to = by * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+            const dReal values[4] = {to.w(), to.x(), to.y(), to.z()};
+            dBodySetQuaternion(moved.rotor, values);
+            const dReal* p = dBodyGetPosition(moved.rotor);
+            dBodySetPosition(moved.rotor, p[0], p[1], p[2] + dReal(0.1));
+            hands += 0.7;
+        }
+        moved.rig.step(dt);
+        twin.rig.step(dt);
+    }
+    CHECK(twin.joint.absorbed_energy() == Approx(100).epsilon(0.02)); // 2 kg m² at 10 rad/s
+    CHECK(moved.joint.absorbed_energy() == Approx(twin.joint.absorbed_energy()).epsilon(exact));
+    CHECK(moved.joint.stored_energy() ==
+          Approx(twin.joint.stored_energy()).epsilon(exact).margin(exact));
+    const double turned_by_hand = moved.joint.plastic_offset(JointAxis::torsion) -
+                                  twin.joint.plastic_offset(JointAxis::torsion);
+    CHECK(turned_by_hand == Approx(hands).epsilon(exact));
+}
+
 TEST_CASE("a six-axis joint does nothing while disabled or without a body", "[six]") {
     const auto solver = GENERATE(from_range(Rig::solvers()));
     Rig rig(solver, {0, 0, -9.81});

@@ -207,6 +207,42 @@ TEST_CASE("bent about one axis and then about another, a joint stays as it was b
     CHECK(std::abs(state.other_work) < 1e-3 * state.plastic_work);
 }
 
+TEST_CASE("hands that move a body bend nothing", "[joint][link]") {
+    const double stiffness = GENERATE(as<double>{}, 500.0, infinity);
+    INFO("k = " << stiffness);
+    Link<Six> link(six(capacities(), infinity, Vector6<double>::Constant(stiffness)),
+                   all_joint_axes, {}, {});
+    Body a = body(1, 2);
+    const Body b = body(1, 2);
+    link.start(a, b);
+    // strained, or as a rigid-plastic joint drifts
+    a.position = V3(1e-3, -2e-3, 3e-3);
+    a.orientation = turned(0.05, {1, 2, -1});
+    link.look(a, b);
+    Vector6<double> strain, before;
+    const auto strained = [&link] {
+        Vector6<double> result;
+        for (const JointAxis axis : all_joint_axes) {
+            result[Eigen::Index(index(axis))] = link.position(axis) - link.plastic_offset(axis);
+        }
+        return result;
+    };
+    strain = strained();
+    for (const JointAxis axis : all_joint_axes) {
+        before[Eigen::Index(index(axis))] = link.plastic_offset(axis);
+    }
+    CHECK(strain.norm() > 0.01);
+    link.go_along(a, b); // nobody did
+    CHECK(strained() == strain);
+
+    a.position += V3(0.4, -3, 0.1);
+    a.orientation = turned(2, {0, 3, 1}) * a.orientation;
+    link.go_along(a, b);
+    CHECK((strained() - strain).norm() < 1e-12);
+    CHECK(link.position(JointAxis::shear_x) == Approx(0.401).epsilon(1e-12));
+    CHECK(link.plastic_offset(JointAxis::shear_x) - before[0] == Approx(0.4).epsilon(1e-12));
+}
+
 TEST_CASE("a link goes on from saved state bit for bit", "[joint][link]") {
     const auto make = [] {
         Body a = body(2, 0.3, V3(0, 0, 0.2));

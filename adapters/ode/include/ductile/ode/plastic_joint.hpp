@@ -25,7 +25,9 @@
 //
 // Life in a world. The joint does nothing in a step in which ODE does not solve it: while both
 // bodies sleep, while id() is disabled by the user, while neither body can move, and for ever after
-// one of the bodies is destroyed. A broken joint stays broken; its angular motor is disabled, so
+// one of the bodies is destroyed. What its bodies do meanwhile, and what somebody moves by hand between
+// two steps, is no deformation: the plastic axes keep their strain, their rest position goes along. Rigid
+// axes are pulled together again. A broken joint stays broken; its angular motor is disabled, so
 // the user may let the two bodies collide again.
 //
 // Bodies turn by ODE's first-order rule unless dBodySetFiniteRotationMode(body, 1) is set, which
@@ -195,6 +197,7 @@ class PlasticJoint final : public PlasticConstraint {
     /// Goes on from a saved state; the bodies have to be put back too.
     void restore(const State& state) {
         link_.restore(state);
+        put_back_ = true;
         silent_ = broken();
         broken() ? dJointDisable(id_) : dJointEnable(id_);
     }
@@ -210,6 +213,8 @@ class PlasticJoint final : public PlasticConstraint {
         }
         acting_ = true;
         const BodyState<double> a = body_state(a_), b = body_state(b_);
+        if (!put_back_) link_.go_along(a, b);
+        put_back_ = false;
         const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
         const auto& rows = link_.prepare(a, b, dt, rate);
         arm_a_ = link_.point() - a.position;
@@ -340,6 +345,7 @@ class PlasticJoint final : public PlasticConstraint {
     JointWrench<double> centre_; ///< c of all rows
     OutsideForce outside_;
     BreakRelease<double> release_;
+    bool put_back_ = false; ///< a saved state, with which the bodies move back
     bool acting_ = false; ///< between prepare and commit: the joint takes part in this step
     bool silent_ = true;  ///< no force
 };
