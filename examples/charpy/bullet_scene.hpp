@@ -190,7 +190,7 @@ class BulletScene {
         info.m_numIterations = s_.iterations;
         info.m_splitImpulse = true;
         info.m_splitImpulsePenetrationThreshold = scalar(1e30); // at any depth
-        info.m_globalCfm = scalar(1e-7); // as the ODE scene's contacts: 10 kN yield at 1 mm/s
+        info.m_globalCfm = scalar(compliance(s_.restitution));
         // manifolds made by hand do not merge islands: one island for all
         world_->getSimulationIslandManager()->setSplitIslands(false);
     }
@@ -324,12 +324,15 @@ class BulletScene {
         const btVector3 normal = ductile::bullet::to_bullet(point.normal);
         const btVector3 on_face =
             ductile::bullet::to_bullet(point.position - point.gap * point.normal);
+        const bool rebounds =
+            rebound(s_.restitution, closing_speed(*pair.striker, *pair.part, point)) > 0;
         btManifoldPoint entry(pair.striker->getCenterOfMassTransform().invXform(on_edge),
                               pair.part->getCenterOfMassTransform().invXform(on_face), normal,
-                              scalar(point.gap + unlike));
+                              scalar((rebounds ? 0 : point.gap) + unlike));
         entry.m_positionWorldOnA = on_edge;
         entry.m_positionWorldOnB = on_face;
         entry.m_combinedFriction = scalar(s_.friction);
+        entry.m_combinedRestitution = scalar(rebounds ? s_.restitution : 0);
         entry.m_appliedImpulse = impulse;
         pair.manifold->addManifoldPoint(entry);
     }
@@ -414,6 +417,16 @@ class BulletScene {
     /// Six axes locked, but for `free` (-1: none).
     static void lock(btGeneric6DofConstraint& joint, int free) {
         for (int axis = 0; axis < 6; ++axis) joint.setLimit(axis, axis == free ? 1 : 0, 0);
+    }
+
+    /// How fast the edge closes in on the face at a point of contact [m/s].
+    static double closing_speed(const btRigidBody& striker, const btRigidBody& part,
+                                const ContactPoint& point) {
+        const btVector3 at = ductile::bullet::to_bullet(point.position);
+        const auto velocity = [&at](const btRigidBody& body) {
+            return body.getVelocityInLocalPoint(at - body.getCenterOfMassPosition());
+        };
+        return ductile::bullet::to_core(velocity(part) - velocity(striker)).dot(point.normal);
     }
 
     [[nodiscard]] btVector3 nose_tip() const { return hammer_->getCenterOfMassTransform() * nose_local_; }

@@ -90,7 +90,7 @@ void print_expected(const charpy::Scenario& s, const charpy::Reference& expected
         "Charpy impact test: steel {:.0f} MPa, section {:.0f} x {:.0f} mm with a {:.0f} mm notch, "
         "plastic moment {:.1f} N m\n"
         "hammer {:.2f} kg m^2 about its pivot, {:.1f} rad drop, strikes at {:.3f} m/s; friction {:g}\n"
-        "expected by mechanics (frictionless): rotation {:.4f} rad, plastic work {:.2f} J, hammer loss "
+        "expected by mechanics (frictionless, perfectly inelastic): rotation {:.4f} rad, plastic work {:.2f} J, hammer loss "
         "{:.2f} J, halves {:.3f} J\n\n",
         s.yield_stress / 1e6, 1e3 * s.width, 1e3 * s.height, 1e3 * s.notch, s.notched_moment(),
         s.hammer_inertia(), s.start_angle, expected.strike_speed, s.friction, expected.rotation,

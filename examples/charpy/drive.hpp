@@ -41,6 +41,7 @@ Result drive(const Scenario& scenario, Method method, const std::string& solver,
     r.dt = scenario.dt;
     r.adaptive = scenario.adaptive;
     r.friction = scenario.friction;
+    r.restitution = scenario.restitution;
 
     double time = 0;
     double next_sample = 0;

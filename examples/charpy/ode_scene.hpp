@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The Charpy test in ODE. Contact joints are made from the points of edge_contact.hpp; one that is
-// still apart gets a target velocity that lets it close the gap in this step and no more. Bodies do
-// not collide otherwise.
+// still apart gets a target velocity that lets it close the gap in this step and no more, one that
+// rebounds the velocity at which it parts. Bodies do not collide otherwise.
 //
 // The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of the
 // blow gravity would move it by 0.1 mm.
@@ -347,13 +347,14 @@ class OdeScene {
     void add_contact(const Pair& pair, const ContactPoint& point, double dt) {
         dContact contact{};
         contact.surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
-        // keeps the direct solver from failing on redundant contacts; 10 kN yield at 1 mm/s
-        contact.surface.soft_cfm = dReal(1e-7);
+        contact.surface.soft_cfm = dReal(compliance(s_.restitution));
         contact.surface.mu = dReal(s_.friction);
         // the direct solver's pivoting stalls where symmetric contacts reach their bound at once: no
         // two are quite alike
         const double unlike = 1e-6 * (1 + 0.37 * contact_count_++);
-        contact.surface.motionN = dReal(-std::max(point.gap, 0.0) / dt - unlike);
+        const double parting = rebound(s_.restitution, closing_speed(pair, point));
+        contact.surface.motionN =
+            dReal((parting > 0 ? parting : -std::max(point.gap, 0.0) / dt) - unlike);
         contact.geom.depth = dReal(std::max(-point.gap, 0.0));
         for (int i = 0; i < 3; ++i) {
             contact.geom.pos[i] = dReal(point.position[i]);
@@ -362,6 +363,13 @@ class OdeScene {
         dJointID joint = dJointCreateContact(world_, contacts_, &contact);
         dJointAttach(joint, pair.part, pair.striker);
         meter_->add_contact(joint, contact.geom);
+    }
+
+    /// How fast the edge closes in on the face at a point of contact [m/s].
+    static double closing_speed(const Pair& pair, const ContactPoint& point) {
+        const Vector edge = pair.striker == nullptr ? Vector(Vector::Zero())
+                                                    : velocity_at(pair.striker, point.position);
+        return (velocity_at(pair.part, point.position) - edge).dot(point.normal);
     }
 
     [[nodiscard]] Vector nose_tip() const { return position(hammer_) + basis(hammer_) * nose_local_; }

@@ -101,7 +101,7 @@ inline void declare(CLI::App& app, Options& o) {
     app.add_option("--friction", s.friction, "Coulomb coefficient of every contact [-]")
         ->capture_default_str()->group(world);
     app.add_option("--restitution", s.restitution,
-                   "of every contact; only the source's 0, perfectly inelastic [-]")
+                   "of every contact, Newton's, in [0, 1]; none below 0.2 m/s [-]")
         ->capture_default_str()->group(world);
     app.add_option("--gravity", s.gravity, "[m/s^2]")->capture_default_str()->group(world);
     app.add_option("--iterations", s.iterations,

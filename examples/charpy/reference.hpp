@@ -14,7 +14,8 @@
 //
 // The halves slip through when a lower end corner reaches the anvil edge,
 //   (l/2) cos φ + (h/2) sin φ = a,   φ = atan(h/l) + acos(2a/√(l² + h²)).
-// First contact is perfectly inelastic, and then (M D'² + M_s) φ'²/2 + M_p 2φ is constant. An elastic
+// First contact is perfectly inelastic (a restitution lets the halves run ahead of the nose and be caught again:
+// small ones change little, which the tests bound), and then (M D'² + M_s) φ'²/2 + M_p 2φ is constant. An elastic
 // joint has turned by M_p/k of the hinge angle without flow: it dissipates M_p (2φ - M_p/k), and
 // M_p²/2k springs back once the halves are free. That is the mechanism of two parts; the elastic
 // bend of further joints between more parts is left out.
@@ -36,6 +37,7 @@ struct Reference {
     double contact_loss = 0;     ///< of the perfectly inelastic first contact [J]
     double hammer_loss = 0;      ///< kinetic energy the hammer loses until then [J]
     double specimen_kinetic = 0; ///< of the halves then [J]
+    double rebound_loss = 0;     ///< of the hammer at a bar that does not bend: it keeps -e of its speed [J]
 };
 
 [[nodiscard]] inline Reference reference(const Scenario& s,
@@ -68,6 +70,8 @@ struct Reference {
                            (1 - std::cos(s.start_angle));
     r.strike_energy = dropped;
     r.strike_speed = s.swing_radius * std::sqrt(2 * dropped / s.hammer_inertia());
+
+    r.rebound_loss = dropped * (1 - s.restitution * s.restitution);
 
     const double momentum = nose_mass * nose_rate(0) * r.strike_speed;
     const double after_contact = momentum * momentum / inertia(0) / 2;

@@ -24,6 +24,7 @@ namespace charpy {
             {"dt_s", r.dt},
             {"adaptive", r.adaptive},
             {"friction", r.friction},
+            {"restitution", r.restitution},
             {"steps", r.steps},
             {"wall_s", r.wall},
             {"strike_time_s", r.strike_time},
@@ -68,7 +69,13 @@ inline constexpr std::string_view history_header =
     const double kinetic = number("specimen_kinetic_J");
     const std::string method = r.at("method");
     if (!std::isfinite(loss) || std::abs(number("unexplained_J")) > 1) return "unstable";
-    if (method == "rigid") return "stops the hammer, as it must";
+    if (method == "rigid") {
+        const bool right = std::abs(loss - expected.rebound_loss) <= 0.02 * expected.strike_energy;
+        return fmt::format("{} the hammer, {}",
+                           r.at("restitution").get<double>() > 0 ? "bounces" : "stops",
+                           right ? "as it must"
+                                 : fmt::format("off ({:.1f} J expected)", expected.rebound_loss));
+    }
     if (r.at("broken").get<bool>() && work < 0.05 * expected.plastic_work) return "breaks brittle";
     if (method.starts_with("spring")) {
         const char* gives = work < -0.01 * expected.plastic_work ? "; joint adds energy" : "";

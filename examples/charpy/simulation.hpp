@@ -62,6 +62,7 @@ struct Result {
     double dt = 0; ///< fixed step or, where adaptive, the longest allowed [s]
     bool adaptive = false;
     double friction = 0;
+    double restitution = 0;
     long steps = 0;
     double wall = 0;             ///< of the engine's steps and commits [s]
     double strike_time = 0;      ///< time of first contact [s]

@@ -48,8 +48,8 @@ refuses '--draft = -0.01 m: must be finite and >= 0' $one --draft -0.01
 refuses '--nose-width: must be left out here' $one --draft 0 --nose-width 0.003
 refuses '--nose-width = 0.03 m' $one --nose-width 0.03
 refuses '--anvil-gap = 0.06 m: must be in (0, 0.055) m' $one --anvil-gap 0.06
-refuses '--restitution = 0.5: must be 0' $one --restitution 0.5
-refuses '--restitution = -0.1: must be 0' $one --restitution -0.1
+refuses '--restitution = 1.5: must be in [0, 1]' $one --restitution 1.5
+refuses '--restitution = -0.1: must be in [0, 1]' $one --restitution -0.1
 refuses '--iterations = 0: must be >= 1' $one --iterations 0
 refuses '--iterations: must be left out here, it acts on iterative solvers' --engine ode --iterations 50
 refuses '--max-plastic-rotation: must be left out here' --method hinge-motor --max-plastic-rotation 1.5
