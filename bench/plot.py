@@ -93,7 +93,7 @@ def draw_detail(rows, path):
                               color=colour, markeredgecolor="white", markeredgewidth=0.4)
         axis.set(xscale="log", yscale="log", title=scene)
         axis.title.set_fontsize(9)
-        axis.tick_params(labelsize=7)
+        axis.tick_params(which="both", labelsize=6)
         axis.grid(alpha=0.25, which="major")
     for axis in axes[-1]:
         axis.set_xlabel("CPU seconds per simulated second", fontsize=8)

@@ -32,8 +32,8 @@ using namespace bench::stability;
 
 namespace {
 
-/// Steps × bodies² of a cell.
-constexpr double full_work = 1e6, quick_work = 1e5;
+/// Steps × bodies³ of a cell.
+constexpr double full_work = 1e7, quick_work = 2e6;
 
 void run_job(const Grid& grid, const std::string& solver, const std::string& method,
              std::size_t from, bool died, double work) {

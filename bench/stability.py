@@ -119,7 +119,7 @@ def report(rows, failed, meta):
         lines.append("")
     alarms = [row for row in ours if row["class"] == "right" and flag(row, "said")]
     lines += [f"Right cells of ours in which some step was said to be unreliable: {len(alarms)}.", "",
-              "not-finished: beyond the limit of work (steps × bodies²), the same for every method.", ""]
+              "not-finished: not run, beyond the limit of work (steps × bodies³), the same for every method.", ""]
     if coarse:
         lines += ["## Ours, silent, step of a twentieth of the motion or more", ""]
         lines += head + [cell_line(row) for row in coarse]

@@ -2,7 +2,7 @@
 //
 // Runs one cell and says what became of it. The same limits for every method:
 //
-//   not-finished   the limit of work came before the scene's end
+//   not-finished   not run: beyond the limit of work, or the program died in it
 //   blown-up       a number was no longer one, or energy rose tenfold above all there was
 //   energy-gained  kinetic and potential energy rose by more than 5 % of the scene's energy
 //   right          the scene's first quantity is within 5 % and rest is rest
@@ -71,13 +71,13 @@ class RestWatch {
     std::vector<double> first_, last_, low_, high_;
 };
 
-/// `work`: limit of steps × bodies²; counted and not timed, so that two runs agree.
+/// `work`: limit of steps × bodies³, which is what a direct solver takes; counted and not timed, so that two
+/// runs agree. A scene beyond it is not run.
 template <class World>
-Cell run_cell(Trial trial, const Settings& settings, double work) {
+Cell run_cell(const Trial& trial, const Settings& settings, double work) {
     const double bodies = double(trial.scene.bodies.size());
-    const double longest = std::max(work / (bodies * bodies), 1.0) * settings.dt;
-    const bool cut = trial.scene.duration > longest;
-    if (cut) trial.scene.duration = longest;
+    const double steps = trial.scene.duration / settings.dt;
+    if (steps * bodies * bodies * bodies > work) return {.verdict = "not-finished"};
 
     RestWatch rest(trial);
     const RunResult run = observe<World>(trial.scene, settings,
@@ -90,18 +90,15 @@ Cell run_cell(Trial trial, const Settings& settings, double work) {
     cell.energy_gain =
         run.finite ? std::max(run.energy_highest - run.energy_start, 0.0) / trial.energy_scale
                    : infinity;
-    if (!cut) {
-        cell.error = relative_error(trial.scene.quantities.front(), run).value_or(infinity);
-        for (const Quantity& quantity : trial.scene.quantities) {
-            if (quantity.name != "absorbed_energy") continue;
-            cell.energy_error = relative_error(quantity, run).value_or(-1);
-        }
+    cell.error = relative_error(trial.scene.quantities.front(), run).value_or(infinity);
+    for (const Quantity& quantity : trial.scene.quantities) {
+        if (quantity.name != "absorbed_energy") continue;
+        cell.energy_error = relative_error(quantity, run).value_or(-1);
     }
     const std::string_view unrest = rest.verdict();
     cell.verdict = [&]() -> std::string_view {
         if (!run.finite || cell.energy_gain > blown_up_gain) return "blown-up";
         if (cell.energy_gain > allowed_gain) return "energy-gained";
-        if (cut) return "not-finished";
         if (cell.error <= allowed_error && unrest.empty()) return "right";
         if (cell.said) return "refused";
         return unrest.empty() ? "off" : unrest;
