@@ -83,7 +83,6 @@ struct OpenRow {
   private:
     [[nodiscard]] StepError<S> error_of(const RowBooking<S>& booked, S force, S moved,
                                         S dt) const noexcept {
-        const bool rigid = stiffness == std::numeric_limits<S>::infinity();
         return step_error<S>(
             {.force = force,
              .start = start,
@@ -93,7 +92,6 @@ struct OpenRow {
              .strength = std::max(upper, -lower) / share,
              .stiffness = stiffness,
              .implicit = implicit,
-             .stored = rigid ? S(0) : stiffness * elastic * elastic / 2 + booked.elastic,
              .other_work = booked.other,
              .flowed = booked.travel != 0});
     }

@@ -250,7 +250,6 @@ class OneAxisJoint {
 
     [[nodiscard]] StepError<Scalar> error_of(const Step<Scalar>& step,
                                              const Taken& taken) const noexcept {
-        const Scalar k = rigid() ? Scalar(0) : parameters_.stiffness;
         return step_error<Scalar>({.force = taken.force,
                                    .start = start_,
                                    .travel = taken.travel,
@@ -259,7 +258,6 @@ class OneAxisJoint {
                                    .strength = resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
                                    .implicit = implicit_,
-                                   .stored = k * elastic_ * elastic_ / 2 + step.elastic,
                                    .other_work = step.other_work,
                                    .flowed = step.plastic_work > 0});
     }

@@ -12,8 +12,9 @@
 // Direction. Rows that share a yield surface flow along its normal as far as their bounds were set around the
 // right force. Plastic work done along another direction is misplaced as well (CoupledJoint::astray).
 //
-// Spring. One that the step cannot resolve is damped: it comes to rest where it should swing on.
-// Where the row would have yielded had it kept that energy, the step is too long as well.
+// Spring. One that the step cannot resolve is damped: it comes to rest under the force f where it should swing
+// on about it, by √(2 k E) with the energy E that it lost. Where that would have reached the row's strength, the
+// step is too long as well.
 //
 // Estimates for warning, not bounds: they cannot see motion that never reached the joint.
 //
@@ -34,11 +35,10 @@ struct RowStep {
     S start;      ///< u [m/s | rad/s]
     S travel;     ///< (u + u') dt/2, signed [m | rad]
     S dt;         ///< [s]
-    S noise;      ///< speed below which nothing moves [m/s | rad/s]
+    S noise;      ///< speed below which nothing flows [m/s | rad/s]
     S strength;   ///< R [N | N m]
     S stiffness;  ///< k; infinite: rigid [N/m | N m/rad]
     S implicit;   ///< θ of an elastic row
-    S stored;     ///< elastic energy after the step [J]
     S other_work; ///< numerical damping and the like [J]
     bool flowed;
 };
@@ -58,14 +58,18 @@ struct StepError {
 
 template <std::floating_point S>
 [[nodiscard]] StepError<S> step_error(const RowStep<S>& row) noexcept {
-    if (std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt) return {};
     const bool rigid = row.stiffness == std::numeric_limits<S>::infinity();
     const S change = std::abs(row.force * (row.travel - row.start * row.dt));
-    if (row.flowed) return {.flow = (rigid ? S(1) : row.implicit) * change};
+    if (row.flowed) {
+        const bool still =
+            std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt;
+        return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * change};
+    }
+    // a stiff spring moves by little, and what it does is measured by its force
     if (rigid || row.implicit == 0) return {};
     const S lost = row.implicit * std::max(row.other_work, change);
-    const S at_yield = row.strength * row.strength / (2 * row.stiffness);
-    return {.swing = row.stored + lost > at_yield ? lost : S(0)};
+    const S swing = lost > 0 ? std::sqrt(2 * row.stiffness * lost) : S(0);
+    return {.swing = std::abs(row.force) + swing > row.strength ? lost : S(0)};
 }
 
 } // namespace ductile

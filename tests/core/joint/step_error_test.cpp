@@ -138,8 +138,15 @@ TEST_CASE("a spring that the step damps is told where it would have yielded", "[
     };
     CHECK(sudden(0.8, 1.0 / 60)); // a = 11: comes to rest at 0.8 of yield, and should have yielded
     CHECK(sudden(0.8, 1.0 / 30));
-    CHECK_FALSE(sudden(0.3, 1.0 / 60)); // swings to 0.6 of yield only
+    CHECK(sudden(0.6, 1.0 / 60));
+    CHECK(sudden(0.6, 1.0 / 30));
+    CHECK_FALSE(sudden(0.45, 1.0 / 60)); // swings to 0.9 of yield only
+    CHECK_FALSE(sudden(0.3, 1.0 / 60));
     CHECK_FALSE(sudden(0.8, 2e-4));     // a = 0.0016: it swings
+
+    // ten times as stiff: it moves at a millimetre a second, and the first step says it
+    Body stiff(100, strength, 4e7);
+    CHECK(stiff.step(1.0 / 30, 0.8 * strength).coarse);
 }
 
 TEST_CASE("slow loading of a stiff spring raises no alarm", "[step_error]") {
