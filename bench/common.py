@@ -5,6 +5,7 @@ measured."""
 import argparse
 import csv
 import datetime
+import gzip
 import json
 import os
 import re
@@ -39,6 +40,20 @@ def write_rows(rows, columns, path, others="raise"):
         writer = csv.DictWriter(file, columns, extrasaction=others, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def stored_rows(folder, table):
+    """The rows of a stored table, also of one that was packed with gzip; none where it is not there."""
+    path = Path(folder) / table
+    packed = path.with_name(table + ".gz")
+    if path.exists():
+        file = open(path, newline="")
+    elif packed.exists():
+        file = gzip.open(packed, "rt", newline="")
+    else:
+        return []
+    with file:
+        return list(csv.DictReader(file))
 
 
 class Progress:

@@ -7,10 +7,10 @@ compared as ratios to the median row of their own run, so that a machine that is
 count. Exit status 1 where an error differs; the spread of the costs is printed.
 """
 
-import csv
 import statistics
 import sys
-from pathlib import Path
+
+from common import stored_rows
 
 # table -> columns that name a row, columns that must repeat; all cost columns but these vary
 TABLES = {
@@ -25,11 +25,7 @@ COST = "cpu_s_per_sim_s"
 
 
 def read(folder, table, key):
-    path = Path(folder) / table
-    if not path.exists():
-        return None
-    with open(path, newline="") as file:
-        return {tuple(row[c] for c in key): row for row in csv.DictReader(file)}
+    return {tuple(row[c] for c in key): row for row in stored_rows(folder, table)} or None
 
 
 def compare(table, key, columns, first, second):

@@ -7,7 +7,6 @@ front drawn and our points filled and large. From detail.csv, where it is there,
 at each tolerance, the chosen one large. Nothing is run.
 """
 
-import csv
 from collections import defaultdict
 
 import matplotlib
@@ -15,17 +14,12 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-from common import results_folder  # noqa: E402
+from common import results_folder, stored_rows  # noqa: E402
 from pareto import ALL_METHODS, front, is_ours, number, primary  # noqa: E402
 
 BEST, WORST = 1e-9, 10.0  # errors beyond are drawn at the rim
 OUR_COLOURS = {"plastic-hinge": "crimson", "elastic-plastic": "darkorange", "plastic-joint": "navy"}
 MARKERS = {("bullet", "double"): "o", ("bullet", "float"): "^", ("ode", "double"): "s"}
-
-
-def read(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def shown(row):
@@ -110,13 +104,12 @@ def draw_detail(rows, path):
 
 def main():
     folder = results_folder(__doc__)
-    if (folder / "pareto.csv").exists():
-        rows = read(folder / "pareto.csv")
-        for scene, quantity in primary(rows).items():
-            chosen = [r for r in rows if r["scene"] == scene and r["quantity"] == quantity]
-            draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
-    if (folder / "detail.csv").exists():
-        draw_detail(read(folder / "detail.csv"), folder / "detail.png")
+    rows = stored_rows(folder, "pareto.csv")
+    for scene, quantity in primary(rows).items():
+        chosen = [r for r in rows if r["scene"] == scene and r["quantity"] == quantity]
+        draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
+    if detail := stored_rows(folder, "detail.csv"):
+        draw_detail(detail, folder / "detail.png")
 
 
 if __name__ == "__main__":

@@ -14,9 +14,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.colors import BoundaryNorm, ListedColormap  # noqa: E402
 from matplotlib.patches import Patch  # noqa: E402
 
-from common import results_folder  # noqa: E402
+from common import results_folder, stored_rows  # noqa: E402
 from pareto import ALL_METHODS, is_ours  # noqa: E402
-from plot import read  # noqa: E402
 
 COLOURS = {"right": "#2a9d4a", "refused": "#6baed6", "off": "#f2c14e", "drift": "#f08a4b",
            "jitter": "#c9a0dc", "energy-gained": "#d7263d", "blown-up": "#3b0d11",
@@ -94,13 +93,12 @@ def draw_scaling(rows, path):
 
 def main():
     folder = results_folder(__doc__)
-    if (folder / "stability.csv").exists():
-        rows = read(folder / "stability.csv")
-        for scene, x_name in dict.fromkeys((r["scene"], r["x_name"]) for r in rows):
-            chosen = [r for r in rows if (r["scene"], r["x_name"]) == (scene, x_name)]
-            draw(scene, x_name, chosen, folder / f"stability-{scene}-{x_name.removesuffix('_s')}.png")
-    if (folder / "scaling.csv").exists():
-        draw_scaling(read(folder / "scaling.csv"), folder / "scaling.png")
+    rows = stored_rows(folder, "stability.csv")
+    for scene, x_name in dict.fromkeys((r["scene"], r["x_name"]) for r in rows):
+        chosen = [r for r in rows if (r["scene"], r["x_name"]) == (scene, x_name)]
+        draw(scene, x_name, chosen, folder / f"stability-{scene}-{x_name.removesuffix('_s')}.png")
+    if scaling := stored_rows(folder, "scaling.csv"):
+        draw_scaling(scaling, folder / "scaling.png")
 
 
 if __name__ == "__main__":

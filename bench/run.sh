@@ -5,7 +5,8 @@
 # results with the machine they are of, and draws them.
 #   bench/run.sh [--quick] [--name NAME | --out FOLDER]     results in bench/results/NAME or in FOLDER
 # NAME: default the processor's name, with -quick where quick. --quick takes some minutes on two idle
-# cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME.
+# cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME and
+# bench/plot_stability.py bench/results/NAME; both, and bench/compare.py, read tables packed with gzip, too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=()
