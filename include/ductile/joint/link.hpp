@@ -104,10 +104,10 @@ class Link {
     /// What moved the bodies since the last look was hands, and no deformation: the plastic axes keep
     /// their strain and their rest position goes along.
     void go_along(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+        if (pose_.is_now(a, b)) return;
         const Vector6<S> before = strain();
         pose_.look(a, b);
         const Vector6<S> moved = from_joint(to_joint(strain() - before));
-        if (moved.isZero(0)) return;
         const Vector3<S> kept = pose_.elastic_rotation() - moved.template tail<3>();
         set_offset(from_joint(offset()) + moved);
         if (!moved.template tail<3>().isZero(0)) {

@@ -28,9 +28,13 @@ class LinkPose {
     [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return in_a_; }
     [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return in_b_; }
 
+    /// True where neither body has moved since the last look, to the last bit.
+    [[nodiscard]] bool is_now(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
+        return seen_a_.is(a) && seen_b_.is(b);
+    }
     /// Looks where the bodies are now.
     void look(const BodyState<S>& a, const BodyState<S>& b) noexcept {
-        if (seen_a_.is(a) && seen_b_.is(b)) return;
+        if (is_now(a, b)) return;
         seen_a_ = {a.position, a.orientation};
         seen_b_ = {b.position, b.orientation};
         turned_ = true;
