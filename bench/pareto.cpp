@@ -58,6 +58,9 @@ const Plan quick{{1.0 / 60, 1.0 / 240, 1e-3, 5e-4, 2e-4, 1e-4, 2e-5},
                  3,
                  0.003};
 
+/// Of ours the one that is run with fixed leapfrog steps as well.
+constexpr std::string_view leapfrogs = "plastic-hinge";
+
 std::vector<int> iterations_of(const SolverName& solver, const Plan& plan) {
     switch (solver.iterations) {
         case Iterations::none:
@@ -92,6 +95,13 @@ std::vector<Settings> rows(const Scene& scene, const Plan& plan) {
                     if (scene.duration / dt <= double(plan.longest)) result.push_back(row);
                 }
                 if (!method.ours) continue;
+                row.leapfrog = true;
+                for (const double dt : plan.steps) {
+                    row.dt = dt;
+                    if (method.name == leapfrogs && scene.duration / dt <= double(plan.longest)) {
+                        result.push_back(row);
+                    }
+                }
                 for (const double tolerance : plan.tolerances) {
                     row.tolerance = tolerance;
                     result.push_back(row);
@@ -103,7 +113,20 @@ std::vector<Settings> rows(const Scene& scene, const Plan& plan) {
 }
 
 std::string name(const Settings& row) {
-    return row.method + (row.adaptive() ? std::string(adaptive_suffix) : "");
+    if (row.adaptive()) return row.method + std::string(adaptive_suffix);
+    return row.method + (row.leapfrog ? std::string(leapfrog_suffix) : "");
+}
+
+/// The run of a row's name; its other fields are set by the caller.
+Settings named(const std::string& method) {
+    Settings row;
+    row.method = method;
+    for (const std::string_view suffix : {adaptive_suffix, leapfrog_suffix}) {
+        if (!method.ends_with(suffix)) continue;
+        row.method.resize(method.size() - suffix.size());
+        row.leapfrog = true;
+    }
+    return row;
 }
 
 void run(const Scene& scene, const Settings& row, const Plan& plan) {
@@ -150,11 +173,12 @@ int main(int argc, char** argv) try {
             const auto fields = CLI::detail::split(single, ',');
             if (fields.size() != 5)
                 throw std::invalid_argument("--row = " + single + ": five fields");
-            run_once(scene, {.solver = fields[0],
-                             .iterations = std::stoi(fields[4]),
-                             .method = fields[1],
-                             .dt = std::stod(fields[2]),
-                             .tolerance = std::stod(fields[3])});
+            Settings row = named(fields[1]);
+            row.solver = fields[0];
+            row.dt = std::stod(fields[2]);
+            row.tolerance = std::stod(fields[3]);
+            row.iterations = std::stoi(fields[4]);
+            run_once(scene, row);
             continue;
         }
         for (const Settings& row : rows(scene, plan)) {

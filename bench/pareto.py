@@ -39,8 +39,13 @@ TARGETS = (0.05, 0.01, 0.001)
 GAME_STEP = 1 / 60
 
 
+def joint_of(method):
+    """The joint of a method, whatever the steps."""
+    return method.removesuffix("-adaptive").removesuffix("-leapfrog")
+
+
 def is_ours(method):
-    return method.removesuffix("-adaptive") in OURS
+    return joint_of(method) in OURS
 
 
 def run_all(folder, quick):
@@ -105,8 +110,7 @@ def count_instructions(rows):
     """Fills the column instructions; callgrind collects inside the stepping function only."""
     progress = Progress("callgrind", sum(int(row["steps"]) for row in rows))
     for row in rows:
-        method = row["method"].removesuffix("-adaptive")
-        spec = ",".join((row["solver"], method, row["dt_s"], row["tolerance"], row["iterations"]))
+        spec = ",".join((row["solver"], row["method"], row["dt_s"], row["tolerance"], row["iterations"]))
         with tempfile.TemporaryDirectory() as scratch:
             run = subprocess.run(
                 ["valgrind", "--tool=callgrind", "--toggle-collect=*bench_steps*",
@@ -206,7 +210,7 @@ def report(summary, of_energy, failed, meta):
 
     lines += comparison("Ours against the cheapest other method at 1 %", summary, cost)
     lines += comparison("The same at 1 % of the absorbed energy, of methods that keep an account", of_energy, cost)
-    present = {line["method"].removesuffix("-adaptive") for line in summary}
+    present = {joint_of(line["method"]) for line in summary}
     missing = [method for method in ALL_METHODS if method not in present]
     if missing:
         lines += ["Not there yet: " + ", ".join(missing) + "."]

@@ -15,11 +15,12 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from common import results_folder, stored_rows  # noqa: E402
-from pareto import ALL_METHODS, front, is_ours, number, primary  # noqa: E402
+from pareto import ALL_METHODS, front, is_ours, joint_of, number, primary  # noqa: E402
 
 BEST, WORST = 1e-9, 10.0  # errors beyond are drawn at the rim
 OUR_COLOURS = {"plastic-hinge": "crimson", "elastic-plastic": "darkorange", "plastic-joint": "navy"}
 MARKERS = {("bullet", "double"): "o", ("bullet", "float"): "^", ("ode", "double"): "s"}
+STEPS = {"-adaptive": "D", "-leapfrog": "P"}  # whatever the engine
 
 
 def shown(row):
@@ -37,11 +38,13 @@ def draw_scene(scene, quantity, rows, path):
     named = set()
     order = sorted(groups.items(), key=lambda item: (is_ours(item[0][0]), item[0]))
     for (method, engine, precision), points in order:
-        ours, adaptive = is_ours(method), method.endswith("-adaptive")
+        ours = is_ours(method)
+        marker = next((m for suffix, m in STEPS.items() if method.endswith(suffix)),
+                      MARKERS.get((engine, precision), "x"))
         axis.plot([number(r, "cpu_s_per_sim_s") for r in points], [shown(r) for r in points],
-                  linestyle="", marker="D" if adaptive else MARKERS.get((engine, precision), "x"),
+                  linestyle="", marker=marker,
                   markersize=6.5 if ours else 4, alpha=0.8,
-                  color=colour[method.removesuffix("-adaptive")], fillstyle="full",
+                  color=colour[joint_of(method)], fillstyle="full",
                   markeredgecolor="white", markeredgewidth=0.5, zorder=4 if ours else 2,
                   label=None if method in named else method)
         named.add(method)
@@ -56,7 +59,7 @@ def draw_scene(scene, quantity, rows, path):
     axis.set(xscale="log", yscale="log", ylim=(lowest / 3, 3 * WORST),
              xlabel="CPU seconds per simulated second", ylabel=f"relative error of {quantity}",
              title=f"{scene}: accuracy against cost\n"
-                   "circle Bullet double, triangle Bullet float, square ODE, diamond adaptive; "
+                   "circle Bullet double, triangle Bullet float, square ODE, diamond adaptive, plus leapfrog; "
                    "large: ours; rims: exact, or worse than 1000 %")
     axis.title.set_fontsize(9)
     axis.grid(alpha=0.25, which="major")

@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ductile/bullet/world.hpp"
 #include "engines/settings.hpp"
 #include "methods/bullet/all.hpp"
 
@@ -52,8 +53,14 @@ class BulletWorld {
             manifolds_.push_back(dispatcher_.getNewManifold(&a, &body(contact.b)));
         }
         made_.resize(manifolds_.size());
+        if (settings.leapfrog) {
+            keeper_ = std::make_unique<ductile::bullet::World>(
+                *world_, ductile::bullet::WorldParameters{
+                             .ledger = false, .leapfrog = true, .warn = nullptr});
+        }
     }
     ~BulletWorld() {
+        keeper_.reset();
         for (btPersistentManifold* manifold : manifolds_) dispatcher_.releaseManifold(manifold);
         holders_.clear();
         for (auto& guide : guides_) world_->removeConstraint(guide.get());
@@ -70,7 +77,11 @@ class BulletWorld {
         }
         for (auto& holder : holders_) holder->before_step(dt);
         collide(dt);
-        world_->stepSimulation(btScalar(dt), 0);
+        if (keeper_) {
+            keeper_->step(dt);
+        } else {
+            world_->stepSimulation(btScalar(dt), 0);
+        }
         for (auto& holder : holders_) holder->after_step(dt);
     }
 
@@ -225,6 +236,7 @@ class BulletWorld {
     std::vector<std::unique_ptr<Holder>> holders_;
     std::vector<btPersistentManifold*> manifolds_;
     std::vector<bool> made_;
+    std::unique_ptr<ductile::bullet::World> keeper_; ///< of a run that leapfrogs
 };
 
 } // namespace bench

@@ -37,8 +37,11 @@ class OdeWorld {
     /// @throws std::invalid_argument where the solver or the method is not there.
     OdeWorld(const Scene& scene, const Settings& settings)
         : scene_(scene),
-          stepper_(world_, settings.solver == "quick" ? ductile::ode::Solver::quick
-                                                      : ductile::ode::Solver::direct) {
+          stepper_(world_, {.solver = settings.solver == "quick" ? ductile::ode::Solver::quick
+                                                                : ductile::ode::Solver::direct,
+                            .ledger = false,
+                            .leapfrog = settings.leapfrog,
+                            .warn = nullptr}) {
         if (settings.solver != "direct" && settings.solver != "quick") {
             throw std::invalid_argument("solver = " + settings.solver +
                                         ": must be direct or quick");
@@ -106,6 +109,7 @@ class OdeWorld {
         dBodySetFiniteRotationMode(body, 1);
         if (spec.weightless) dBodySetGravityMode(body, 0);
         bodies_.push_back(body);
+        stepper_.add(body);
     }
 
     void add_joint(const JointSpec& joint, std::string_view method) {

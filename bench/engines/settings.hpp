@@ -17,6 +17,7 @@ struct Settings {
     double first = 0;     ///< first step where it is another one [s]; 0: like the others
     double tolerance =
         0; ///< > 0: StepControl chooses, with so much plastic travel per step [rad | m]
+    bool leapfrog = false; ///< steps of second order (ductile/world/leapfrog.hpp), of ours only
 
     [[nodiscard]] bool adaptive() const { return tolerance > 0; }
 };

@@ -33,7 +33,9 @@ inline constexpr std::array<MethodName, 10> method_names{{
     {"plastic-joint", true, "ours, six axes, elastic where the joint has a stiffness"},
 }};
 
-/// Ours with the step chosen by StepControl are named with this after the method's name.
+/// Ours in a World that leapfrogs are named with one of these after the method's name: with fixed
+/// steps, and with steps chosen by StepControl.
+inline constexpr std::string_view leapfrog_suffix = "-leapfrog";
 inline constexpr std::string_view adaptive_suffix = "-adaptive";
 
 [[nodiscard]] constexpr bool is_ours(std::string_view method) {

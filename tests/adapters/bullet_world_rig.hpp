@@ -19,25 +19,31 @@ namespace ductile::test {
 namespace engine = ductile::bullet;
 using V3 = Vector3<double>;
 using Joint = OneAxisJoint<Perfect<double>, TravelLimit<double>>;
+using SixAxes = CoupledJoint<Ellipsoid<double, 6>, Perfect<double>>;
 
 class WorldRig {
   public:
     using Hinge = bullet::PlasticHinge<Joint>;
+    using Six = bullet::PlasticJoint<SixAxes>;
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
     explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
-                      bool ledger = true)
+                      bool ledger = true, bool leapfrog = false)
         : solver_(iterative
                       ? std::unique_ptr<btConstraintSolver>(
                             std::make_unique<btSequentialImpulseConstraintSolver>())
                       : std::make_unique<bullet::SoftMlcpSolver>(dantzig_, bullet::Answer::exact)),
           dynamics_(&dispatcher_, &broadphase_, solver_.get(), &configuration_),
-          world_(dynamics_, {.effort = effort, .ledger = ledger, .warn = std::move(warn)}) {
+          world_(dynamics_, {.effort = effort,
+                           .ledger = ledger,
+                           .leapfrog = leapfrog,
+                           .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
     ~WorldRig() {
         for (auto& hinge : hinges_) world_.remove(*hinge);
+        for (auto& joint : sixes_) world_.remove(*joint);
         for (auto& body : bodies_) dynamics_.removeRigidBody(body.get());
     }
 
@@ -69,6 +75,21 @@ class WorldRig {
         return *hinges_.back();
     }
 
+    /// To the static world, axes along those of the world, z along the member.
+    Six& six_axes(Body a, const V3& anchor, SixAxes joint) {
+        btTransform frame;
+        frame.setIdentity();
+        frame.setOrigin(bullet::to_bullet(anchor));
+        sixes_.push_back(std::make_unique<Six>(*a, a->getCenterOfMassTransform().inverse() * frame,
+                                               std::move(joint)));
+        world_.add(*sixes_.back());
+        return *sixes_.back();
+    }
+
+    void set_gravity(const V3& g) {
+        dynamics_.setGravity(bullet::to_bullet(g));
+        for (auto& body : bodies_) body->setGravity(bullet::to_bullet(g));
+    }
     static void apply_force(Body b, const V3& force) {
         b->applyCentralForce(bullet::to_bullet(force));
     }
@@ -89,6 +110,7 @@ class WorldRig {
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     bullet::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
+    std::vector<std::unique_ptr<Six>> sixes_;
 };
 
 } // namespace ductile::test

@@ -18,18 +18,21 @@ namespace ductile::test {
 namespace engine = ductile::ode;
 using V3 = Vector3<double>;
 using Joint = OneAxisJoint<Perfect<double>, TravelLimit<double>>;
+using SixAxes = CoupledJoint<Ellipsoid<double, 6>, Perfect<double>>;
 
 class WorldRig {
   public:
     using Hinge = ode::PlasticHinge<Joint>;
+    using Six = ode::PlasticJoint<SixAxes>;
     using Body = dBodyID;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
     explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
-                      bool ledger = true)
+                      bool ledger = true, bool leapfrog = false)
         : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,
                        .effort = effort,
                        .ledger = ledger,
+                       .leapfrog = leapfrog,
                        .warn = std::move(warn)}) {
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetQuickStepNumIterations(id_, 10);
@@ -37,7 +40,9 @@ class WorldRig {
     }
     ~WorldRig() {
         for (auto& hinge : hinges_) world_.remove(*hinge);
+        for (auto& joint : sixes_) world_.remove(*joint);
         hinges_.clear();
+        sixes_.clear();
         dWorldDestroy(id_);
         dCloseODE();
     }
@@ -65,6 +70,15 @@ class WorldRig {
         return *hinges_.back();
     }
 
+    /// To the static world, axes along those of the world, z along the member.
+    Six& six_axes(Body a, const V3& anchor, SixAxes joint) {
+        sixes_.push_back(std::make_unique<Six>(
+            id_, a, nullptr, Six::Frame{.origin = anchor}, std::move(joint)));
+        world_.add(*sixes_.back());
+        return *sixes_.back();
+    }
+
+    void set_gravity(const V3& g) { dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z())); }
     static void apply_force(Body b, const V3& force) {
         dBodyAddForce(b, dReal(force.x()), dReal(force.y()), dReal(force.z()));
     }
@@ -87,6 +101,7 @@ class WorldRig {
     dWorldID id_ = dWorldCreate();
     ode::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
+    std::vector<std::unique_ptr<Six>> sixes_;
 };
 
 } // namespace ductile::test

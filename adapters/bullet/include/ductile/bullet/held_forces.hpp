@@ -12,6 +12,16 @@
 
 namespace ductile::bullet {
 
+/// The force that has to be applied for `sum`: Bullet multiplies by the body's factor whatever is
+/// applied. Zero where the factor is.
+[[nodiscard]] inline btVector3 unweighted(const btVector3& sum, const btVector3& factor) {
+    btVector3 result(0, 0, 0);
+    for (int i = 0; i < 3; ++i) {
+        if (factor[i] != 0) result[i] = sum[i] / factor[i];
+    }
+    return result;
+}
+
 /// Of rigid bodies. Not thread-safe. No body may leave the world between `hold` and `apply`.
 class HeldForces {
   public:
@@ -39,15 +49,6 @@ class HeldForces {
         btRigidBody* body;
         btVector3 force, torque;
     };
-
-    /// Bullet multiplies by the body's factor whatever is applied.
-    static btVector3 unweighted(const btVector3& sum, const btVector3& factor) {
-        btVector3 result(0, 0, 0);
-        for (int i = 0; i < 3; ++i) {
-            if (factor[i] != 0) result[i] = sum[i] / factor[i];
-        }
-        return result;
-    }
 
     std::vector<Held> held_;
 };

@@ -167,7 +167,8 @@ class JointConstraint : public PlasticConstraint {
     }
 
     void getInfo2(btConstraintInfo2* info) override {
-        dt_ = 1.0 / double(info->fps);
+        dt_ = kick_ / double(info->fps);
+        tick_kick_ = kick_;
         if (open_ == Open::hand_back) {
             write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
             return;
@@ -179,9 +180,9 @@ class JointConstraint : public PlasticConstraint {
                       erp * double(info->fps));
         if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
         if (dimension < 6 && all_hard(link_)) {
-            write_hard_rows(*info, link_, order_, decoupled());
+            write_hard_rows(*info, link_, order_, decoupled(), dt_);
         } else {
-            write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact());
+            write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
         }
         sweeps_.open(*info, 6, world_);
         open_ = Open::tick;
@@ -291,7 +292,7 @@ class JointConstraint : public PlasticConstraint {
     [[nodiscard]] Vector6<double> reaction() {
         Vector6<double> forces = Vector6<double>::Zero();
         if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
-            forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows());
+            forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows(), tick_kick_);
         }
         if constexpr (one_axis) {
             forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
@@ -355,7 +356,8 @@ class JointConstraint : public PlasticConstraint {
     SweepWatch sweeps_;
     BreakRelease<double> release_;
     JointImpulse<double> handed_; ///< what Open::hand_back gives
-    double dt_ = 0;
+    double dt_ = 0;        ///< for which the rows' forces act in the open tick
+    double tick_kick_ = 1; ///< as a share of the tick
     btScalar rigid_erp_ = -1; ///< negative: the world's
     Open open_ = Open::nothing;
 };

@@ -121,11 +121,11 @@ template <class Joint>
 }
 
 /// Hard rows of the link's last `prepare`, combined as `combined` says; that of axis `order[i]` is
-/// row i.
+/// row i. `dt`: for which its forces act [s].
 template <class Joint>
 void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Joint>& link,
                      const std::array<std::size_t, 6>& order,
-                     const CombinedRows<double>& combined) noexcept {
+                     const CombinedRows<double>& combined, double dt) noexcept {
     const LinkPose<double>& pose = link.pose();
     const auto& rows = link.rows();
     const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
@@ -145,7 +145,6 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
         at += info.rowskip;
     }
     // Bullet leaves a row without bounds
-    const double dt = 1 / double(info.fps);
     for (int row = 6 - Link<Joint>::dimension; row < 6; ++row) {
         const RowLimits<double>& limits = rows[order[std::size_t(row)]].limits;
         info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
@@ -154,13 +153,13 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
 }
 
 /// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver
-/// honours C.
+/// honours C. `dt`: for which the forces act [s].
 template <class Joint>
 void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
                 const btRigidBody& b, const Link<Joint>& link,
-                const std::array<std::size_t, 6>& order, bool exact) noexcept {
+                const std::array<std::size_t, 6>& order, bool exact, double dt) noexcept {
     constexpr double largest_slack = 0.5; // C m
-    const double dt = 1 / double(info.fps);
+    const double tick = 1 / double(info.fps);
     Vector6<double> alone = Vector6<double>::Zero();
     bool solved_alone = false;
     const auto force_alone = [&](std::size_t axis) {
@@ -168,7 +167,7 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
             const Matrix6<double> k = inverse_mass_of_rows(body_state(a), body_state(b),
                                                            link.point(), link.axes_in_world());
             alone = forces_of_isolated_pair(
-                link.rows(), k, link.velocities(free_state(a, dt), free_state(b, dt)), dt);
+                link.rows(), k, link.velocities(free_state(a, tick), free_state(b, tick)), dt);
             solved_alone = true;
         }
         return alone[Eigen::Index(axis)];

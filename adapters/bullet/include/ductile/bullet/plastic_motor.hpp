@@ -151,7 +151,8 @@ class PlasticMotor final : public PlasticConstraint {
     void buildJacobian() override {
         settle();
         if (world_ == nullptr || !hinge_.isEnabled() || joint_.state().broken) return;
-        dt_ = double(world_->getSolverInfo().m_timeStep);
+        tick_ = double(world_->getSolverInfo().m_timeStep);
+        dt_ = kick_ * tick_;
         axis_ = axis();
         position_ = measure(position_);
         const RowLimits<double> limits = joint_.prepare({position_, velocity()}, dt_);
@@ -201,7 +202,7 @@ class PlasticMotor final : public PlasticConstraint {
         if (!std::exchange(pending_, false)) return;
         const double speed = velocity();
         moment_ = double(hinge_.internalGetAppliedImpulse()) / dt_;
-        position_ = measure(position_ + speed * dt_);
+        position_ = measure(position_ + speed * tick_);
         last_ = joint_.commit({moment_, speed, position_}, dt_);
         if (last_.outcome != Outcome::broken) return;
         if (at_break_ == AtBreak::disable_joint) {
@@ -237,7 +238,8 @@ class PlasticMotor final : public PlasticConstraint {
     Step<double> last_;
     BreakRelease<double> release_;
     Vector3<double> axis_ = Vector3<double>::UnitZ(); ///< of the open tick, world
-    double dt_ = 0;
+    double tick_ = 0; ///< [s]
+    double dt_ = 0;   ///< for which the motor's strength acts in it [s]
     double position_ = 0;
     double moment_ = 0;
     bool pending_ = false;

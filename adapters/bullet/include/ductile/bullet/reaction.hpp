@@ -44,10 +44,10 @@ struct ReactionArm {
     return {from_b, from_b ? arm_b : arm_a};
 }
 
-/// Forces and moments of `rows` on A [N | N m].
+/// Forces and moments of `rows`, which acted for the share `kick` of the tick, on A [N | N m].
 [[nodiscard]] inline Vector6<double> forces_of_rows(
     const btJointFeedback& feedback, const ReactionArm& from,
-    const std::array<LinkRow<double>, 6>& rows) noexcept {
+    const std::array<LinkRow<double>, 6>& rows, double kick = 1) noexcept {
     const Vector3<double> force = from.from_b
                                       ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
                                       : to_core(feedback.m_appliedForceBodyA);
@@ -60,9 +60,9 @@ struct ReactionArm {
     Vector6<double> result;
     for (std::size_t i = 0; i < 6; ++i) {
         const LinkRow<double>& row = rows[i];
-        double value = row.direction.dot(row.turns ? moment : force);
+        double value = row.direction.dot(row.turns ? moment : force) / kick;
         const double doubt =
-            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm());
+            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) / kick;
         for (const double bound : {row.limits.lower, row.limits.upper}) {
             if (std::abs(value - bound) <= doubt) value = bound;
         }

@@ -24,6 +24,9 @@
 //
 // Not booked and not split: forces on, and energy of, multibodies. Keep no ledger there.
 //
+// leapfrog: steps of second order (world/leapfrog.hpp). Velocities are then those in the middle of
+// the last step, and so is the joints' own clock. Not for btMultiBodyDynamicsWorld.
+//
 // Not thread-safe; Bullet's world for threads may be below.
 #pragma once
 
@@ -43,9 +46,11 @@
 #include "ductile/bullet/doubt_solver.hpp"
 #include "ductile/bullet/energy.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/kick.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/world/leapfrog.hpp"
 #include "ductile/world/supervisor.hpp"
 
 namespace ductile::bullet {
@@ -53,6 +58,7 @@ namespace ductile::bullet {
 struct WorldParameters {
     EffortParameters effort{};  ///< what is done where the solver did not converge
     bool ledger = true;         ///< whether the energy account is kept
+    bool leapfrog = false;      ///< whether positions are of second order in the step
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 
@@ -69,9 +75,11 @@ class World {
             world_.setConstraintSolver(doubts_.get());
         }
         if (parameters.ledger) meter_.emplace(world_);
+        if (parameters.leapfrog) start_leapfrog();
     }
     /// Joints stay in Bullet's world.
     ~World() {
+        if (leapfrog_) kick(world_, 1);
         if (doubts_ != nullptr && world_.getConstraintSolver() == doubts_.get()) {
             world_.setConstraintSolver(&doubts_->usual());
         }
@@ -105,6 +113,7 @@ class World {
         if (doubts_ != nullptr) doubts_->trust(address(joint));
         if constexpr (std::derived_from<Joint, PlasticConstraint>) {
             if (meter_) meter_->forget(joint);
+            joint.set_kick(1);
         }
         if (joint.in_world()) joint.remove_from(engine_of(joint));
     }
@@ -129,6 +138,12 @@ class World {
                  const std::function<SceneMotion<double>()>& scene = {}) {
         supervisor_.advance(duration, control, scene,
                             [this](double dt, double end) { do_step(dt, end); });
+    }
+
+    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody having
+    /// given them to them.
+    void restart() noexcept {
+        if (leapfrog_) leapfrog_->restart();
     }
 
     // ---- what it tells
@@ -178,6 +193,14 @@ class World {
         }
     }
 
+    void start_leapfrog() {
+        if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
+            throw std::invalid_argument(
+                "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
+        }
+        leapfrog_.emplace();
+    }
+
     static const void* address(const PlasticConstraint& joint) {
         return static_cast<const btTypedConstraint*>(&joint);
     }
@@ -221,8 +244,10 @@ class World {
         for (int i = 1; i <= effort.parts; ++i) {
             if (i > 1) forces_.apply();
             if (meter_) meter_->before_step();
+            const double share = leapfrog_ ? leapfrog_->share(part) : 1;
+            if (leapfrog_) kick(world_, share);
             world_.stepSimulation(btScalar(part), 0);
-            if (meter_) meter_->after_step(double(btScalar(part)));
+            if (meter_) meter_->after_step(double(btScalar(part)), share);
             supervisor_.look(i < effort.parts ? start + i * part : end, [this](const void* joint) {
                 if (doubts_ != nullptr) doubts_->doubt(joint);
             });
@@ -235,6 +260,7 @@ class World {
     std::unique_ptr<DoubtSolver> doubts_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
+    std::optional<Leapfrog> leapfrog_;
 };
 
 } // namespace ductile::bullet

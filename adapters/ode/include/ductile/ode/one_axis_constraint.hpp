@@ -48,6 +48,7 @@
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/ode/motor_pose.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/ode/symmetric_row.hpp"
 #include "ductile/ode/world.hpp"
 
 namespace ductile::ode {
@@ -146,7 +147,7 @@ class OneAxisConstraint : public PlasticConstraint {
         }
         Motion<double> motion{position_, pose_.velocity(row_)};
         if (std::isfinite(joint_.parameters().stiffness)) motion.mass = mass();
-        set_motor(joint_.prepare(motion, dt), dt);
+        set_motor(joint_.prepare(motion, kick_ * dt), dt);
         rigid_target_ = rigid_target(dt);
     }
 
@@ -165,7 +166,7 @@ class OneAxisConstraint : public PlasticConstraint {
         position_ = row_.measured() ? row_.measure(position_ + velocity * dt)
                                     : position_ + row_.increment(pose_.placement(), pose_.axis(),
                                                                  pose_.point());
-        last_ = joint_.commit({force_, velocity, position_}, dt);
+        last_ = joint_.commit({force_, velocity, position_}, kick_ * dt);
         pose_.look(row_);
         joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
         if (last_.outcome == Outcome::broken) {
@@ -281,12 +282,11 @@ class OneAxisConstraint : public PlasticConstraint {
     }
 
     void set_motor(const RowLimits<double>& limits, double dt) {
-        const double half = (limits.upper - limits.lower) / 2;
-        centre_ = std::isfinite(half) ? (limits.lower + limits.upper) / 2 : 0;
-        strength_ = half;
-        const double cfm = limits.compliance * dt;
-        row_.set(dParamCFM, cfm);
-        row_.set(dParamVel, limits.bias - cfm * centre_);
+        const SymmetricRow row = symmetric_row(limits, dt, kick_);
+        centre_ = row.centre;
+        strength_ = row.strength;
+        row_.set(dParamCFM, row.cfm);
+        row_.set(dParamVel, row.velocity);
         row_.set(dParamFMax, strength_);
         if (dJointGetFeedback(id()) == nullptr) dJointSetFeedback(id(), &feedback_);
         feedback_ = {}; // ODE leaves it alone where the joint has no row in this step
@@ -344,11 +344,11 @@ class OneAxisConstraint : public PlasticConstraint {
             angular > allowed.absolute_residual + allowed.relative_residual * w.norm();
     }
 
-    /// λ/dt of the plastic row.
+    /// Of the plastic row: its impulse over the time for which it acted.
     [[nodiscard]] double row_force() const {
         const dJointFeedback* feedback = dJointGetFeedback(id());
-        if (!(strength_ > 0) || feedback == nullptr) return centre_;
-        return centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a());
+        if (!(strength_ > 0) || feedback == nullptr) return centre_ / kick_;
+        return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / kick_;
     }
 
     /// Gives the energy that the breaking step took in excess back to the motion along the axis.

@@ -20,6 +20,9 @@
 // dWorldStep while a joint is in doubt. OnUnconverged::raise_iterations is for dWorldQuickStep;
 // dWorldStep has none to raise.
 //
+// leapfrog: steps of second order (world/leapfrog.hpp), of the bodies added here. Velocities are then
+// those in the middle of the last step, and so is the joints' own clock.
+//
 // Not thread-safe. The world and the constraints must outlive this object, or be removed from it.
 #pragma once
 
@@ -36,9 +39,11 @@
 
 #include "ductile/ode/energy.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/kick.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/world/leapfrog.hpp"
 #include "ductile/world/supervisor.hpp"
 
 namespace ductile::ode {
@@ -50,6 +55,7 @@ struct WorldParameters {
     Solver solver = Solver::direct;
     EffortParameters effort{};  ///< what is done where the solver did not converge
     bool ledger = true;         ///< whether the energy account is kept
+    bool leapfrog = false;      ///< whether positions are of second order in the step
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 
@@ -61,6 +67,7 @@ class World {
           solver_(parameters.solver),
           supervisor_(parameters.effort, std::move(parameters.warn)) {
         if (parameters.ledger) meter_.emplace(world_);
+        if (parameters.leapfrog) leapfrog_.emplace();
     }
     /// Steps, collects events, and says nothing by itself; no ledger.
     explicit World(dWorldID world, Solver solver = Solver::direct)
@@ -75,17 +82,22 @@ class World {
     void add(PlasticConstraint& joint, std::string name = {}) {
         supervisor_.add(&joint, std::move(name), [&joint] { return joint.report(); });
         constraints_.push_back(&joint);
+        joint.set_kick(1);
         if (meter_) meter_->add(joint);
     }
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint) {
         supervisor_.remove(&joint);
         std::erase(constraints_, &joint);
+        joint.set_kick(1);
         if (meter_) meter_->remove(joint);
     }
     /// Steps what is no plastic joint.
     void add(SteppedConstraint& constraint) { constraints_.push_back(&constraint); }
-    void remove(SteppedConstraint& constraint) { std::erase(constraints_, &constraint); }
+    void remove(SteppedConstraint& constraint) {
+        std::erase(constraints_, &constraint);
+        constraint.set_kick(1);
+    }
 
     /// Tells of a dynamic body: ODE does not say which a world has.
     /// @throws std::invalid_argument where it is null or here already.
@@ -129,6 +141,12 @@ class World {
                  const std::function<SceneMotion<double>()>& scene = {}) {
         supervisor_.advance(duration, control, scene,
                             [this](double dt, double end) { do_step(dt, end); });
+    }
+
+    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody having
+    /// given them to them.
+    void restart() noexcept {
+        if (leapfrog_) leapfrog_->restart();
     }
 
     // ---- what it tells
@@ -199,6 +217,8 @@ class World {
             for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
             meter_->before_step();
         }
+        const double share = leapfrog_ ? leapfrog_->share(dt) : 1;
+        if (leapfrog_) kick(bodies_, constraints_, share);
         for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
         if (direct) {
             dWorldStep(world_, dReal(dt));
@@ -206,7 +226,7 @@ class World {
             dWorldQuickStep(world_, dReal(dt));
         }
         for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
-        if (meter_) meter_->after_step(dt);
+        if (meter_) meter_->after_step(dt, share);
     }
 
     dWorldID world_;
@@ -214,6 +234,7 @@ class World {
     Supervisor supervisor_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
+    std::optional<Leapfrog> leapfrog_;
     std::vector<SteppedConstraint*> constraints_;
     std::vector<dBodyID> bodies_;
     std::vector<std::pair<dJointID, dContactGeom>> contacts_; ///< of the coming step

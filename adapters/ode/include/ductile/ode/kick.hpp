@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+//
+// Lets the forces of the coming step act for a share of it (world/leapfrog.hpp): gravity, what was
+// applied to the bodies, and the strength of all plastic joints. The engine's own springs and
+// motors act for the whole step.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <span>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/stepped_constraint.hpp"
+
+namespace ductile::ode {
+
+/// To be called for each step, with what is applied for it. `share` > 0; `bodies`: all that move.
+inline void kick(std::span<const dBodyID> bodies, std::span<SteppedConstraint* const> constraints,
+                 double share) {
+    for (SteppedConstraint* constraint : constraints) constraint->set_kick(share);
+    if (share == 1) return;
+    for (dBodyID body : bodies) {
+        if (dBodyIsKinematic(body) || dBodyIsEnabled(body) == 0) continue;
+        Vector3<double> force = to_core(dBodyGetForce(body));
+        if (dBodyGetGravityMode(body) != 0) {
+            dVector3 gravity;
+            dWorldGetGravity(dBodyGetWorld(body), gravity);
+            dMass mass;
+            dBodyGetMass(body, &mass);
+            force += double(mass.mass) * to_core(gravity);
+        }
+        force *= share - 1;
+        const Vector3<double> torque = (share - 1) * to_core(dBodyGetTorque(body));
+        dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
+        dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
+    }
+}
+
+} // namespace ductile::ode
