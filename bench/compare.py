@@ -3,12 +3,14 @@
 """Compares two stored results: compare.py bench/results/A bench/results/B
 
 Every accuracy column of pareto.csv, stability.csv and detail.csv must be the same to the last digit. Costs are
-compared as ratios to the median row of their own run, so that a machine that is faster as a whole does not
-count. Exit status 1 where an error differs; the spread of the costs is printed.
+compared as ratios to the median row of their own scene, engine and precision, which run after one another: a
+machine that is faster as a whole, or was busier at that time, does not count. Exit status 1 where an error
+differs; the spread of the costs is printed.
 """
 
 import statistics
 import sys
+from collections import defaultdict
 
 from common import stored_rows
 
@@ -42,12 +44,15 @@ def compare(table, key, columns, first, second):
     for k in sorted(differ)[:20]:
         print(",".join(k), *(f"{c} {a[k][c]} {b[k][c]}" for c in columns if a[k][c] != b[k][c]))
     print(f"{table}: {len(a)} and {len(b)} rows, {len(only)} in one only, {len(differ)} that differ")
-    ratios = [float(a[k][COST]) / float(b[k][COST]) for k in common
-              if COST in a[k] and 0 < float(b[k][COST]) < float("inf")]
+    ratios = defaultdict(list)  # of the rows that ran after one another
+    for k in common:
+        if COST in a[k] and 0 < float(b[k][COST]) < float("inf"):
+            side_by_side = tuple(a[k][c] for c in ("scene", "engine", "precision"))
+            ratios[side_by_side].append(float(a[k][COST]) / float(b[k][COST]))
     if ratios:
-        middle = statistics.median(ratios)
-        within = sum(abs(r / middle - 1) <= 0.15 for r in ratios) / len(ratios)
-        print(f"{table}: costs: median ratio {middle:.3f}, {100 * within:.1f} % of rows within 15 % of it")
+        spread = [r / statistics.median(group) for group in ratios.values() for r in group]
+        within = sum(abs(r - 1) <= 0.15 for r in spread) / len(spread)
+        print(f"{table}: costs: {100 * within:.1f} % of rows within 15 % of the median of their scene")
     return not only and not differ
 
 
