@@ -7,6 +7,7 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -52,8 +53,8 @@ class Field {
     }
 
     explicit Field(const FieldSettings& settings) : settings_(settings) {
-        world_.setGravity(btVector3(0, 0, 0));
-        world_.getSimulationIslandManager()->setSplitIslands(settings.split_islands);
+        world_->setGravity(btVector3(0, 0, 0));
+        world_->getSimulationIslandManager()->setSplitIslands(settings.split_islands);
         const int bodies = settings.chain ? settings.count + 1 : 2 * settings.count;
         bodies_.reserve(std::size_t(bodies));
         for (int i = 0; i < bodies; ++i) add_body(i);
@@ -62,19 +63,17 @@ class Field {
         for (int i = 0; i < settings.count; ++i) add_joint(i);
         heap_ = heap_in_use() - before;
     }
-    ~Field() {
-        constraints_.clear();
-        for (auto& body : bodies_) world_.removeRigidBody(body.get());
-    }
+    /// The world goes first: Bullet looks for all that is taken out of it one by one.
+    ~Field() { world_.reset(); }
     Field(const Field&) = delete;
     Field& operator=(const Field&) = delete;
 
-    void step() { world_.stepSimulation(btScalar(dt), 0); }
+    void step() { world_->stepSimulation(btScalar(dt), 0); }
     /// Heap that the joints took when they were made and added [bytes].
     [[nodiscard]] double heap() const { return heap_; }
 
   private:
-    /// A constraint with the way to take it out of the world.
+    /// A constraint that stays in the world until that is gone.
     class Held {
       public:
         virtual ~Held() = default;
@@ -83,13 +82,11 @@ class Field {
     class Engines final : public Held {
       public:
         Engines(btDynamicsWorld& world, std::unique_ptr<Constraint> constraint)
-            : world_(world), constraint_(std::move(constraint)) {
-            world_.addConstraint(constraint_.get(), true);
+            : constraint_(std::move(constraint)) {
+            world.addConstraint(constraint_.get(), true);
         }
-        ~Engines() override { world_.removeConstraint(constraint_.get()); }
 
       private:
-        btDynamicsWorld& world_;
         std::unique_ptr<Constraint> constraint_;
     };
     template <class Constraint>
@@ -97,13 +94,11 @@ class Field {
       public:
         template <class... Arguments>
         explicit Ours(btDynamicsWorld& world, Arguments&&... arguments)
-            : world_(world), constraint_(std::forward<Arguments>(arguments)...) {
-            constraint_.add_to(world_);
+            : constraint_(std::forward<Arguments>(arguments)...) {
+            constraint_.add_to(world);
         }
-        ~Ours() override { constraint_.remove_from(world_); }
 
       private:
-        btDynamicsWorld& world_;
         Constraint constraint_;
     };
 
@@ -120,7 +115,7 @@ class Field {
         info.m_startWorldTransform.setOrigin(at);
         btRigidBody& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
         body.setActivationState(DISABLE_DEACTIVATION);
-        world_.addRigidBody(&body, 0, 0);
+        world_->addRigidBody(&body, 0, 0);
         if (settings_.chain) return;
         body.setAngularVelocity(btVector3(0, 0, btScalar(side * pair_spin)));
         body.setLinearVelocity(btVector3(0, btScalar(pair_spin * half_length), 0));
@@ -140,13 +135,13 @@ class Field {
                 return;
             case Joint::plastic_hinge:
                 constraints_.push_back(std::make_unique<Ours<Hinge>>(
-                    world_, a, b, in_a, in_b,
+                    *world_, a, b, in_a, in_b,
                     ductile::OneAxisJoint<ductile::Perfect<double>>(
                         ductile::Perfect<double>({.strength = strength}))));
                 return;
             case Joint::plastic_joint:
                 constraints_.push_back(std::make_unique<Ours<SixAxis>>(
-                    world_, a, b, in_a, in_b,
+                    *world_, a, b, in_a, in_b,
                     Six(ductile::Ellipsoid<double, 6>(
                             {.capacity = ductile::Vector6<double>::Constant(strength)}),
                         ductile::Perfect<double>({.strength = 1}))));
@@ -177,7 +172,7 @@ class Field {
     template <class Constraint>
     void add(std::unique_ptr<Constraint> constraint) {
         constraints_.push_back(
-            std::make_unique<Engines<Constraint>>(world_, std::move(constraint)));
+            std::make_unique<Engines<Constraint>>(*world_, std::move(constraint)));
     }
 
     FieldSettings settings_;
@@ -185,7 +180,8 @@ class Field {
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
     btSequentialImpulseConstraintSolver solver_;
-    btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+    std::optional<btDiscreteDynamicsWorld> world_{std::in_place, &dispatcher_, &broadphase_, &solver_,
+                                                  &configuration_};
     btSphereShape shape_{btScalar(0.1)};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<Held>> constraints_;

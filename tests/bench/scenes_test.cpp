@@ -142,6 +142,26 @@ TEST_CASE("steps chosen from the motion come to the answer too", "[bench]") {
     CHECK(error(lamp_post(), "rotation", settings) < 0.04);
 }
 
+TEST_CASE("steps that leapfrog come to the answer an order sooner", "[bench]") {
+    const auto leapfrog = [](const std::string& method, double dt, double tolerance) {
+        Settings settings = with(method, dt);
+        settings.tolerance = tolerance;
+        settings.leapfrog = true;
+        return settings;
+    };
+    const double game_step = 1.0 / 60;
+    const double round_off = single ? 1e-3 : 0;
+    CHECK(error(rotors_in_series(), "rotation_2", leapfrog("plastic-hinge", game_step, 0)) <
+          2e-4 + round_off);
+    CHECK(error(rotors_in_series(), "rotation_2", with("plastic-hinge", game_step)) > 0.05);
+    CHECK(error(oscillator(), "peak_travel", leapfrog("elastic-plastic", game_step, 0)) <
+          1e-3 + round_off);
+    CHECK(error(rotors_in_series(), "rotation_2", leapfrog("plastic-hinge", game_step, 0.01)) <
+          1e-4 + round_off);
+    CHECK(error(dropped_mass(), "crush", leapfrog("plastic-hinge", game_step, 0.01)) < 0.012);
+    CHECK(error(lamp_post(), "rotation", leapfrog("plastic-hinge", game_step, 0.01)) < 0.006);
+}
+
 TEST_CASE("methods that keep no account of energy have no such quantity", "[bench]") {
     const Scene scene = breaking_hinge();
     for (const MethodName& method : method_names) {
