@@ -164,6 +164,8 @@ TEST_CASE("a solver that cannot be exchanged is refused", "[bullet][world]") {
     CHECK(message_of([&] { bullet::World(reduced, direct()); })
               .find("World.effort.action = direct_solver: must not be asked of a "
                     "btMultiBodyDynamicsWorld") == 0);
+    CHECK(message_of([&] { bullet::World(reduced, {.leapfrog = true}); }) ==
+          "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
 }
 
 TEST_CASE("a World over Bullet's world for threads does what it does over that for one",

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "support/throws.hpp"
+
 using namespace ductile;
 using namespace ductile::test;
 
@@ -413,4 +415,19 @@ TEST_CASE("very light and very heavy bodies hinge as well", "[ode][life]") {
     };
     CHECK(absorbed_per_size(size) == Approx(absorbed_per_size(1)).epsilon(1e-8));
     CHECK(absorbed_per_size(size) > 99);
+}
+
+TEST_CASE("a World that leapfrogs has to know the bodies of its joints", "[ode][world]") {
+    Rig rig("direct", {0, -10, 0});
+    auto bar = rig.body(2, sphere(0.5), {1, 0, 0}, none, none);
+    auto& hinge = rig.hinge_of(bar, nullptr, none, z, joint(30));
+    ode::World world(rig.world(), {.leapfrog = true, .warn = nullptr});
+    world.add(hinge);
+    CHECK(message_of([&] { world.step(dt); }) ==
+          "World.leapfrog = true: the bodies of every joint must have been added");
+    CHECK(dBodyGetLinearVel(bar)[1] == 0); // the world stays as it was
+    world.add(bar);
+    world.step(dt);
+    CHECK(std::abs(hinge.reaction()) == Approx(20)); // half of its weight, over half of the step
+    world.remove(hinge);
 }

@@ -20,8 +20,8 @@
 // dWorldStep while a joint is in doubt. OnUnconverged::raise_iterations is for dWorldQuickStep;
 // dWorldStep has none to raise.
 //
-// leapfrog: steps of second order (world/leapfrog.hpp), of the bodies added here. Velocities are then
-// those in the middle of the last step, and so is the joints' own clock.
+// leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be all
+// that move. Velocities are then those in the middle of the last step, and so is the joints' clock.
 //
 // Not thread-safe. The world and the constraints must outlive this object, or be removed from it.
 #pragma once
@@ -82,6 +82,8 @@ class World {
     void add(PlasticConstraint& joint, std::string name = {}) {
         supervisor_.add(&joint, std::move(name), [&joint] { return joint.report(); });
         constraints_.push_back(&joint);
+        plastic_.push_back(&joint);
+        bodies_known_ = false;
         joint.set_kick(1);
         if (meter_) meter_->add(joint);
     }
@@ -89,6 +91,7 @@ class World {
     void remove(PlasticConstraint& joint) {
         supervisor_.remove(&joint);
         std::erase(constraints_, &joint);
+        std::erase(plastic_, &joint);
         joint.set_kick(1);
         if (meter_) meter_->remove(joint);
     }
@@ -112,6 +115,7 @@ class World {
     /// To be called before the body is destroyed.
     void remove(dBodyID body) {
         std::erase(bodies_, body);
+        bodies_known_ = false;
         if (meter_) meter_->remove(body);
     }
     /// Names a contact joint of the coming step, for the ledger.
@@ -124,8 +128,9 @@ class World {
     /// One step of `dt` > 0 [s].
     /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it the
     /// world says where the step is too long for a contact.
-    /// @throws std::invalid_argument where the step is not finite or not positive, and what a
-    /// constraint's check() throws. The world stays as it was.
+    /// @throws std::invalid_argument where the step is not finite or not positive, or this leapfrogs
+    /// and a joint's body was not added, and what a constraint's check() throws. The world stays as
+    /// it was.
     void step(double dt, const SceneMotion<double>& scene = {}) {
         check::positive("World.step.dt", dt, "s");
         supervisor_.open();
@@ -204,12 +209,29 @@ class World {
         if (effort.parts > 1) forces_.hold(bodies_);
         for (int i = 1; i <= effort.parts; ++i) {
             for (const SteppedConstraint* constraint : constraints_) constraint->check();
+            if (leapfrog_ && !bodies_known_) require_bodies();
             if (i > 1) forces_.apply();
             do_part(part, effort.direct || solver_ == Solver::direct);
             supervisor_.look(i < effort.parts ? start + i * part : end, [](const void*) {});
         }
         contacts_.clear();
         supervisor_.close();
+    }
+
+    /// Gravity on a body that is not known would not leapfrog.
+    void require_bodies() {
+        std::vector<dBodyID> known = bodies_;
+        std::sort(known.begin(), known.end());
+        for (const PlasticConstraint* joint : plastic_) {
+            for (const int side : {0, 1}) {
+                const dBodyID body = dJointGetBody(joint->id(), side);
+                if (body == nullptr || dBodyIsKinematic(body)) continue;
+                if (std::binary_search(known.begin(), known.end(), body)) continue;
+                throw std::invalid_argument(
+                    "World.leapfrog = true: the bodies of every joint must have been added");
+            }
+        }
+        bodies_known_ = true;
     }
 
     void do_part(double dt, bool direct) {
@@ -236,7 +258,9 @@ class World {
     HeldForces forces_;
     std::optional<Leapfrog> leapfrog_;
     std::vector<SteppedConstraint*> constraints_;
+    std::vector<const PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
+    bool bodies_known_ = false; ///< all those of joints
     std::vector<std::pair<dJointID, dContactGeom>> contacts_; ///< of the coming step
 };
 
