@@ -41,10 +41,6 @@ class WorldRig {
     ~WorldRig() {
         for (auto& hinge : hinges_) world_.remove(*hinge);
         for (auto& joint : sixes_) world_.remove(*joint);
-        hinges_.clear();
-        sixes_.clear();
-        dWorldDestroy(id_);
-        dCloseODE();
     }
 
     [[nodiscard]] ode::World& world() { return world_; }
@@ -93,12 +89,24 @@ class WorldRig {
     static V3 position(Body b) { return ode::to_core(dBodyGetPosition(b)); }
 
   private:
-    /// ODE counts its users: initialised once per rig, before the world.
+    /// ODE counts its users: initialised once per rig, before the world; both go last, also where
+    /// what follows cannot be made.
     struct Library {
         Library() { dInitODE2(0); }
+        ~Library() { dCloseODE(); }
+        Library(const Library&) = delete;
+        Library& operator=(const Library&) = delete;
+    };
+    struct Engine {
+        Engine() = default;
+        ~Engine() { dWorldDestroy(id); }
+        Engine(const Engine&) = delete;
+        Engine& operator=(const Engine&) = delete;
+        dWorldID id = dWorldCreate();
     };
     Library library_;
-    dWorldID id_ = dWorldCreate();
+    Engine engine_;
+    dWorldID id_ = engine_.id;
     ode::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;
