@@ -4,7 +4,7 @@
 # Installs what is missing, builds the benchmarks, runs them with progress and time left, stores the
 # results with the machine they are of, and draws them.
 #   bench/run.sh [--quick] [--name NAME | --out FOLDER]     results in bench/results/NAME or in FOLDER
-# NAME: default the processor's name, with -quick where quick. --quick takes some minutes on two idle
+# NAME: default the processor's name, with -quick where quick. --quick takes five minutes on two idle
 # cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME and
 # bench/plot_stability.py bench/results/NAME; both, and bench/compare.py, read tables packed with gzip, too.
 set -euo pipefail
