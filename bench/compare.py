@@ -3,9 +3,9 @@
 """Compares two stored results: compare.py bench/results/A bench/results/B
 
 Every accuracy column of pareto.csv, stability.csv and detail.csv must be the same to the last digit. Costs are
-compared as ratios to the median row of their own scene, engine and precision, which run after one another: a
-machine that is faster as a whole, or was busier at that time, does not count. Exit status 1 where an error
-differs; the spread of the costs is printed.
+compared as ratios to the median row of their own scene, engine and precision, and as the ratios ours / other
+of the summary: a machine that is faster as a whole does not count. Exit status 1 where an error differs; the
+spread of the costs is printed.
 """
 
 import statistics
@@ -13,6 +13,7 @@ import sys
 from collections import defaultdict
 
 from common import stored_rows
+from pareto import TARGETS, cheapest
 
 # table -> columns that name a row, columns that must repeat; all cost columns but these vary
 TABLES = {
@@ -56,10 +57,33 @@ def compare(table, key, columns, first, second):
     return not only and not differ
 
 
+def compare_summaries(first, second):
+    """Prints how far the ratios of cost, ours / other, of two runs differ."""
+    def ratios(folder):
+        summary, result = stored_rows(folder, "summary.csv"), {}
+        scenes = {line["scene"]: line["quantity"] for line in reversed(summary)}  # the first quantity
+        parts = {"": [line for line in summary if line["quantity"] == scenes[line["scene"]]],
+                 "energy ": [line for line in summary if line["quantity"] == "absorbed_energy"]}
+        for part, lines in parts.items():
+            for target in TARGETS:
+                column = f"cost_{target:g}"
+                for scene, (ours, other) in cheapest(lines, column).items():
+                    if ours and other:
+                        result[scene, part + column] = float(ours[column]) / float(other[column])
+        return result
+    a, b = ratios(first), ratios(second)
+    differ = {k: a[k] / b[k] for k in a.keys() & b.keys()}
+    far = {k: d for k, d in differ.items() if abs(d - 1) > 0.15}
+    for k, d in sorted(far.items(), key=lambda entry: -abs(entry[1] - 1)):
+        print(" ".join(k), f"ours / other {a[k]:.3g} and {b[k]:.3g}")
+    print(f"summary.csv: {len(differ) - len(far)} of {len(differ)} ratios within 15 %")
+
+
 def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     same = [compare(table, *columns, *sys.argv[1:]) for table, columns in TABLES.items()]
+    compare_summaries(*sys.argv[1:])
     return 0 if all(same) else 1
 
 

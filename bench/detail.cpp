@@ -118,29 +118,33 @@ struct Row {
     bool chosen;
     int joints;
     Trial trial;
-    double cpu; ///< per simulated second [-]
+    double cpu;  ///< per simulated second [-]
+    double cost; ///< the same in yardsticks [1/s]
 
     [[nodiscard]] double row_steps() const { return 6.0 * joints * double(trial.steps); }
 };
 
 Row row(const Model& model, const Trial& trial, bool chosen, const Plan& plan) {
-    if (!std::isfinite(trial.error)) return {model.detail, chosen, model.joints, trial, infinity};
-    const double cpu = cpu_time<World>(model.scene, settings(model, trial.dt), trial.steps,
-                                       plan.repeats, plan.at_least);
-    return {model.detail, chosen, model.joints, trial, cpu / trial.time};
+    if (!std::isfinite(trial.error))
+        return {model.detail, chosen, model.joints, trial, infinity, infinity};
+    const Cost spent = cost<World>(model.scene, settings(model, trial.dt), trial.steps,
+                                   plan.repeats, plan.at_least);
+    return {model.detail,           chosen,
+            model.joints,           trial,
+            spent.cpu / trial.time, spent.steps() / trial.time};
 }
 
 void print(const DetailCase& c, double tolerance, const std::vector<Row>& rows) {
     double cheapest = infinity, fewest = infinity;
     for (const Row& r : rows) {
         if (!(r.trial.error <= tolerance)) continue;
-        cheapest = std::min(cheapest, r.cpu);
+        cheapest = std::min(cheapest, r.cost);
         fewest = std::min(fewest, r.row_steps() / r.trial.time);
     }
     for (const Row& r : rows) {
         fmt::print("{},{},{},{},{},{:d},{},{:.9e},{:.9e},{:.6e},{:d},{:.3f},{:.0f},{:.3f},{}\n",
                    c.name, World::engine, World::precision, tolerance, r.detail, r.chosen, r.joints,
-                   r.trial.dt, r.trial.error, r.cpu, r.trial.error <= tolerance, r.cpu / cheapest,
+                   r.trial.dt, r.trial.error, r.cpu, r.trial.error <= tolerance, r.cost / cheapest,
                    r.row_steps(), r.row_steps() / r.trial.time / fewest, r.trial.unreliable);
     }
     std::fflush(stdout);

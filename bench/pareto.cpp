@@ -6,18 +6,21 @@
 // bench/pareto.py runs them, joins their rows and adds instructions.
 //
 //   pareto-bullet-double [--quick] [--scene NAME]       all rows
-//   pareto-bullet-double [--quick] --list               the rows without running them, with their
-//   steps pareto-bullet-double --scene NAME --row SOLVER,METHOD,DT,TOLERANCE,ITERATIONS
+//   pareto-bullet-double [--quick] --list               the rows with their steps, not run
+//   pareto-bullet-double --scene NAME --row SOLVER,METHOD,DT,TOLERANCE,ITERATIONS
 //                                                       one run without observation, for callgrind
 //
 // Columns: scene,engine,solver,precision,method,dt_s,tolerance,iterations,quantity,error_rel,
-// cpu_s_per_sim_s,steps,unreliable_steps. dt_s of an adaptive run is its mean step; tolerance is 0
-// for fixed steps; iterations of Bullet's mlcp are those of its fallback, 0 where there are none.
+// cpu_s_per_sim_s,yardstick_s,steps,unreliable_steps; before them lines with a point and the number
+// of passes, one for each row and pass. yardstick_s is what a step of the same
+// bodies took at that time (run_scene.hpp). dt_s of an adaptive run is its mean step; tolerance is
+// 0 for fixed steps; iterations of Bullet's mlcp are those of its fallback, 0 where there are none.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -38,8 +41,8 @@ struct Plan {
     std::vector<int> iterations; ///< of iterative solvers
     std::vector<int> fallback;   ///< of direct solvers where they give up
     long longest = 0;            ///< runs of more steps are left out
-    int repeats = 3;             ///< of the timing
-    double at_least = 0;         ///< CPU time of all repeats of a row [s]
+    int passes = 3;              ///< over all rows of a scene, in each of which every one is timed
+    double at_least = 0;         ///< CPU time of a row in a pass [s]
 };
 
 const Plan full{
@@ -49,14 +52,14 @@ const Plan full{
     {10, 200},
     20000,
     5,
-    0.02};
+    0.004};
 const Plan quick{{1.0 / 60, 1.0 / 240, 1e-3, 5e-4, 2e-4, 1e-4, 2e-5},
                  {0.05, 0.01, 0.005, 0.002, 0.001},
                  {10, 50},
                  {200},
                  8000,
                  3,
-                 0.003};
+                 0.001};
 
 /// Ours with fixed leapfrog steps as well: all but this one, which takes longest.
 constexpr std::string_view never_leapfrogs = "plastic-joint";
@@ -128,19 +131,50 @@ Settings named(const std::string& method) {
     return row;
 }
 
-void run(const Scene& scene, const Settings& row, const Plan& plan) {
-    const RunResult result = observe<World>(scene, row);
-    const double cpu = cpu_time<World>(scene, row, result.steps, plan.repeats, plan.at_least);
+/// A row as it was observed, and what it cost in each pass so far.
+struct Measured {
+    Settings row;
+    RunResult result;
+    std::vector<Cost> costs;
+
+    /// The median, by what they are in yardsticks.
+    [[nodiscard]] Cost cost() const {
+        std::vector<Cost> sorted = costs;
+        const auto middle = sorted.begin() + std::ptrdiff_t(sorted.size() / 2);
+        std::nth_element(sorted.begin(), middle, sorted.end(),
+                         [](const Cost& a, const Cost& b) { return a.steps() < b.steps(); });
+        return *middle;
+    }
+};
+
+void print(const Scene& scene, const Measured& measured) {
+    const auto& [row, result, costs] = measured;
+    const Cost cost = measured.cost();
     const double dt = row.adaptive() ? result.end.time / double(result.steps) : row.dt;
     for (const Quantity& quantity : scene.quantities) {
         const auto error = relative_error(quantity, result);
         if (!error) continue;
-        fmt::print("{},{},{},{},{},{:.9e},{},{},{},{:.9e},{:.6e},{},{}\n", scene.name,
+        fmt::print("{},{},{},{},{},{:.9e},{},{},{},{:.9e},{:.6e},{:.6e},{},{}\n", scene.name,
                    World::engine, row.solver, World::precision, name(row), dt, row.tolerance,
-                   row.iterations, quantity.name, *error, cpu / result.end.time, result.steps,
-                   result.unreliable_steps);
+                   row.iterations, quantity.name, *error, cost.cpu / result.end.time,
+                   cost.yardstick, result.steps, result.unreliable_steps);
     }
-    std::fflush(stdout);
+}
+
+/// A line with a point tells of every row that was timed in a pass. What disturbs the machine for a
+/// while disturbs a row in one pass only.
+void run(const Scene& scene, const Plan& plan) {
+    std::vector<Measured> all;
+    for (const Settings& row : rows(scene, plan)) all.push_back({row, {}, {}});
+    for (int pass = 0; pass < plan.passes; ++pass) {
+        for (Measured& one : all) {
+            if (pass == 0) one.result = observe<World>(scene, one.row);
+            one.costs.push_back(cost<World>(scene, one.row, one.result.steps, 1, plan.at_least));
+            fmt::print(". {}\n", plan.passes);
+            std::fflush(stdout);
+        }
+    }
+    for (const Measured& one : all) print(scene, one);
 }
 
 /// One run's steps, for a tool that counts them.
@@ -180,14 +214,14 @@ int main(int argc, char** argv) try {
             run_once(scene, row);
             continue;
         }
+        if (!list) {
+            run(scene, plan);
+            continue;
+        }
         for (const Settings& row : rows(scene, plan)) {
-            if (list) {
-                fmt::print("{},{},{},{:.9e},{},{},{}\n", scene.name, row.solver, name(row), row.dt,
-                           row.tolerance, row.iterations,
-                           row.adaptive() ? 1000 : long(scene.duration / row.dt));
-            } else {
-                run(scene, row, plan);
-            }
+            fmt::print("{},{},{},{:.9e},{},{},{}\n", scene.name, row.solver, name(row), row.dt,
+                       row.tolerance, row.iterations,
+                       row.adaptive() ? 1000 : long(scene.duration / row.dt));
         }
     }
     if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");

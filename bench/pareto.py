@@ -19,6 +19,7 @@ happen to change sign. The cost is that of its cheapest such series.
 import os
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -29,7 +30,7 @@ from common import Progress, run_options, write_meta, write_rows
 
 RUNNERS = ("pareto-bullet-double", "pareto-bullet-float", "pareto-ode-double")
 RAW = ("scene", "engine", "solver", "precision", "method", "dt_s", "tolerance", "iterations", "quantity",
-       "error_rel", "cpu_s_per_sim_s", "steps", "unreliable_steps")
+       "error_rel", "cpu_s_per_sim_s", "yardstick_s", "steps", "unreliable_steps")
 COLUMNS = ("scene", "engine", "solver", "precision", "method", "dt_s", "iterations", "quantity",
            "error_rel", "cpu_s_per_sim_s", "instructions")
 # the names of bench/methods/names.hpp
@@ -52,16 +53,16 @@ def is_ours(method):
 def run_job(path, options, scene, weights, progress):
     """The rows of a scene on an engine build, and its exit status."""
     process = subprocess.Popen([path, *options, "--scene", scene], stdout=subprocess.PIPE, text=True)
-    rows, last, index = [], None, 0
+    rows, timed = [], 0
     for line in process.stdout:
+        if line.startswith("."):
+            passes = int(line[1:])
+            progress.advance(weights[timed % len(weights)] / passes, f"{os.path.basename(path)} {scene}")
+            timed += 1
+            continue
         row = dict(zip(RAW, line.strip().split(",")))
         row["runner"] = path
         rows.append(row)
-        key = tuple(row[c] for c in ("solver", "method", "dt_s", "iterations"))
-        if key != last:
-            last = key
-            progress.advance(weights[min(index, len(weights) - 1)], f"{os.path.basename(path)} {scene}")
-            index += 1
     return rows, process.wait()
 
 
@@ -98,6 +99,16 @@ def run_all(folder, quick):
 
 def number(row, column):
     return float(row[column])
+
+
+def at_usual_pace(rows):
+    """Costs as they would be at the machine's median pace: by what the same steps of the engine's own took
+    just before and after each run."""
+    usual = {runner: statistics.median(number(r, "yardstick_s") for r in rows if r["runner"] == runner)
+             for runner in {row["runner"] for row in rows}}
+    for row in rows:
+        pace = number(row, "yardstick_s") / usual[row["runner"]]
+        row["cpu_s_per_sim_s"] = f"{number(row, 'cpu_s_per_sim_s') / pace:.6e}"
 
 
 def primary(rows):
@@ -181,16 +192,24 @@ def cell(value, form):
     return "-" if value is None else form(value)
 
 
+def cheapest(summary, column):
+    """Scene -> the line of ours and of the others that is cheapest in a column of costs; None where no one
+    reaches it."""
+    result = {}
+    for scene in dict.fromkeys(line["scene"] for line in summary):
+        reached = [line for line in summary if line["scene"] == scene and line[column] not in (None, "")]
+        best = lambda group: min(group, key=lambda line: number(line, column), default=None)
+        result[scene] = (best([line for line in reached if is_ours(line["method"])]),
+                         best([line for line in reached if not is_ours(line["method"])]))
+    return result
+
+
 def comparison(title, summary, cost, target=0.01):
     """What an error costs with ours and with the cheapest of the others, scene by scene; lines of a table."""
     column = f"cost_{target:g}"
     lines = [f"## {title}", "", "| scene | ours | cost | other | cost | ours / other |",
              "|---|---|---|---|---|---|"]
-    for scene in dict.fromkeys(line["scene"] for line in summary):
-        reached = [line for line in summary if line["scene"] == scene and line[column] is not None]
-        best = lambda group: min(group, key=lambda line: line[column], default=None)
-        ours = best([line for line in reached if is_ours(line["method"])])
-        other = best([line for line in reached if not is_ours(line["method"])])
+    for scene, (ours, other) in cheapest(summary, column).items():
         named = lambda line: (f"{line['method']} | {cost(line[column])}" if line
                               else "none reaches it | -")
         ratio = f"{ours[column] / other[column]:.2f}" if ours and other else "-"
@@ -237,6 +256,7 @@ def main():
     options = run_options(__doc__.splitlines()[0])
 
     rows, failed = run_all(options.bin, options.quick)
+    at_usual_pace(rows)
     quantity_of = primary(rows)
     if not options.quick and shutil.which("valgrind"):
         fronts = [row for scene, quantity in quantity_of.items()

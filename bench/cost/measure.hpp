@@ -3,26 +3,13 @@
 // CPU time of steps of several fields, measured in turn so that a busy machine disturbs all alike.
 #pragma once
 
-#include <time.h>
-
-#include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "cpu_time.hpp"
+
 namespace bench::cost {
-
-/// CPU time of this process [s].
-[[nodiscard]] inline double cpu_now() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-[[nodiscard]] inline double median(std::vector<double> values) {
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Median CPU time of a step of every field [s], over `rounds` rounds in each of which every field
 /// steps for at least `at_least` seconds; over three and more where they take longer than

@@ -4,18 +4,19 @@
 // with it, and as often as wanted unobserved, for what it costs. Both runs are the same simulation.
 #pragma once
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 #include <vector>
 
+#include "cpu_time.hpp"
 #include "ductile/detail/step_control.hpp"
 #include "engines/settings.hpp"
 #include "methods/holder.hpp"
 #include "methods/names.hpp"
 #include "scenes/scene.hpp"
+#include "scenes/still_cantilever.hpp"
 
 namespace bench {
 
@@ -170,32 +171,67 @@ template <class World>
     for (long i = 0; i < steps; ++i) world.step(stepping.next(world));
 }
 
-/// CPU time of this process [s].
-[[nodiscard]] inline double process_cpu_time() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
-/// CPU time of `steps` steps from the start [s]: the median of at least `repeats` runs and of as
-/// many as take `at_least` seconds together. An absurdly long run is not repeated.
+/// The machine's pace: CPU time of a step of five bodies on the engine's own hinge motors, which
+/// never changes. A machine that others use as well is slower at times by a third and more.
 template <class World>
-double cpu_time(const Scene& scene, const Settings& settings, long steps, int repeats,
-                double at_least) {
-    std::vector<double> times;
-    double sum = 0;
-    while (int(times.size()) < repeats || sum < at_least) {
+class Yardstick {
+  public:
+    /// CPU time of one step now [s], the mean over `duration` [s].
+    double measure(double duration) {
+        constexpr int together = 8; // steps; reading the clock costs as well
+        long steps = 0;
+        const double start = cpu_now();
+        double now = start;
+        do {
+            for (int i = 0; i < together; ++i) world_.step(1e-3);
+            steps += together;
+            now = cpu_now();
+        } while (now - start < duration);
+        return (now - start) / double(steps);
+    }
+
+  private:
+    World world_{
+        still_cantilever({.utilisation = 0.01}),
+        Settings{.solver = std::string(World::solvers.front().name), .method = "hinge-motor"}};
+};
+
+/// What a run costs beside what the yardstick cost just before and after it.
+struct Cost {
+    double cpu = 0;       ///< CPU time [s]
+    double yardstick = 0; ///< of the yardstick's step meanwhile [s]
+
+    /// Comparable with that of other runs, whenever they were [yardsticks].
+    [[nodiscard]] double steps() const { return cpu / yardstick; }
+};
+
+/// Cost of `steps` steps from the start: the median, by what it is in yardsticks, of at least
+/// `repeats` runs and of as many as take `at_least` seconds together. An absurdly long run is not
+/// repeated.
+template <class World>
+Cost cost(const Scene& scene, const Settings& settings, long steps, int repeats, double at_least) {
+    static Yardstick<World> yardstick;
+    constexpr double shortest = 1e-4, share = 0.1; // of the yardstick's runs, of a run's length
+    std::vector<double> costs, paces;
+    double sum = 0, pace = yardstick.measure(shortest);
+    std::minstd_rand random;
+    while (int(costs.size()) < repeats || sum < at_least) {
+        // where the world happens to lie in memory must not decide
+        const std::vector<char> padding(1 + random() % 8192);
         World world(scene, settings);
         Stepping stepping(scene, settings);
-        const double start = process_cpu_time();
+        const double start = cpu_now();
         bench_steps(world, stepping, steps);
-        times.push_back(process_cpu_time() - start);
-        sum += times.back();
-        if (sum > 20 * std::max(at_least, 0.01) || times.size() >= 1000) break;
+        const double cpu = cpu_now() - start;
+        const double before =
+            std::exchange(pace, yardstick.measure(std::max(shortest, share * cpu)));
+        paces.push_back((before + pace) / 2);
+        costs.push_back(cpu / paces.back());
+        sum += cpu;
+        if (sum > 20 * std::max(at_least, 0.01)) break;
     }
-    const auto middle = times.begin() + std::ptrdiff_t(times.size() / 2);
-    std::nth_element(times.begin(), middle, times.end());
-    return *middle;
+    const double typical = median(std::move(paces));
+    return {.cpu = median(std::move(costs)) * typical, .yardstick = typical};
 }
 
 } // namespace bench
