@@ -22,7 +22,7 @@ ALLOWED = {
     "joint": {"vocabulary", "law", "surface", "fracture"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
-    "world": {"vocabulary", "fracture", "detail"},
+    "world": {"vocabulary", "fracture", "detail", "energy"},
     "detail": {"vocabulary", "material", "section", "law", "fracture", "joint"},
 }
 ADAPTERS = ("bullet", "ode")

@@ -103,5 +103,6 @@
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/world/effort.hpp"
 #include "ductile/world/joint_report.hpp"
+#include "ductile/world/stepped_world.hpp"
 #include "ductile/world/supervisor.hpp"
 #include "ductile/world/watch.hpp"

@@ -38,6 +38,7 @@ struct OpenRow {
     S noise;             ///< speed below which nothing moves [m/s | rad/s]
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
+    S foretold;          ///< as RowStep's [m/s | rad/s]
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
     [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
@@ -83,17 +84,17 @@ struct OpenRow {
   private:
     [[nodiscard]] StepError<S> error_of(const RowBooking<S>& booked, S force, S moved,
                                         S dt) const noexcept {
-        return step_error<S>(
-            {.force = force,
-             .start = start,
-             .travel = moved,
-             .dt = dt,
-             .noise = noise,
-             .strength = std::max(upper, -lower) / share,
-             .stiffness = stiffness,
-             .implicit = implicit,
-             .other_work = booked.other,
-             .flowed = booked.travel != 0});
+        return step_error<S>({.force = force,
+                              .start = start,
+                              .travel = moved,
+                              .dt = dt,
+                              .foretold = foretold,
+                              .noise = noise,
+                              .strength = std::max(upper, -lower) / share,
+                              .stiffness = stiffness,
+                              .implicit = implicit,
+                              .other_work = booked.other,
+                              .flowed = booked.travel != 0});
     }
 };
 

@@ -21,6 +21,7 @@ struct CoupledMotion {
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u [m/s | rad/s]
     /// M, symmetric, positive definite [kg | kg m²]; only its error by factors spoils the prediction
     Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
+    bool midway = false; ///< as Motion's
 };
 
 /// What the engine did to the rows in the step.
@@ -64,6 +65,7 @@ struct CoupledState {
     S lost = 0;           ///< [J]
     S residual_max = 0;   ///< [m/s | rad/s]
     S misplaced = 0;      ///< equivalent travel that the steps may have misplaced, summed
+    S dt = 0;             ///< of the last step [s]
     double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     CriterionState criterion{};
     int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact

@@ -130,8 +130,9 @@ class Link {
     }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
-    /// per second, >= 0 [1/s]. A broken joint asks for no force at all.
-    const Rows& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate) noexcept {
+    /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all.
+    const Rows& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
+                        bool midway = false) noexcept {
         pose_.look(a, b);
         const Vector6<S> error = strain();
         const bool whole = !broken();
@@ -146,10 +147,12 @@ class Link {
             const std::size_t i = index(axes_[0]);
             const S mass = reads_mass() ? row_mass(a, b)(0, 0) : S(0);
             rows_[i].limits = joint_.prepare(
-                {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass}, dt);
+                {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass, midway},
+                dt);
         } else {
             const auto limits = joint_.prepare(
-                {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), row_mass(a, b)}, dt);
+                {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), row_mass(a, b), midway},
+                dt);
             for (std::size_t k = 0; k < limits.size(); ++k)
                 rows_[index(axes_[k])].limits = limits[k];
         }

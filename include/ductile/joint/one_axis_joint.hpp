@@ -39,9 +39,8 @@
 // was stored in the part is set free inside it: Step::lost.
 //
 // Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at the
-// lower one. The violation of that is the residual; a step whose residual is large is reported
-// as Outcome::unreliable instead of being passed off as physics. (A closed energy ledger proves
-// nothing here: it closes in unconverged solves too.)
+// lower one. The violation of that is the residual; a step whose residual is large is reported as
+// Outcome::unreliable. (A closed energy ledger proves nothing: it closes in unconverged solves too.)
 //
 // Source: work-conjugate account and break derived here; row bounds as Nikula (2017), section 2.8.
 #pragma once
@@ -119,6 +118,7 @@ class OneAxisJoint {
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
+        foretold_ = motion.midway && state_.flowing && !kicked() ? foretold_change(state_, dt) : 0;
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) return {.lower = 0, .upper = 0};
         bound(dt);
@@ -254,6 +254,7 @@ class OneAxisJoint {
                                    .start = start_,
                                    .travel = taken.travel,
                                    .dt = taken.dt,
+                                   .foretold = foretold_,
                                    .noise = parameters_.absolute_residual,
                                    .strength = resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
@@ -393,6 +394,7 @@ class OneAxisJoint {
     Scalar left_ = 0;  ///< travel left before a break
     Scalar share_ = 1; ///< of the strength that the bounds allow
     Scalar implicit_ = 1; ///< θ of an elastic row
+    Scalar foretold_ = 0; ///< change of u: step_error.hpp
 };
 
 } // namespace ductile

@@ -54,6 +54,7 @@ struct OneAxisState {
     S velocity = 0;       ///< u' of the last step [m/s | rad/s]
     S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
     S misplaced = 0;      ///< travel that the steps' length may have misplaced, summed [m | rad]
+    S dt = 0;             ///< of the last step [s]
     S force = 0;          ///< of the last step; once broken, just before the break [N | N m]
     double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     LawState law{};

@@ -45,6 +45,8 @@ struct Motion {
     /// m = 1/(J M⁻¹ Jᵀ) with the joint's rigid rows holding; read only by rows with an elastic part,
     /// 0: not known [kg | kg m²]
     Scalar mass = 0;
+    /// Velocities are those in the middle of steps: world/leapfrog.hpp. Only the certificate asks.
+    bool midway = false;
 };
 
 /// What the engine did to the row in the step.

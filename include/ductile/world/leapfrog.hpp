@@ -25,12 +25,19 @@
 
 namespace ductile {
 
+/// How the forces of a step act. Plain value; of an engine that does not leapfrog as it is at
+/// first.
+struct Kick {
+    double share = 1;    ///< κ, > 0
+    bool midway = false; ///< velocities are those in the middle of steps
+};
+
 /// Not thread-safe; O(1).
 class Leapfrog {
   public:
-    /// κ of the coming step of `dt` > 0 [s].
-    [[nodiscard]] double share(double dt) noexcept {
-        return (std::exchange(last_, dt) + dt) / (2 * dt);
+    /// Of the coming step of `dt` > 0 [s].
+    [[nodiscard]] Kick next(double dt) noexcept {
+        return {.share = (std::exchange(last_, dt) + dt) / (2 * dt), .midway = true};
     }
     /// The next step is a first one: somebody gave the bodies velocities that are those of now.
     void restart() noexcept { last_ = 0; }

@@ -167,8 +167,8 @@ class JointConstraint : public PlasticConstraint {
     }
 
     void getInfo2(btConstraintInfo2* info) override {
-        dt_ = kick_ / double(info->fps);
-        tick_kick_ = kick_;
+        dt_ = kick_.share / double(info->fps);
+        tick_kick_ = kick_.share;
         if (open_ == Open::hand_back) {
             write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
             return;
@@ -176,8 +176,8 @@ class JointConstraint : public PlasticConstraint {
         const double erp = double(rigid_erp_ < 0 ? info->erp : rigid_erp_);
         const bool masses = link_.reads_mass();
         link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
-                      masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
-                      erp * double(info->fps));
+                      masses ? body_state(m_rbB) : body_motion(m_rbB), dt_, erp * double(info->fps),
+                      kick_.midway);
         if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
         if (dimension < 6 && all_hard(link_)) {
             write_hard_rows(*info, link_, order_, decoupled(), dt_);

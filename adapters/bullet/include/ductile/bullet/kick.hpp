@@ -10,17 +10,18 @@
 
 #include "ductile/bullet/held_forces.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
-/// To be called for each step, with what is applied for it. `share` > 0.
-inline void kick(btDiscreteDynamicsWorld& world, double share) {
+/// To be called for each step, with what is applied for it.
+inline void kick(btDiscreteDynamicsWorld& world, const Kick& how) {
     for (int i = 0; i < world.getNumConstraints(); ++i) {
         auto* plastic = dynamic_cast<PlasticConstraint*>(world.getConstraint(i));
-        if (plastic != nullptr) plastic->set_kick(share);
+        if (plastic != nullptr) plastic->set_kick(how);
     }
-    if (share == 1) return;
-    const btScalar more = btScalar(share - 1);
+    if (how.share == 1) return;
+    const btScalar more = btScalar(how.share - 1);
     const auto& objects = world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {
         btRigidBody* body = btRigidBody::upcast(objects[i]);

@@ -126,9 +126,10 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     /// degrees of freedom of the type.
     MultiBodyPlasticConstraint(btMultiBody& body, int link, int rows,
                                btMultibodyLink::eFeatherstoneJointType type, const char* wanted)
-        : btMultiBodyConstraint(&body, &body, checked(body, link, type, wanted),
-                                body.getLink(link).m_parent, rows, true,
-                                MAX_MULTIBODY_CONSTRAINT_TYPE) {}
+        // arguments are evaluated in any order: none may read a link that is not there
+        : btMultiBodyConstraint(&body, &body, link,
+                                body.getLink(checked(body, link, type, wanted)).m_parent, rows,
+                                true, MAX_MULTIBODY_CONSTRAINT_TYPE) {}
 
     /// What the rows are given at the start of a tick.
     struct Tick {

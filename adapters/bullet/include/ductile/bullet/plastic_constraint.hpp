@@ -13,6 +13,7 @@
 #include "ductile/joint/pair.hpp"
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/world/joint_report.hpp"
+#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
@@ -40,9 +41,8 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows {
     /// Of the last tick; where that was none of the constraint's, because its bodies slept or it is
     /// disabled, an idle one. Speeds are those of now.
     [[nodiscard]] virtual JointReport<double> report() = 0;
-    /// Share of the coming ticks for which the constraint's forces act, > 0 and 1 at first; of a
-    /// World that leapfrogs (world/leapfrog.hpp).
-    void set_kick(double share) noexcept { kick_ = share; }
+    /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
+    void set_kick(const Kick& kick) noexcept { kick_ = kick; }
     /// True from add_to to remove_from.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
 
@@ -56,7 +56,7 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows {
     }
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
-    double kick_ = 1;
+    Kick kick_;
 };
 
 } // namespace ductile::bullet

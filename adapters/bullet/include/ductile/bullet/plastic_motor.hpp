@@ -152,10 +152,11 @@ class PlasticMotor final : public PlasticConstraint {
         settle();
         if (world_ == nullptr || !hinge_.isEnabled() || joint_.state().broken) return;
         tick_ = double(world_->getSolverInfo().m_timeStep);
-        dt_ = kick_ * tick_;
+        dt_ = kick_.share * tick_;
         axis_ = axis();
         position_ = measure(position_);
-        const RowLimits<double> limits = joint_.prepare({position_, velocity()}, dt_);
+        const RowLimits<double> limits =
+            joint_.prepare({position_, velocity(), 0, kick_.midway}, dt_);
         const double strength = velocity() < 0 ? limits.upper : -limits.lower;
         // the hinge counts its motor's velocity the other way round with its frame A as reference
         const double sign = hinge_.getUseReferenceFrameA() ? -1 : 1;

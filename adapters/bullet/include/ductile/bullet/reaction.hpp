@@ -45,9 +45,10 @@ struct ReactionArm {
 }
 
 /// Forces and moments of `rows`, which acted for the share `kick` of the tick, on A [N | N m].
-[[nodiscard]] inline Vector6<double> forces_of_rows(
-    const btJointFeedback& feedback, const ReactionArm& from,
-    const std::array<LinkRow<double>, 6>& rows, double kick = 1) noexcept {
+[[nodiscard]] inline Vector6<double> forces_of_rows(const btJointFeedback& feedback,
+                                                    const ReactionArm& from,
+                                                    const std::array<LinkRow<double>, 6>& rows,
+                                                    double kick) noexcept {
     const Vector3<double> force = from.from_b
                                       ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
                                       : to_core(feedback.m_appliedForceBodyA);

@@ -12,9 +12,9 @@
 // The joints need nothing of this: without a World they are as exact. Step through `step` and
 // `advance` alone, else ledger and clock miss something.
 //
-// A step is one internal tick, or `effort().parts` equal ones. Of a split step each part has the
-// forces that were applied for the step; a kinematic body moved by hand makes its whole motion in
-// the first part.
+// A part of a step is one internal tick. Of a split step each part has the forces that were applied
+// for the step; a kinematic body moved by hand makes its whole motion in the first part. A step
+// throws std::invalid_argument where it, or its part, is shorter than Bullet steps.
 //
 // OnUnconverged::direct_solver: the group of islands with a joint in doubt goes to Dantzig's method
 // (doubt_solver.hpp) until all is calm. The user's solver is in place again when this object ends.
@@ -35,10 +35,8 @@
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 
 #include <concepts>
-#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -50,8 +48,7 @@
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/world/leapfrog.hpp"
-#include "ductile/world/supervisor.hpp"
+#include "ductile/world/stepped_world.hpp"
 
 namespace ductile::bullet {
 
@@ -62,30 +59,31 @@ struct WorldParameters {
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 
-class World {
+class World final : public SteppedWorld {
   public:
     /// `world` must outlive this.
     /// @throws std::invalid_argument where a parameter is out of range or the solver of this world
     /// cannot be exchanged.
     explicit World(btDiscreteDynamicsWorld& world, WorldParameters parameters = {})
-        : world_(world), supervisor_(parameters.effort, std::move(parameters.warn)) {
+        : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
         if (parameters.effort.action == OnUnconverged::direct_solver) {
             require_exchangeable_solver();
             doubts_ = std::make_unique<DoubtSolver>(*world_.getConstraintSolver());
             world_.setConstraintSolver(doubts_.get());
         }
         if (parameters.ledger) meter_.emplace(world_);
-        if (parameters.leapfrog) start_leapfrog();
+        if (parameters.leapfrog) {
+            require_leapfrog();
+            start_leapfrog();
+        }
     }
     /// Joints stay in Bullet's world.
     ~World() {
-        if (leapfrog_) kick(world_, 1);
+        if (leapfrogs()) kick(world_, {});
         if (doubts_ != nullptr && world_.getConstraintSolver() == doubts_.get()) {
             world_.setConstraintSolver(&doubts_->usual());
         }
     }
-    World(const World&) = delete;
-    World& operator=(const World&) = delete;
 
     [[nodiscard]] btDiscreteDynamicsWorld& engine() const noexcept { return world_; }
 
@@ -96,81 +94,28 @@ class World {
     requires(std::derived_from<Joint, PlasticConstraint> ||
              std::derived_from<Joint, MultiBodyPlasticConstraint>) void add(Joint& joint,
                                                                             std::string name = {}) {
-        supervisor_.add(address(joint), std::move(name), [&joint] { return joint.report(); });
+        supervisor().add(address(joint), std::move(name), [&joint] { return joint.report(); });
+        told_ = -1;
         if (joint.in_world()) return;
         try {
             joint.add_to(engine_of(joint));
         } catch (...) {
-            supervisor_.remove(address(joint));
+            supervisor().remove(address(joint));
             throw;
         }
     }
     /// Takes a joint out of Bullet's world too. What is not here is left alone.
     template <class Joint>
     void remove(Joint& joint) {
-        if (!supervisor_.knows(address(joint))) return;
-        supervisor_.remove(address(joint));
+        if (!supervisor().knows(address(joint))) return;
+        supervisor().remove(address(joint));
         if (doubts_ != nullptr) doubts_->trust(address(joint));
         if constexpr (std::derived_from<Joint, PlasticConstraint>) {
             if (meter_) meter_->forget(joint);
-            joint.set_kick(1);
+            joint.set_kick({});
         }
         if (joint.in_world()) joint.remove_from(engine_of(joint));
     }
-
-    // ---- stepping
-
-    /// One step of `dt` [s].
-    /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it the
-    /// world says where the step is too long for a contact.
-    /// @throws std::invalid_argument where it is not finite, or shorter than Bullet steps.
-    void step(double dt, const SceneMotion<double>& scene = {}) {
-        supervisor_.open();
-        supervisor_.look_ahead(scene, dt);
-        do_step(dt, time() + dt);
-    }
-
-    /// Steps for `duration` [s], to its end exactly, as `control` finds from the joints' motion and
-    /// from what `scene` says before each step, such as a gap that closes; `scene` may also apply
-    /// the forces of the step.
-    /// @throws std::invalid_argument where the duration is not positive.
-    void advance(double duration, StepControl<double>& control,
-                 const std::function<SceneMotion<double>()>& scene = {}) {
-        supervisor_.advance(duration, control, scene,
-                            [this](double dt, double end) { do_step(dt, end); });
-    }
-
-    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody having
-    /// given them to them.
-    void restart() noexcept {
-        if (leapfrog_) leapfrog_->restart();
-    }
-
-    // ---- what it tells
-
-    /// Since this object was made [s].
-    [[nodiscard]] double time() const noexcept { return supervisor_.time(); }
-    /// @throws std::logic_error where none is kept.
-    [[nodiscard]] const Ledger<double>& ledger() const {
-        if (!meter_) throw std::logic_error("World.ledger = false: there is none");
-        return meter_->ledger();
-    }
-    /// Of the last step() or advance(), valid until the next one.
-    [[nodiscard]] std::span<const JointEvent<double>> events() const noexcept {
-        return supervisor_.events();
-    }
-    /// Is called for every event at the end of the step, or its part; it may add and remove joints,
-    /// not step.
-    void on_event(Supervisor::Listener listener) { supervisor_.on_event(std::move(listener)); }
-    /// Worst certificate of the last step() or advance(); watch().name() says whose.
-    [[nodiscard]] const WorstCertificate<double>& worst() const noexcept { return watch().worst(); }
-    [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
-    /// True where parts may have passed through each other unseen in the last step().
-    [[nodiscard]] bool may_miss_contact() const noexcept {
-        return supervisor_.may_miss_contact();
-    }
-    /// With what the next step is done.
-    [[nodiscard]] const Effort& effort() const noexcept { return supervisor_.effort(); }
 
   private:
     /// Bullet's own flag is not public.
@@ -193,12 +138,11 @@ class World {
         }
     }
 
-    void start_leapfrog() {
+    void require_leapfrog() const {
         if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
             throw std::invalid_argument(
                 "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
         }
-        leapfrog_.emplace();
     }
 
     static const void* address(const PlasticConstraint& joint) {
@@ -216,51 +160,42 @@ class World {
         return *world;
     }
 
-    /// Bullet's number of iterations, raised while this lives.
-    class RaisedIterations {
-      public:
-        RaisedIterations(btContactSolverInfo& info, int factor)
-            : info_(info), usual_(info.m_numIterations) {
-            info_.m_numIterations *= factor;
-        }
-        ~RaisedIterations() { info_.m_numIterations = usual_; }
-        RaisedIterations(const RaisedIterations&) = delete;
-        RaisedIterations& operator=(const RaisedIterations&) = delete;
+    // ---- what SteppedWorld asks of Bullet
 
-      private:
-        btContactSolverInfo& info_;
-        int usual_;
-    };
-
-    void do_step(double dt, double end) {
-        const Effort effort = supervisor_.effort();
-        const double start = time(), part = dt / effort.parts;
-        check::positive("World.step.dt", dt, "s");
-        if (!(part > double(SIMD_EPSILON))) {
-            check::fail("World.step.dt", part, "s", "longer than Bullet's shortest step");
+    void require_possible(double dt) override {
+        if (!(dt > double(SIMD_EPSILON))) {
+            check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
         }
-        const RaisedIterations raised(world_.getSolverInfo(), effort.iterations);
-        if (effort.parts > 1) forces_.hold(world_);
-        for (int i = 1; i <= effort.parts; ++i) {
-            if (i > 1) forces_.apply();
-            if (meter_) meter_->before_step();
-            const double share = leapfrog_ ? leapfrog_->share(part) : 1;
-            if (leapfrog_) kick(world_, share);
-            world_.stepSimulation(btScalar(part), 0);
-            if (meter_) meter_->after_step(double(btScalar(part)), share);
-            supervisor_.look(i < effort.parts ? start + i * part : end, [this](const void* joint) {
-                if (doubts_ != nullptr) doubts_->doubt(joint);
-            });
-        }
-        if (!supervisor_.close().direct && doubts_ != nullptr) doubts_->trust_all();
+    }
+    void do_part(double dt, const Kick& how, const Effort&) override {
+        if (meter_) meter_->before_step();
+        const bool told = how.share == 1 && told_ == world_.getNumConstraints();
+        if (leapfrogs() && !told) kick(world_, how);
+        told_ = how.share == 1 ? world_.getNumConstraints() : -1;
+        world_.stepSimulation(btScalar(dt), 0);
+        if (meter_) meter_->after_step(double(btScalar(dt)), how.share);
+    }
+    void hold_forces() override { forces_.hold(world_); }
+    void apply_held_forces() override { forces_.apply(); }
+    [[nodiscard]] int iterations() const override { return world_.getSolverInfo().m_numIterations; }
+    void set_iterations(int iterations) override {
+        world_.getSolverInfo().m_numIterations = iterations;
+    }
+    void doubt(const void* joint) override {
+        if (doubts_ != nullptr) doubts_->doubt(joint);
+    }
+    void finish(const Effort& effort) override {
+        if (!effort.direct && doubts_ != nullptr) doubts_->trust_all();
+    }
+    [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
+        return meter_ ? &meter_->ledger() : nullptr;
     }
 
     btDiscreteDynamicsWorld& world_;
-    Supervisor supervisor_;
     std::unique_ptr<DoubtSolver> doubts_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
-    std::optional<Leapfrog> leapfrog_;
+    int told_ = -1; ///< how many constraints know that forces act for the whole step
 };
 
 } // namespace ductile::bullet

@@ -11,14 +11,15 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::ode {
 
-/// To be called for each step, with what is applied for it. `share` > 0; `bodies`: all that move.
+/// To be called for each step, with what is applied for it; `bodies`: all that move.
 inline void kick(std::span<const dBodyID> bodies, std::span<SteppedConstraint* const> constraints,
-                 double share) {
-    for (SteppedConstraint* constraint : constraints) constraint->set_kick(share);
-    if (share == 1) return;
+                 const Kick& how) {
+    for (SteppedConstraint* constraint : constraints) constraint->set_kick(how);
+    if (how.share == 1) return;
     for (dBodyID body : bodies) {
         if (dBodyIsKinematic(body) || dBodyIsEnabled(body) == 0) continue;
         Vector3<double> force = to_core(dBodyGetForce(body));
@@ -29,8 +30,8 @@ inline void kick(std::span<const dBodyID> bodies, std::span<SteppedConstraint* c
             dBodyGetMass(body, &mass);
             force += double(mass.mass) * to_core(gravity);
         }
-        force *= share - 1;
-        const Vector3<double> torque = (share - 1) * to_core(dBodyGetTorque(body));
+        force *= how.share - 1;
+        const Vector3<double> torque = (how.share - 1) * to_core(dBodyGetTorque(body));
         dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
         dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
     }

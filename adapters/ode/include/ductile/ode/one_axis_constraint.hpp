@@ -145,9 +145,9 @@ class OneAxisConstraint : public PlasticConstraint {
             pose_.look(row_);
             follow_hands();
         }
-        Motion<double> motion{position_, pose_.velocity(row_)};
+        Motion<double> motion{position_, pose_.velocity(row_), 0, kick_.midway};
         if (std::isfinite(joint_.parameters().stiffness)) motion.mass = mass();
-        set_motor(joint_.prepare(motion, kick_ * dt), dt);
+        set_motor(joint_.prepare(motion, kick_.share * dt), dt);
         rigid_target_ = rigid_target(dt);
     }
 
@@ -166,7 +166,7 @@ class OneAxisConstraint : public PlasticConstraint {
         position_ = row_.measured() ? row_.measure(position_ + velocity * dt)
                                     : position_ + row_.increment(pose_.placement(), pose_.axis(),
                                                                  pose_.point());
-        last_ = joint_.commit({force_, velocity, position_}, kick_ * dt);
+        last_ = joint_.commit({force_, velocity, position_}, kick_.share * dt);
         pose_.look(row_);
         joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
         if (last_.outcome == Outcome::broken) {
@@ -282,7 +282,7 @@ class OneAxisConstraint : public PlasticConstraint {
     }
 
     void set_motor(const RowLimits<double>& limits, double dt) {
-        const SymmetricRow row = symmetric_row(limits, dt, kick_);
+        const SymmetricRow row = symmetric_row(limits, dt, kick_.share);
         centre_ = row.centre;
         strength_ = row.strength;
         row_.set(dParamCFM, row.cfm);
@@ -347,8 +347,8 @@ class OneAxisConstraint : public PlasticConstraint {
     /// Of the plastic row: its impulse over the time for which it acted.
     [[nodiscard]] double row_force() const {
         const dJointFeedback* feedback = dJointGetFeedback(id());
-        if (!(strength_ > 0) || feedback == nullptr) return centre_ / kick_;
-        return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / kick_;
+        if (!(strength_ > 0) || feedback == nullptr) return centre_ / kick_.share;
+        return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / kick_.share;
     }
 
     /// Gives the energy that the breaking step took in excess back to the motion along the axis.

@@ -216,7 +216,7 @@ class PlasticJoint final : public PlasticConstraint {
         if (!put_back_) link_.go_along(a, b);
         put_back_ = false;
         const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
-        const auto& rows = link_.prepare(a, b, kick_ * dt, rate);
+        const auto& rows = link_.prepare(a, b, kick_.share * dt, rate, kick_.midway);
         arm_a_ = link_.point() - a.position;
         arm_b_ = link_.point() - b.position;
         centre_ = {};
@@ -224,7 +224,7 @@ class PlasticJoint final : public PlasticConstraint {
         bool out_of_scale = false; // a moment's row
         for (const JointAxis axis : all_joint_axes) {
             const LinkRow<double>& row = rows[index(axis)];
-            SymmetricRow symmetric = symmetric_row(row.limits, dt, kick_);
+            SymmetricRow symmetric = symmetric_row(row.limits, dt, kick_.share);
             const double moved = mobility(a, arm_a_, row) + mobility(b, arm_b_, row);
             symmetric.cfm += softness * dt * moved;
             (row.turns ? centre_.moment : centre_.force) += symmetric.centre * row.direction;
@@ -256,11 +256,11 @@ class PlasticJoint final : public PlasticConstraint {
         outside_.torque_a += arm_a_.cross(centre_.force) + centre_.moment;
         outside_.torque_b -= arm_b_.cross(centre_.force) + centre_.moment;
         const Vector3<double> torque = outside_.torque_a + to_core(moments_.t1);
-        link_.commit(body_motion(a_), body_motion(b_),
-                     JointWrench<double>{
-                         .force = outside_.force / kick_,
-                         .moment = (torque - arm_a_.cross(outside_.force)) / kick_},
-                     kick_ * dt);
+        link_.commit(
+            body_motion(a_), body_motion(b_),
+            JointWrench<double>{.force = outside_.force / kick_.share,
+                                .moment = (torque - arm_a_.cross(outside_.force)) / kick_.share},
+            kick_.share * dt);
         if (broken()) let_go();
     }
 

@@ -3,6 +3,8 @@
 // What takes part in a step of an ODE world beside ODE's own joints. World calls it.
 #pragma once
 
+#include "ductile/world/leapfrog.hpp"
+
 namespace ductile::ode {
 
 class SteppedConstraint {
@@ -11,14 +13,13 @@ class SteppedConstraint {
     /// Called for all before any is prepared.
     /// @throws what makes the step impossible; nothing has changed then.
     virtual void check() const {}
-    /// Share of the coming steps for which the constraint's forces act, > 0 and 1 at first; of a
-    /// World that leapfrogs (world/leapfrog.hpp).
-    void set_kick(double share) noexcept { kick_ = share; }
+    /// How the constraint's forces act in the coming steps; of a World that leapfrogs.
+    void set_kick(const Kick& kick) noexcept { kick_ = kick; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
 
   protected:
-    double kick_ = 1;
+    Kick kick_;
 };
 
 } // namespace ductile::ode

@@ -28,7 +28,7 @@ struct SymmetricRow {
 
 /// For a step of `dt` > 0 [s], for the share `kick` of which the row's forces act.
 [[nodiscard]] inline SymmetricRow symmetric_row(const RowLimits<double>& limits, double dt,
-                                                double kick = 1) noexcept {
+                                                double kick) noexcept {
     const double half = kick * (limits.upper - limits.lower) / 2;
     const double centre = std::isfinite(half) ? kick * (limits.lower + limits.upper) / 2 : 0;
     const double cfm = limits.compliance * dt;

@@ -13,15 +13,17 @@
 //   world.step(dt);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
 //
-// A step is one of ODE's, or `effort().parts` equal ones. Of a split step each part has the forces
-// that were applied for the step to the bodies added here, and the same contact joints.
+// Of a split step each part has the forces that were applied for the step to the bodies added here,
+// and the same contact joints. A step throws what a constraint's check() throws, and
+// std::invalid_argument where it leapfrogs and a joint's body was not added.
 //
 // OnUnconverged::direct_solver: ODE has no solver per island, so the whole world's step goes to
 // dWorldStep while a joint is in doubt. OnUnconverged::raise_iterations is for dWorldQuickStep;
 // dWorldStep has none to raise.
 //
-// leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be all
-// that move. Velocities are then those in the middle of the last step, and so is the joints' clock.
+// leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be
+// all that move. Velocities are then those in the middle of the last step, and so is the joints'
+// clock.
 //
 // Not thread-safe. The world and the constraints must outlive this object, or be removed from it.
 #pragma once
@@ -29,9 +31,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <functional>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,9 +42,7 @@
 #include "ductile/ode/kick.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
-#include "ductile/vocabulary/check.hpp"
-#include "ductile/world/leapfrog.hpp"
-#include "ductile/world/supervisor.hpp"
+#include "ductile/world/stepped_world.hpp"
 
 namespace ductile::ode {
 
@@ -59,47 +57,45 @@ struct WorldParameters {
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 
-class World {
+class World final : public SteppedWorld {
   public:
     /// @throws std::invalid_argument where the world is null or a parameter is out of range.
     World(dWorldID world, WorldParameters parameters)
-        : world_(require_world(world)),
-          solver_(parameters.solver),
-          supervisor_(parameters.effort, std::move(parameters.warn)) {
+        : SteppedWorld(parameters.effort, std::move(parameters.warn)),
+          world_(require_world(world)),
+          solver_(parameters.solver) {
         if (parameters.ledger) meter_.emplace(world_);
-        if (parameters.leapfrog) leapfrog_.emplace();
+        if (parameters.leapfrog) start_leapfrog();
     }
     /// Steps, collects events, and says nothing by itself; no ledger.
     explicit World(dWorldID world, Solver solver = Solver::direct)
         : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
-    World(const World&) = delete;
-    World& operator=(const World&) = delete;
 
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
     /// Steps a joint and looks after it. An empty `name`: "joint" and its number.
     /// @throws std::invalid_argument where it is here already.
     void add(PlasticConstraint& joint, std::string name = {}) {
-        supervisor_.add(&joint, std::move(name), [&joint] { return joint.report(); });
+        supervisor().add(&joint, std::move(name), [&joint] { return joint.report(); });
         constraints_.push_back(&joint);
         plastic_.push_back(&joint);
         bodies_known_ = false;
-        joint.set_kick(1);
+        joint.set_kick({});
         if (meter_) meter_->add(joint);
     }
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint) {
-        supervisor_.remove(&joint);
+        supervisor().remove(&joint);
         std::erase(constraints_, &joint);
         std::erase(plastic_, &joint);
-        joint.set_kick(1);
+        joint.set_kick({});
         if (meter_) meter_->remove(joint);
     }
     /// Steps what is no plastic joint.
     void add(SteppedConstraint& constraint) { constraints_.push_back(&constraint); }
     void remove(SteppedConstraint& constraint) {
         std::erase(constraints_, &constraint);
-        constraint.set_kick(1);
+        constraint.set_kick({});
     }
 
     /// Tells of a dynamic body: ODE does not say which a world has.
@@ -123,99 +119,44 @@ class World {
         if (meter_) contacts_.emplace_back(joint, geometry);
     }
 
-    // ---- stepping
-
-    /// One step of `dt` > 0 [s].
-    /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it the
-    /// world says where the step is too long for a contact.
-    /// @throws std::invalid_argument where the step is not finite or not positive, or this leapfrogs
-    /// and a joint's body was not added, and what a constraint's check() throws. The world stays as
-    /// it was.
-    void step(double dt, const SceneMotion<double>& scene = {}) {
-        check::positive("World.step.dt", dt, "s");
-        supervisor_.open();
-        supervisor_.look_ahead(scene, dt);
-        do_step(dt, time() + dt);
-    }
-
-    /// Steps for `duration` [s], to its end exactly, as `control` finds from the joints' motion and
-    /// from what `scene` says before each step, such as a gap that closes; `scene` may also apply
-    /// the forces and make the contacts of the step.
-    /// @throws std::invalid_argument where the duration is not positive.
-    void advance(double duration, StepControl<double>& control,
-                 const std::function<SceneMotion<double>()>& scene = {}) {
-        supervisor_.advance(duration, control, scene,
-                            [this](double dt, double end) { do_step(dt, end); });
-    }
-
-    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody having
-    /// given them to them.
-    void restart() noexcept {
-        if (leapfrog_) leapfrog_->restart();
-    }
-
-    // ---- what it tells
-
-    /// Since this object was made [s].
-    [[nodiscard]] double time() const noexcept { return supervisor_.time(); }
-    /// @throws std::logic_error where none is kept.
-    [[nodiscard]] const Ledger<double>& ledger() const {
-        if (!meter_) throw std::logic_error("World.ledger = false: there is none");
-        return meter_->ledger();
-    }
-    /// Of the last step() or advance(), valid until the next one.
-    [[nodiscard]] std::span<const JointEvent<double>> events() const noexcept {
-        return supervisor_.events();
-    }
-    /// Is called for every event at the end of the step, or its part; it may add and remove joints,
-    /// not step.
-    void on_event(Supervisor::Listener listener) { supervisor_.on_event(std::move(listener)); }
-    /// Worst certificate of the last step() or advance(); watch().name() says whose.
-    [[nodiscard]] const WorstCertificate<double>& worst() const noexcept { return watch().worst(); }
-    [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
-    /// True where parts may have passed through each other unseen in the last step().
-    [[nodiscard]] bool may_miss_contact() const noexcept {
-        return supervisor_.may_miss_contact();
-    }
-    /// With what the next step is done.
-    [[nodiscard]] const Effort& effort() const noexcept { return supervisor_.effort(); }
-
   private:
     static dWorldID require_world(dWorldID world) {
         if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
         return world;
     }
 
-    /// ODE's number of iterations, raised while this lives.
-    class RaisedIterations {
-      public:
-        RaisedIterations(dWorldID world, int factor)
-            : world_(world), usual_(dWorldGetQuickStepNumIterations(world)) {
-            dWorldSetQuickStepNumIterations(world_, usual_ * factor);
-        }
-        ~RaisedIterations() { dWorldSetQuickStepNumIterations(world_, usual_); }
-        RaisedIterations(const RaisedIterations&) = delete;
-        RaisedIterations& operator=(const RaisedIterations&) = delete;
+    // ---- what SteppedWorld asks of ODE
 
-      private:
-        dWorldID world_;
-        int usual_;
-    };
-
-    void do_step(double dt, double end) {
-        const Effort effort = supervisor_.effort();
-        const double start = time(), part = dt / effort.parts;
-        const RaisedIterations raised(world_, effort.iterations);
-        if (effort.parts > 1) forces_.hold(bodies_);
-        for (int i = 1; i <= effort.parts; ++i) {
-            for (const SteppedConstraint* constraint : constraints_) constraint->check();
-            if (leapfrog_ && !bodies_known_) require_bodies();
-            if (i > 1) forces_.apply();
-            do_part(part, effort.direct || solver_ == Solver::direct);
-            supervisor_.look(i < effort.parts ? start + i * part : end, [](const void*) {});
+    void require_possible(double) override {
+        for (const SteppedConstraint* constraint : constraints_) constraint->check();
+        if (leapfrogs() && !bodies_known_) require_bodies();
+    }
+    void do_part(double dt, const Kick& how, const Effort& effort) override {
+        if (meter_) {
+            for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
+            meter_->before_step();
         }
-        contacts_.clear();
-        supervisor_.close();
+        if (leapfrogs()) kick(bodies_, constraints_, how);
+        for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
+        if (effort.direct || solver_ == Solver::direct) {
+            dWorldStep(world_, dReal(dt));
+        } else {
+            dWorldQuickStep(world_, dReal(dt));
+        }
+        for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
+        if (meter_) meter_->after_step(dt, how.share);
+    }
+    void hold_forces() override { forces_.hold(bodies_); }
+    void apply_held_forces() override { forces_.apply(); }
+    [[nodiscard]] int iterations() const override {
+        return dWorldGetQuickStepNumIterations(world_);
+    }
+    void set_iterations(int iterations) override {
+        dWorldSetQuickStepNumIterations(world_, iterations);
+    }
+    void finish(const Effort&) override { contacts_.clear(); }
+    [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
+        return meter_ ? &meter_->ledger() : nullptr;
     }
 
     /// Gravity on a body that is not known would not leapfrog.
@@ -234,29 +175,10 @@ class World {
         bodies_known_ = true;
     }
 
-    void do_part(double dt, bool direct) {
-        if (meter_) {
-            for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
-            meter_->before_step();
-        }
-        const double share = leapfrog_ ? leapfrog_->share(dt) : 1;
-        if (leapfrog_) kick(bodies_, constraints_, share);
-        for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
-        if (direct) {
-            dWorldStep(world_, dReal(dt));
-        } else {
-            dWorldQuickStep(world_, dReal(dt));
-        }
-        for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
-        if (meter_) meter_->after_step(dt, share);
-    }
-
     dWorldID world_;
     Solver solver_;
-    Supervisor supervisor_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
-    std::optional<Leapfrog> leapfrog_;
     std::vector<SteppedConstraint*> constraints_;
     std::vector<const PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// What the World of every adapter is: the course of a step and what is told after it. An adapter
+// derives from it, knows its engine's joints and bodies, and says how that engine
+//
+//   goes one part of a step            do_part
+//   raises its number of iterations    set_iterations
+//   keeps the forces applied for a step, and applies them again for its next part
+//
+// A step is one part, or `effort().parts` equal ones.
+//
+// Not thread-safe.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/energy.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/world/leapfrog.hpp"
+#include "ductile/world/supervisor.hpp"
+
+namespace ductile {
+
+class SteppedWorld {
+  public:
+    SteppedWorld(const SteppedWorld&) = delete;
+    SteppedWorld& operator=(const SteppedWorld&) = delete;
+
+    // ---- stepping
+
+    /// One step of `dt` > 0 [s].
+    /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it
+    /// the world says where the step is too long for a contact.
+    /// @throws std::invalid_argument where the step is not finite or not positive, or not one that
+    /// this engine can do (of its own World). The world stays as it was.
+    void step(double dt, const SceneMotion<double>& scene = {}) {
+        check::positive("World.step.dt", dt, "s");
+        supervisor_.open();
+        supervisor_.look_ahead(scene, dt);
+        do_step(dt, time() + dt);
+    }
+
+    /// Steps for `duration` [s], to its end exactly, as `control` finds from the joints' motion and
+    /// from what `scene` says before each step, such as a gap that closes; `scene` may also apply
+    /// the forces and make the contacts of the step.
+    /// @throws std::invalid_argument where the duration is not positive.
+    void advance(double duration, StepControl<double>& control,
+                 const std::function<SceneMotion<double>()>& scene = {}) {
+        supervisor_.advance(duration, control, scene,
+                            [this](double dt, double end) { do_step(dt, end); });
+    }
+
+    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody
+    /// having given them to them.
+    void restart() noexcept {
+        if (leapfrog_) leapfrog_->restart();
+    }
+
+    // ---- what it tells
+
+    /// Since this object was made [s].
+    [[nodiscard]] double time() const noexcept { return supervisor_.time(); }
+    /// @throws std::logic_error where none is kept.
+    [[nodiscard]] const Ledger<double>& ledger() const {
+        const Ledger<double>* kept = kept_ledger();
+        if (kept == nullptr) throw std::logic_error("World.ledger = false: there is none");
+        return *kept;
+    }
+    /// Of the last step() or advance(), valid until the next one.
+    [[nodiscard]] std::span<const JointEvent<double>> events() const noexcept {
+        return supervisor_.events();
+    }
+    /// Is called for every event at the end of the step, or its part; it may add and remove joints,
+    /// not step.
+    void on_event(Supervisor::Listener listener) { supervisor_.on_event(std::move(listener)); }
+    /// Worst certificate of the last step() or advance(); watch().name() says whose.
+    [[nodiscard]] const WorstCertificate<double>& worst() const noexcept { return watch().worst(); }
+    [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
+    /// True where parts may have passed through each other unseen in the last step().
+    [[nodiscard]] bool may_miss_contact() const noexcept { return supervisor_.may_miss_contact(); }
+    /// With what the next step is done.
+    [[nodiscard]] const Effort& effort() const noexcept { return supervisor_.effort(); }
+
+  protected:
+    SteppedWorld(const EffortParameters& effort, Warn warn)
+        : supervisor_(effort, std::move(warn)) {}
+    ~SteppedWorld() = default;
+
+    [[nodiscard]] Supervisor& supervisor() noexcept { return supervisor_; }
+    [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
+    /// From the next step on forces act from the middle of one step to the middle of the next.
+    void start_leapfrog() { leapfrog_.emplace(); }
+    [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
+
+  private:
+    // ---- the engine's
+
+    /// Called before each part of `dt` [s], and before its forces are applied again.
+    /// @throws what makes it impossible; nothing has changed then.
+    virtual void require_possible(double dt) = 0;
+    virtual void do_part(double dt, const Kick& kick, const Effort& effort) = 0;
+    virtual void hold_forces() = 0;
+    virtual void apply_held_forces() = 0;
+    [[nodiscard]] virtual int iterations() const = 0;
+    virtual void set_iterations(int iterations) = 0;
+    /// The last part left `joint` (as the supervisor knows it) unsolved.
+    virtual void doubt(const void* /*joint*/) {}
+    /// The step ended; the next one is done with `effort`.
+    virtual void finish(const Effort& effort) = 0;
+    /// Null: none is kept.
+    [[nodiscard]] virtual const Ledger<double>* kept_ledger() const noexcept = 0;
+
+    /// The engine's number of iterations, raised while this lives.
+    class RaisedIterations {
+      public:
+        RaisedIterations(SteppedWorld& world, int factor)
+            : world_(world), usual_(world.iterations()) {
+            world_.set_iterations(usual_ * factor);
+        }
+        ~RaisedIterations() { world_.set_iterations(usual_); }
+        RaisedIterations(const RaisedIterations&) = delete;
+        RaisedIterations& operator=(const RaisedIterations&) = delete;
+
+      private:
+        SteppedWorld& world_;
+        int usual_;
+    };
+
+    void do_step(double dt, double end) {
+        const Effort effort = supervisor_.effort();
+        const double start = time(), part = dt / effort.parts;
+        const RaisedIterations raised(*this, effort.iterations);
+        if (effort.parts > 1) hold_forces();
+        for (int i = 1; i <= effort.parts; ++i) {
+            require_possible(part);
+            if (i > 1) apply_held_forces();
+            do_part(part, leapfrog_ ? leapfrog_->next(part) : Kick{}, effort);
+            supervisor_.look(i < effort.parts ? start + i * part : end,
+                             [this](const void* joint) { doubt(joint); });
+        }
+        finish(supervisor_.close());
+    }
+
+    Supervisor supervisor_;
+    std::optional<Leapfrog> leapfrog_;
+};
+
+} // namespace ductile
