@@ -95,6 +95,23 @@ class WorldRig {
     }
     static void set_velocity(Body b, const V3& v) { b->setLinearVelocity(bullet::to_bullet(v)); }
     static void set_spin(Body b, const V3& w) { b->setAngularVelocity(bullet::to_bullet(w)); }
+    /// All that a body and its hinge remember.
+    struct Saved {
+        btTransform at;
+        btVector3 velocity, spin;
+        Hinge::State hinge;
+        bool operator==(const Saved&) const = default;
+    };
+    static Saved save(Body b, Hinge& hinge) {
+        return {b->getCenterOfMassTransform(), b->getLinearVelocity(), b->getAngularVelocity(),
+                hinge.state()};
+    }
+    static void put_back(Body b, Hinge& hinge, const Saved& saved) {
+        b->setCenterOfMassTransform(saved.at);
+        b->setLinearVelocity(saved.velocity);
+        b->setAngularVelocity(saved.spin);
+        hinge.restore(saved.hinge);
+    }
     static V3 velocity(Body b) { return bullet::to_core(b->getLinearVelocity()); }
     static V3 spin(Body b) { return bullet::to_core(b->getAngularVelocity()); }
     static V3 position(Body b) { return bullet::to_core(b->getCenterOfMassPosition()); }

@@ -6,6 +6,8 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
 #include <utility>
@@ -83,6 +85,24 @@ class WorldRig {
     }
     static void set_spin(Body b, const V3& w) {
         dBodySetAngularVel(b, dReal(w.x()), dReal(w.y()), dReal(w.z()));
+    }
+    /// All that a turning body and its hinge remember.
+    struct Saved {
+        std::array<dReal, 4> turned;
+        V3 spin;
+        Hinge::State hinge;
+        double position;
+        bool operator==(const Saved&) const = default;
+    };
+    static Saved save(Body b, Hinge& hinge) {
+        Saved saved{{}, spin(b), hinge.joint().state(), hinge.position()};
+        std::copy_n(dBodyGetQuaternion(b), 4, saved.turned.begin());
+        return saved;
+    }
+    static void put_back(Body b, Hinge& hinge, const Saved& saved) {
+        dBodySetQuaternion(b, saved.turned.data());
+        set_spin(b, saved.spin);
+        hinge.restore(saved.hinge, saved.position);
     }
     static V3 velocity(Body b) { return ode::linear_velocity(b); }
     static V3 spin(Body b) { return ode::angular_velocity(b); }

@@ -41,6 +41,10 @@ class Leapfrog {
     }
     /// The next step is a first one: somebody gave the bodies velocities that are those of now.
     void restart() noexcept { last_ = 0; }
+    /// dt₋ [s], to be saved with a run; 0 where the next step is a first one.
+    [[nodiscard]] double last() const noexcept { return last_; }
+    /// Goes on as after a step of `last` >= 0 [s].
+    void resume(double last) noexcept { last_ = last; }
 
   private:
     double last_ = 0; ///< dt₋

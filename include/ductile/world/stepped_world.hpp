@@ -60,6 +60,16 @@ class SteppedWorld {
         if (leapfrog_) leapfrog_->restart();
     }
 
+    /// Where it leapfrogs: the last step, to be saved with the bodies and joints of a run [s]; 0
+    /// where the next one is a first one, and where it does not leapfrog.
+    [[nodiscard]] double last_step() const noexcept { return leapfrog_ ? leapfrog_->last() : 0; }
+    /// Goes on from what was saved when last_step() was `last` [s].
+    /// @throws std::invalid_argument where it is negative or not finite.
+    void resume(double last) {
+        check::non_negative("World.resume.last", last, "s");
+        if (leapfrog_) leapfrog_->resume(last);
+    }
+
     // ---- what it tells
 
     /// Since this object was made [s].
