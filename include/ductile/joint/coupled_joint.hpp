@@ -125,8 +125,7 @@ class CoupledJoint {
     /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
-        foretold_.setZero();
-        if (motion.midway && state_.flowing) foretold_ = foretold_change(state_, dt);
+        foretold_ = foretell(state_, motion.midway, dt);
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) {
             rows_.fill({.lower = 0, .upper = 0});
@@ -273,7 +272,8 @@ class CoupledJoint {
                 .noise = parameters_.absolute_residual,
                 .elastic = elastic_[i],
                 .offset = state_.plastic_offset[i],
-                .foretold = kicked(i) ? Scalar(0) : foretold_[i],
+                .foretold = kicked(i) ? Scalar(0) : foretold_.change[i],
+                .midway = foretold_.midway,
                 .may_stop = (state_.flowing || kicked(i)) &&
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
@@ -393,7 +393,7 @@ class CoupledJoint {
     Scalar left_ = 0;  ///< travel left before a break
     Scalar share_ = 1; ///< of the strength that the bounds allow
     Scalar cap_ = 0;   ///< γ of a brittle break
-    Vector foretold_ = Vector::Zero(); ///< change of u: step_error.hpp
+    Foretold<Vector> foretold_{Vector::Zero()};
 };
 
 } // namespace ductile

@@ -39,6 +39,7 @@ struct OpenRow {
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
     S foretold;          ///< as RowStep's [m/s | rad/s]
+    bool midway;         ///< as RowStep's
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
     [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
@@ -89,6 +90,7 @@ struct OpenRow {
                               .travel = moved,
                               .dt = dt,
                               .foretold = foretold,
+                              .midway = midway,
                               .noise = noise,
                               .strength = std::max(upper, -lower) / share,
                               .stiffness = stiffness,

@@ -16,8 +16,7 @@
 //   W       work the row took from the bodies                 [J]
 //
 // Rigid row. C = 0 and |f| <= R. Inside the bounds the row is rigid, and the target velocity removes
-// drift towards q_p; at a bound it slips, which is plastic flow. The box-bounded row solved to
-// convergence is the exact implicit rule, so nothing needs an iteration of our own.
+// drift towards q_p; at a bound it slips, which is plastic flow: solved, it is the exact implicit rule.
 //
 // Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what the
 // yield range allows, and the rest of the observed displacement is plastic. k → ∞ is the rigid row.
@@ -118,7 +117,7 @@ class OneAxisJoint {
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
-        foretold_ = motion.midway && state_.flowing && !kicked() ? foretold_change(state_, dt) : 0;
+        foretold_ = foretell(state_, motion.midway, dt);
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) return {.lower = 0, .upper = 0};
         bound(dt);
@@ -254,7 +253,8 @@ class OneAxisJoint {
                                    .start = start_,
                                    .travel = taken.travel,
                                    .dt = taken.dt,
-                                   .foretold = foretold_,
+                                   .foretold = kicked() ? Scalar(0) : foretold_.change,
+                                   .midway = foretold_.midway,
                                    .noise = parameters_.absolute_residual,
                                    .strength = resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
@@ -394,7 +394,7 @@ class OneAxisJoint {
     Scalar left_ = 0;  ///< travel left before a break
     Scalar share_ = 1; ///< of the strength that the bounds allow
     Scalar implicit_ = 1; ///< θ of an elastic row
-    Scalar foretold_ = 0; ///< change of u: step_error.hpp
+    Foretold<Scalar> foretold_{};
 };
 
 } // namespace ductile

@@ -11,9 +11,10 @@
 //
 // Flow in the middle of steps. Where every force acts from the middle of one step to the middle of
 // the next (world/leapfrog.hpp), a force that stays the same misplaces nothing. What is misplaced
-// is where it changes: by up to |Δu - Δu₋| dt/2 where that is less, with the change of speed Δu₋
-// that the last step foretells. The stop of above is then off by up to 1/(4 n²) of its travel and
-// said to be off by up to 1/n²; a flow that a contact begins within a step is as uncertain as ever.
+// is where it changes: by up to |Δu - Δu₋| dt, or |Δu| dt where that is less, with the change of
+// speed Δu₋ that the last step foretells. The stop of above is then off by up to 1/(4 n²) of its
+// travel and said to be off by up to 1.5/n². A flow that a contact begins within a step is off by
+// up to u' dt, as here no stop half a step early makes up for half of that.
 //
 // Direction. Rows that share a yield surface flow along its normal as far as their bounds were set
 // around the right force. Plastic work done along another direction is misplaced as well
@@ -43,6 +44,7 @@ struct RowStep {
     S travel;     ///< (u + u') dt/2, signed [m | rad]
     S dt;         ///< [s]
     S foretold;   ///< Δu₋ in the middle of steps, else 0 [m/s | rad/s]
+    bool midway;  ///< velocities are those in the middle of steps
     S noise;      ///< speed below which nothing flows [m/s | rad/s]
     S strength;   ///< R [N | N m]
     S stiffness;  ///< k; infinite: rigid [N/m | N m/rad]
@@ -64,11 +66,20 @@ struct StepError {
     }
 };
 
-/// Δu₋ of all axes for a step of `dt` [s] after the one that left `state`, which flowed
-/// [m/s | rad/s].
+/// What the last step says of this one. `Axes` is a number or a vector, one entry per axis.
+template <class Axes>
+struct Foretold {
+    Axes change;         ///< Δu₋ where it flowed, else 0 [m/s | rad/s]
+    bool midway = false; ///< velocities are those in the middle of steps; else Δu₋ is 0
+};
+
+/// For a step of `dt` [s] after the one that left `state`.
 template <class State, std::floating_point S>
-[[nodiscard]] auto foretold_change(const State& state, S dt) noexcept {
-    return (state.velocity - state.start_velocity) * (dt / state.dt);
+[[nodiscard]] auto foretell(const State& state, bool midway, S dt) noexcept {
+    Foretold<decltype(State::velocity)> result{state.velocity, midway};
+    result.change -= state.start_velocity;
+    result.change *= midway && state.flowing ? dt / state.dt : S(0);
+    return result;
 }
 
 template <std::floating_point S>
@@ -80,7 +91,8 @@ template <std::floating_point S>
         const bool still =
             std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt;
         const S unlike = std::abs(row.force * (changed - row.foretold * row.dt / 2));
-        return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * std::min(change, unlike)};
+        const S misplaced = row.midway ? 2 * std::min(change, unlike) : change;
+        return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * misplaced};
     }
     // a stiff spring moves by little, and what it does is measured by its force
     if (rigid || row.implicit == 0) return {};
