@@ -261,10 +261,12 @@ TEST_CASE("a chain of elastic rows gains no energy, or says that it was not solv
     // a symplectic orbit's energy goes up and down by the step, but not away
     CHECK(early < 1.5);
     CHECK(late <= early * (1 + 1e-3));
-    const bool alone = solver == "si" || solver == "mlcp"; // forces given as if of a lone pair
-    if (alone && 2 * a > 0.25 && a < 2) CHECK(unreliable > 0.5 * 8 * ticks);
+    // where Bullet's own solves the rows it is given forces as if of a lone pair
+    if (solver == "mlcp" && 2 * a > 0.25 && a < 2) CHECK(unreliable > 0.5 * 8 * ticks);
     if (solver == "soft-mlcp") CHECK(unreliable == 0);
-    if (solver == "soft-si") CHECK(unreliable < 0.002 * 8 * ticks); // the first ticks of stiff ones
+    if (solver == "si" || solver == "soft-si") {
+        CHECK(unreliable < 0.002 * 8 * ticks); // the first ticks of stiff ones
+    }
     for (auto& joint : chain) joint->remove_from(world.world());
 }
 
@@ -405,128 +407,4 @@ TEST_CASE("a joint does not care which body is called A", "[bullet][joint]") {
     // the joint is a point of A: the two differ by what the pin drifts
     CHECK(one_way[1] == Approx(other[1]).epsilon(1e-3));
     CHECK(one_way[2] == Approx(other[2]).epsilon(1e-3));
-}
-
-namespace {
-
-/// Counts the rows of joints that take part in its sweeps.
-class CountingSolver final : public btSequentialImpulseConstraintSolver {
-  public:
-    long swept = 0;
-
-  protected:
-    btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
-                                  btPersistentManifold** manifolds, int manifold_count,
-                                  btTypedConstraint** constraints, int constraint_count,
-                                  const btContactSolverInfo& info, btIDebugDraw* drawer) override {
-        for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
-            if (iteration < m_tmpSolverNonContactConstraintPool[i].m_overrideNumSolverIterations) {
-                ++swept;
-            }
-        }
-        return btSequentialImpulseConstraintSolver::solveSingleIteration(
-            iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
-            info, drawer);
-    }
-};
-
-/// Boxes in a row, joined by hinges that flow and hold in turn, which fall and hit the ground.
-class FallingRow {
-  public:
-    /// `watched`: sweeps that change nothing are left out.
-    FallingRow(int boxes, bool watched, int iterations) : watched_(watched) {
-        world_.setGravity(btVector3(0, 0, btScalar(-9.81)));
-        world_.getSolverInfo().m_numIterations = iterations;
-        add(0, btVector3(0, 0, -1), &ground_shape_);
-        for (int i = 0; i < boxes; ++i) {
-            btRigidBody& body =
-                add(1 + btScalar(i) / 2, btVector3(btScalar(i), 0, btScalar(0.25)), &box_shape_);
-            body.setAngularVelocity(btVector3(btScalar(0.3), i % 2 == 0 ? 1 : -2, btScalar(0.2)));
-        }
-        btTransform to_right, to_left;
-        to_right.setBasis(btMatrix3x3(btQuaternion(btVector3(1, 0, 0), SIMD_HALF_PI)));
-        to_left.setBasis(to_right.getBasis());
-        to_right.setOrigin(btVector3(btScalar(0.5), 0, 0));
-        to_left.setOrigin(btVector3(btScalar(-0.5), 0, 0));
-        for (std::size_t i = 1; i + 1 < bodies_.size(); ++i) {
-            auto& hinge = *hinges_.emplace_back(std::make_unique<bullet::PlasticHinge<>>(
-                *bodies_[i], *bodies_[i + 1], to_right, to_left, one(i % 2 == 0 ? 500 : 2)));
-            if (watched_) {
-                hinge.add_to(world_);
-            } else {
-                world_.addConstraint(&hinge, true);
-            }
-        }
-    }
-    ~FallingRow() {
-        for (auto& hinge : hinges_) {
-            if (watched_) {
-                hinge->remove_from(world_);
-            } else {
-                world_.removeConstraint(hinge.get());
-            }
-        }
-        for (auto& body : bodies_) world_.removeRigidBody(body.get());
-    }
-    FallingRow(const FallingRow&) = delete;
-    FallingRow& operator=(const FallingRow&) = delete;
-
-    void step() { world_.stepSimulation(btScalar(1e-3), 0); }
-    [[nodiscard]] int contacts() { return dispatcher_.getNumManifolds(); }
-    [[nodiscard]] long swept() const { return solver_.swept; }
-    /// Largest difference of the bodies' velocities [m/s | rad/s].
-    [[nodiscard]] double difference(const FallingRow& other) const {
-        double most = 0;
-        for (std::size_t i = 0; i < bodies_.size(); ++i) {
-            const btRigidBody &a = *bodies_[i], &b = *other.bodies_[i];
-            most = std::max({most, double((a.getLinearVelocity() - b.getLinearVelocity()).length()),
-                             double((a.getAngularVelocity() - b.getAngularVelocity()).length())});
-        }
-        return most;
-    }
-
-  private:
-    btRigidBody& add(btScalar mass, const btVector3& at, btCollisionShape* shape) {
-        btVector3 inertia(0, 0, 0);
-        if (mass > 0) shape->calculateLocalInertia(mass, inertia);
-        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, inertia);
-        info.m_startWorldTransform.setOrigin(at);
-        auto& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
-        body.setActivationState(DISABLE_DEACTIVATION);
-        world_.addRigidBody(&body);
-        return body;
-    }
-
-    bool watched_;
-    btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_{&configuration_};
-    btDbvtBroadphase broadphase_;
-    CountingSolver solver_;
-    btDiscreteDynamicsWorld world_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-    btBoxShape ground_shape_{btVector3(50, 50, 1)};
-    btBoxShape box_shape_{btVector3(btScalar(0.4), btScalar(0.1), btScalar(0.2))};
-    std::vector<std::unique_ptr<btRigidBody>> bodies_;
-    std::vector<std::unique_ptr<bullet::PlasticHinge<>>> hinges_;
-};
-
-} // namespace
-
-TEST_CASE("sweeps that would change nothing are left out, and only those", "[bullet][joint]") {
-    const int iterations = GENERATE(10, 60);
-    const int boxes = GENERATE(2, 4);
-    INFO(boxes << " boxes, " << iterations << " sweeps");
-    FallingRow watched(boxes, true, iterations), full(boxes, false, iterations);
-    double apart = 0;
-    int contacts = 0;
-    for (int i = 0; i < 120; ++i) {
-        watched.step();
-        full.step();
-        apart = std::max(apart, watched.difference(full));
-        contacts = std::max(contacts, watched.contacts());
-    }
-    CHECK(contacts > 0);
-    // round-off of 120 steps, grown by the contacts
-    CHECK(apart < (single ? 2e-3 : 1e-10));
-    CHECK(watched.swept() <= full.swept());
-    if (boxes == 2 && iterations == 60 && !single) CHECK(watched.swept() < full.swept() / 2);
 }

@@ -342,7 +342,8 @@ TEST_CASE("the state of a joint is so many bytes", "[bullet][life]") {
 }
 
 TEST_CASE("the user's joint feedback stays the user's", "[bullet][life]") {
-    BulletWorld world("soft-si", {0, -9.81, 0});
+    const std::string solver = GENERATE("soft-si", "soft-mlcp");
+    BulletWorld world(solver, {0, -9.81, 0});
     btRigidBody& body = world.body(2, 0.3);
     const double weight = 2 * 9.81;
     btJointFeedback mine{};
@@ -354,10 +355,11 @@ TEST_CASE("the user's joint feedback stays the user's", "[bullet][life]") {
         CHECK(joint.getJointFeedback() == &mine);
         CHECK(joint.force(JointAxis::shear_y) == Approx(weight).epsilon(1e-5));
         CHECK(double(mine.m_appliedForceBodyA.y()) == Approx(weight).epsilon(1e-5));
-        SECTION("and taken away: the joint's own takes over") {
+        SECTION("and taken away: the joint knows by itself") {
             joint.setJointFeedback(nullptr);
             world.step(1.0 / 60, 2);
-            CHECK(joint.getJointFeedback() != nullptr);
+            // where Bullet solves the rows the joint needs feedback of its own
+            CHECK((joint.getJointFeedback() != nullptr) == (solver == "soft-mlcp"));
             CHECK(joint.force(JointAxis::shear_y) == Approx(weight).epsilon(1e-5));
         }
         joint.remove_from(world.world());

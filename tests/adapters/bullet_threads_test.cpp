@@ -9,6 +9,7 @@
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
 #include <BulletDynamics/Dynamics/btSimulationIslandManagerMt.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <LinearMath/btThreads.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -16,16 +17,15 @@
 
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "adapters/bullet_rows.hpp"
 #include "ductile/bullet/bullet.hpp"
 
 using namespace ductile;
-using namespace ductile::test;
 
 namespace {
 
@@ -59,6 +59,30 @@ class Pair {
     }
     std::unique_ptr<btRigidBody> body[2];
     std::unique_ptr<Hinge> hinge;
+};
+
+/// A solver by name, of the class that users would take: joints know it.
+class PlainSolver {
+  public:
+    explicit PlainSolver(const std::string& name) {
+        if (name == "si") {
+            solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+        } else if (name == "soft-si") {
+            solver_ = std::make_unique<bullet::SoftSequentialImpulseSolver>();
+        } else if (name == "soft-nncg") {
+            solver_ = std::make_unique<bullet::SoftNncgSolver>();
+        } else if (name == "soft-mlcp-dantzig") {
+            dantzig_ = std::make_unique<btDantzigSolver>();
+            solver_ = std::make_unique<bullet::SoftMlcpSolver>(*dantzig_, bullet::Answer::exact);
+        } else {
+            throw std::invalid_argument("no solver " + name);
+        }
+    }
+    [[nodiscard]] btConstraintSolver& operator*() { return *solver_; }
+
+  private:
+    std::unique_ptr<btDantzigSolver> dantzig_;
+    std::unique_ptr<btConstraintSolver> solver_;
 };
 
 /// A world of separate pairs of any kind of world.
@@ -135,7 +159,7 @@ class Scene {
 class IslandThreads final : public btDiscreteDynamicsWorld {
   public:
     IslandThreads(btDispatcher* dispatcher, btBroadphaseInterface* broadphase,
-                  std::vector<NamedSolver>* solvers, btCollisionConfiguration* configuration)
+                  std::vector<PlainSolver>* solvers, btCollisionConfiguration* configuration)
         : btDiscreteDynamicsWorld(dispatcher, broadphase, &*solvers->front(), configuration),
           solvers_(*solvers) {}
 
@@ -158,11 +182,11 @@ class IslandThreads final : public btDiscreteDynamicsWorld {
                 .solveGroup(bodies, 2, nullptr, 0, &constraint, 1, info, nullptr, nullptr);
         }
     }
-    std::vector<NamedSolver>& solvers_;
+    std::vector<PlainSolver>& solvers_;
 };
 
-std::vector<NamedSolver> solvers(const std::string& name, std::size_t count) {
-    std::vector<NamedSolver> result;
+std::vector<PlainSolver> solvers(const std::string& name, std::size_t count) {
+    std::vector<PlainSolver> result;
     for (std::size_t i = 0; i < count; ++i) result.emplace_back(name);
     return result;
 }
@@ -203,7 +227,7 @@ TEST_CASE("Bullet's world for threads is its world for one, bit for bit", "[bull
         }
     }
     btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
-    NamedSolver alone(exact ? "soft-mlcp-dantzig" : "soft-si");
+    PlainSolver alone(exact ? "soft-mlcp-dantzig" : "soft-si");
     {
         Scene<btDiscreteDynamicsWorld> serial(true, &*alone);
         Scene<btDiscreteDynamicsWorldMt> parallel(true, &pool, nullptr);
@@ -221,9 +245,9 @@ TEST_CASE("Bullet's world for threads is its world for one, bit for bit", "[bull
 
 TEST_CASE("worlds in threads of their own do not know of each other", "[bullet][threads]") {
     const auto state_after = [](std::size_t count) {
-        std::vector<NamedSolver> own = solvers("soft-mlcp-dantzig", count);
+        std::vector<PlainSolver> own = solvers("soft-mlcp-dantzig", count);
         std::vector<std::unique_ptr<Scene<btDiscreteDynamicsWorld>>> scenes;
-        for (NamedSolver& solver : own) {
+        for (PlainSolver& solver : own) {
             scenes.push_back(std::make_unique<Scene<btDiscreteDynamicsWorld>>(true, &*solver));
         }
         std::vector<std::thread> threads;

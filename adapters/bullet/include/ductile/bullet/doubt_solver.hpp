@@ -24,17 +24,18 @@
 #include <vector>
 
 #include "ductile/bullet/soft_mlcp_solver.hpp"
+#include "ductile/bullet/sweep_group.hpp"
 
 namespace ductile::bullet {
 
-class DoubtSolver final : public btConstraintSolver {
+class DoubtSolver final : public btConstraintSolver, public StandIn {
   public:
     /// `usual` must outlive this.
     explicit DoubtSolver(btConstraintSolver& usual) : usual_(usual) {}
     DoubtSolver(const DoubtSolver&) = delete;
     DoubtSolver& operator=(const DoubtSolver&) = delete;
 
-    [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
+    [[nodiscard]] btConstraintSolver& usual() const noexcept override { return usual_; }
 
     /// From now on the constraint's island is solved directly. Only its address is kept.
     void doubt(const void* constraint) { doubted_.insert(constraint); }

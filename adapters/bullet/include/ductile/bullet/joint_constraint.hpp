@@ -12,8 +12,8 @@
 //   what comes first.
 //
 // Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance,
-// and how rigid rows are combined. Sequential impulse is spared the sweeps that would change
-// nothing where the constraint was added by `add_to` (sweep_watch.hpp).
+// and how rigid rows are combined. In sequential impulse a constraint that was added by `add_to`
+// solves them by itself (self_solved_rows.hpp).
 //
 // Traps of Bullet 3.24 that this header deals with
 //   - The solver leaves the impulse of a constraint's last row in `m_appliedImpulse`: with one
@@ -34,7 +34,6 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -45,7 +44,7 @@
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/reaction.hpp"
-#include "ductile/bullet/sweep_watch.hpp"
+#include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/link.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -59,7 +58,7 @@ enum class Reads {
 };
 
 template <class Joint>
-class JointConstraint : public PlasticConstraint {
+class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
   public:
     using Axes = typename Link<Joint>::Axes;
     using State = typename Link<Joint>::State;
@@ -71,6 +70,7 @@ class JointConstraint : public PlasticConstraint {
 
     /// Adds the constraint and its end-of-tick commit to a world.
     void add_to(btDynamicsWorld& world, bool disable_collisions_between_bodies = true) {
+        join(world);
         world.addConstraint(this, disable_collisions_between_bodies);
         world.addAction(&action_);
         world_ = &world;
@@ -80,6 +80,7 @@ class JointConstraint : public PlasticConstraint {
         world.removeAction(&action_);
         world.removeConstraint(this);
         world_ = nullptr;
+        leave();
     }
 
     /// Accumulated plastic travel p, work-conjugate, never decreases [m | rad].
@@ -156,41 +157,48 @@ class JointConstraint : public PlasticConstraint {
 
     /// Bullet's own: called for every constraint when a tick opens.
     void buildJacobian() override {
-        sweeps_.close();
-        if (reads_ == Reads::all_rows && m_jointFeedback == nullptr) m_jointFeedback = &feedback_;
         settle_late(true);
+        if (reads_ == Reads::all_rows && m_jointFeedback == nullptr &&
+            sweeps_of_solver() == nullptr) {
+            m_jointFeedback = &feedback_;
+        }
     }
 
     void getInfo1(btConstraintInfo1* info) override {
-        info->m_numConstraintRows = link_.broken() && open_ != Open::hand_back ? 0 : 6;
-        info->nub = 0;
+        *info = {.m_numConstraintRows = 0, .nub = 0};
+        close();
+        if (link_.broken() && open_ != Open::hand_back) return;
+        SweepGroup* sweeps = open_ == Open::hand_back ? nullptr : sweeps_of_solver();
+        if (sweeps == nullptr) {
+            info->m_numConstraintRows = 6;
+            return;
+        }
+        const btContactSolverInfo& solver_info = world_->getSolverInfo();
+        prepare(double(solver_info.m_timeStep), double(solver_info.m_erp));
+        if constexpr (dimension < 6) static_cast<void>(decoupled());
+        SelfSolvedRows::open(*sweeps);
     }
 
     void getInfo2(btConstraintInfo2* info) override {
-        dt_ = kick_.share / double(info->fps);
-        tick_kick_ = kick_.share;
         if (open_ == Open::hand_back) {
+            dt_ = 1 / double(info->fps);
             write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
             return;
         }
-        const double erp = double(rigid_erp_ < 0 ? info->erp : rigid_erp_);
-        const bool masses = link_.reads_mass();
-        link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
-                      masses ? body_state(m_rbB) : body_motion(m_rbB), dt_, erp * double(info->fps),
-                      kick_.midway);
+        prepare(1 / double(info->fps), double(info->erp));
         if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
         if (dimension < 6 && all_hard(link_)) {
             write_hard_rows(*info, link_, order_, decoupled(), dt_);
         } else {
             write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
         }
-        sweeps_.open(*info, 6, world_);
-        open_ = Open::tick;
     }
 
-    /// Bullet's own: sequential impulse calls it after each sweep.
+    /// Bullet's own: sequential impulse calls it in each sweep.
     void solveConstraintObsolete(btSolverBody& a, btSolverBody& b, btScalar) override {
-        sweeps_.look(a, b);
+        if (!is_open()) return;
+        sweep(a, b, link_.pose().arm_a(), link_.pose().arm_b(),
+              [this](RowSweep<double>& rows) { add_rows(rows, link_, order_, combined_, dt_); });
     }
 
     /// BT_CONSTRAINT_ERP and BT_CONSTRAINT_STOP_ERP: share of the rigid rows' error that is removed
@@ -221,8 +229,8 @@ class JointConstraint : public PlasticConstraint {
           frame_in_b_(frame_in_b),
           link_(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)),
           reads_(reads),
-          order_(rigid_rotations_first(axes)) {
-        if (reads_ == Reads::all_rows) m_jointFeedback = &feedback_;
+          order_(rigid_rotations_first(axes)),
+          combined_(single_rows<double>(order_)) {
         link_.start(body_motion(m_rbA), body_motion(m_rbB));
     }
     ~JointConstraint() override = default;
@@ -246,6 +254,25 @@ class JointConstraint : public PlasticConstraint {
         tick,     ///< rows were handed out
         hand_back ///< a break was found by the solver: this tick gives its energy back
     };
+
+    /// Of the solver that asks for rows, where it calls in each sweep; else null.
+    [[nodiscard]] SweepGroup* sweeps_of_solver() const {
+        if (world_ == nullptr) return nullptr;
+        if (compliance_is_exact()) return sweeps();
+        return sweeps_of_world() != nullptr && calls_in_each_sweep(*world_->getConstraintSolver())
+                   ? sweeps_of_world()
+                   : nullptr;
+    }
+    /// Opens a tick [s]; `erp`: the world's.
+    void prepare(double tick, double erp) {
+        dt_ = kick_.share * tick;
+        tick_kick_ = kick_.share;
+        const bool masses = link_.reads_mass();
+        link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
+                      masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
+                      (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, kick_.midway);
+        open_ = Open::tick;
+    }
 
     /// Commits at the end of each internal tick.
     struct CommitAction final : btActionInterface {
@@ -290,6 +317,7 @@ class JointConstraint : public PlasticConstraint {
     /// Forces of the six rows on A. With one plastic row its force is exact; the others are as
     /// exact as joint feedback, and zero where that is not read.
     [[nodiscard]] Vector6<double> reaction() {
+        if (is_open()) return reaction_of_own_rows();
         Vector6<double> forces = Vector6<double>::Zero();
         if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
             forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows(), tick_kick_);
@@ -300,20 +328,23 @@ class JointConstraint : public PlasticConstraint {
         return forces;
     }
 
-    /// Bullet's order of rows, by axis: turning ones first, as their combination with the others is
-    /// the sparsest; those of the joint last.
-    static std::array<std::size_t, 6> rigid_rotations_first(const Axes& axes) {
-        std::array<std::size_t, 6> order{};
-        std::size_t row = 0;
-        for (const bool turning : {true, false}) {
-            for (const JointAxis axis : all_joint_axes) {
-                const bool plastic = std::find(axes.begin(), axes.end(), axis) != axes.end();
-                if (!plastic && turns(axis) == turning) order[row++] = index(axis);
-            }
+    /// The same where the constraint solved them by itself: exact. Tells Bullet what it would know
+    /// of rows of its own.
+    [[nodiscard]] Vector6<double> reaction_of_own_rows() {
+        internalSetAppliedImpulse(btScalar(impulses().back()));
+        if (one_axis && reads_ == Reads::plastic_row && m_jointFeedback == nullptr) {
+            return impulses().back() / dt_ * Vector6<double>::Unit(Eigen::Index(order_.back()));
         }
-        for (const JointAxis axis : axes) order[row++] = index(axis);
-        return order;
+        const Vector6<double> forces = forces_of_impulses(combined_, impulses(), dt_);
+        if (m_jointFeedback != nullptr) {
+            const LinkPose<double>& pose = link_.pose();
+            write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
+                           pose.axes() * forces.head<3>() * tick_kick_,
+                           pose.axes() * forces.tail<3>() * tick_kick_);
+        }
+        return forces;
     }
+
     /// The rows as they do not push each other: of the joint as it is where it flows, else as it is
     /// at rest, which stays the same for as long as it holds. Both are functions of what a restored
     /// joint has as well.
@@ -353,7 +384,6 @@ class JointConstraint : public PlasticConstraint {
     PrincipalMass<double> combined_a_, combined_b_;
     unsigned combined_at_ = 0;     ///< LinkPose::rest_changes
     bool combined_flowing_ = true; ///< or never worked out
-    SweepWatch sweeps_;
     BreakRelease<double> release_;
     JointImpulse<double> handed_; ///< what Open::hand_back gives
     double dt_ = 0;        ///< for which the rows' forces act in the open tick

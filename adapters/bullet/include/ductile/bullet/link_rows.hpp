@@ -32,7 +32,9 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/isolated_pair.hpp"
+#include "ductile/joint/joint_axis.hpp"
 #include "ductile/joint/link.hpp"
+#include "ductile/joint/row_sweep.hpp"
 
 namespace ductile::bullet {
 
@@ -110,6 +112,24 @@ inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRi
     return btScalar(std::clamp(force * dt, -double(SIMD_INFINITY), double(SIMD_INFINITY)));
 }
 
+/// Bullet's order of rows, by axis: turning ones first, as their combination with the others is the
+/// sparsest; those of the joint, `plastic`, last.
+template <std::size_t N>
+[[nodiscard]] std::array<std::size_t, 6> rigid_rotations_first(
+    const std::array<JointAxis, N>& plastic) {
+    std::array<std::size_t, 6> order{};
+    std::size_t row = 0;
+    for (const bool turning : {true, false}) {
+        for (const JointAxis axis : all_joint_axes) {
+            const bool is_plastic =
+                std::find(plastic.begin(), plastic.end(), axis) != plastic.end();
+            if (!is_plastic && turns(axis) == turning) order[row++] = index(axis);
+        }
+    }
+    for (const JointAxis axis : plastic) order[row++] = index(axis);
+    return order;
+}
+
 /// True where no row of the link's last `prepare` is soft or given.
 template <class Joint>
 [[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
@@ -150,6 +170,43 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
         info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
         info.m_upperLimit[row * info.rowskip] = as_impulse(limits.upper, dt);
     }
+}
+
+/// The rows of the link's last `prepare`, combined as `combined` says, for the constraint to solve
+/// by itself; that of axis `order[i]` is row i. `dt`: for which their forces act [s].
+template <class Joint>
+void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
+              const std::array<std::size_t, 6>& order, const CombinedRows<double>& combined,
+              double dt) noexcept {
+    const Matrix3<double>& axes = link.pose().axes();
+    const auto& rows = link.rows();
+    const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
+    const Vector3<double> turning(rows[3].limits.bias, rows[4].limits.bias, rows[5].limits.bias);
+    for (std::size_t i = 0; i < 6; ++i) {
+        const CombinedRow<double>& row = combined[i];
+        RowLimits<double> limits = rows[order[i]].limits;
+        limits.lower *= dt;
+        limits.upper *= dt;
+        limits.bias = row.moment.dot(turning);
+        if (row.force.squaredNorm() == 0) {
+            sweep.add(axes * row.moment, limits);
+        } else {
+            limits.bias += row.force.dot(moving);
+            sweep.add(axes * row.force, axes * row.moment, limits);
+        }
+    }
+    if constexpr (Link<Joint>::dimension > 1) sweep.join_last(Link<Joint>::dimension);
+}
+/// Forces along the axes of the link from the impulses of such rows [N | N m].
+[[nodiscard]] inline Vector6<double> forces_of_impulses(const CombinedRows<double>& combined,
+                                                        const std::array<double, 6>& impulses,
+                                                        double dt) noexcept {
+    Vector6<double> forces = Vector6<double>::Zero();
+    for (std::size_t i = 0; i < 6; ++i) {
+        forces.head<3>() += impulses[i] / dt * combined[i].force;
+        forces.tail<3>() += impulses[i] / dt * combined[i].moment;
+    }
+    return forces;
 }
 
 /// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver

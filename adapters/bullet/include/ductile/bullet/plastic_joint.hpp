@@ -10,8 +10,9 @@
 // section do; signs and finite rotation as in link.hpp. See joint_constraint.hpp for committing,
 // compliance and Bullet's traps.
 //
-// Forces are read through joint feedback. The constraint sets one of its own; one that the user
-// sets before or after is read instead and never written.
+// Where Bullet solves the rows, forces are read through joint feedback: the constraint sets one of
+// its own, unless the user set one, before or after, which is read instead and never written. Where
+// the constraint solves them by itself (self_solved_rows.hpp) it needs none and fills the user's.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>

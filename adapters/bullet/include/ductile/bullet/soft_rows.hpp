@@ -18,7 +18,9 @@
 //        false: a solver of Bullet's own, or somebody else's. Write C m where C m < 1 and the
 //        solver
 //               is an iterative one, or do without the compliance and say so.
-//   3. The mark is taken back. Who needs it later keeps what getInfo2 saw.
+//      `sweeps()` tells besides that the solver is sequential impulse, so that a constraint may
+//      solve its rows by itself (self_solved_rows.hpp) and ask for none.
+//   3. The marks are taken back. Who needs it later keeps what getInfo2 saw.
 // A constraint that is no SoftRows is handed to Bullet untouched.
 //
 // Symbols
@@ -37,11 +39,16 @@
 
 namespace ductile::bullet {
 
+class SweepGroup;
+
 /// Base beside btTypedConstraint of a constraint that has compliant rows.
 class SoftRows {
   public:
     /// True while an exact solver asks for the rows; see the protocol above.
     [[nodiscard]] bool compliance_is_exact() const noexcept { return exact_; }
+    /// While an exact solver asks that calls each constraint in each of its sweeps: what its sweeps
+    /// share. Else null.
+    [[nodiscard]] SweepGroup* sweeps() const noexcept { return sweeps_; }
 
   protected:
     SoftRows() = default;
@@ -50,6 +57,7 @@ class SoftRows {
   private:
     friend class SoftConstraints;
     bool exact_ = false;
+    SweepGroup* sweeps_ = nullptr;
 };
 
 /// The constraints of one solve, and which of them have compliant rows. Kept by a solver between
@@ -57,16 +65,21 @@ class SoftRows {
 /// solver has its own.
 class SoftConstraints {
   public:
-    void mark(btTypedConstraint* const* constraints, int count) {
+    /// `sweeps`: of a solver that calls each constraint in each of its sweeps.
+    void mark(btTypedConstraint* const* constraints, int count, SweepGroup* sweeps = nullptr) {
         soft_.clear();
         for (int i = 0; i < count; ++i) {
             soft_.push_back(dynamic_cast<SoftRows*>(constraints[i]));
-            if (soft_.back() != nullptr) soft_.back()->exact_ = true;
+            if (soft_.back() == nullptr) continue;
+            soft_.back()->exact_ = true;
+            soft_.back()->sweeps_ = sweeps;
         }
     }
     void unmark() noexcept {
         for (SoftRows* soft : soft_) {
-            if (soft != nullptr) soft->exact_ = false;
+            if (soft == nullptr) continue;
+            soft->exact_ = false;
+            soft->sweeps_ = nullptr;
         }
     }
 

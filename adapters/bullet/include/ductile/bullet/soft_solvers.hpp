@@ -14,8 +14,11 @@
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
 #include <algorithm>
+#include <type_traits>
+#include <typeinfo>
 
 #include "ductile/bullet/soft_rows.hpp"
+#include "ductile/bullet/sweep_group.hpp"
 
 namespace ductile::bullet {
 
@@ -29,15 +32,31 @@ class SoftRowSolver : public Engine {
   protected:
     void convertJoints(btTypedConstraint** constraints, int count,
                        const btContactSolverInfo& info) override {
-        soft_.mark(constraints, count);
+        // what derives from it may sweep otherwise
+        constexpr bool sweeps = std::is_same_v<Engine, btSequentialImpulseConstraintSolver>;
+        soft_.mark(constraints, count,
+                   sweeps && typeid(*this) == typeid(SoftRowSolver) ? &sweeps_ : nullptr);
         Engine::convertJoints(constraints, count, info);
         soft_.unmark();
         soft_.for_each_row(this->m_tmpConstraintSizesPool,
                            this->m_tmpSolverNonContactConstraintPool, soften);
     }
 
+    /// Goes on for as long as constraints change something that solve their rows by themselves.
+    btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                  btPersistentManifold** manifolds, int manifold_count,
+                                  btTypedConstraint** constraints, int constraint_count,
+                                  const btContactSolverInfo& info, btIDebugDraw* drawer) override {
+        const btScalar residual =
+            Engine::solveSingleIteration(iteration, bodies, body_count, manifolds, manifold_count,
+                                         constraints, constraint_count, info, drawer);
+        const auto own = btScalar(sweeps_.take_change());
+        return std::max(residual, own * own);
+    }
+
   private:
     SoftConstraints soft_;
+    SweepGroup sweeps_;
 };
 
 using SoftSequentialImpulseSolver = SoftRowSolver<btSequentialImpulseConstraintSolver>;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+//
+// Rows that a constraint solves by itself. Bullet's sequential impulse calls each constraint once
+// in every sweep (solveConstraintObsolete) with its two bodies: enough for a constraint to take up
+// its rows there (joint/row_sweep.hpp), instead of handing them to Bullet. Then
+//   - compliance is exact whatever its size, also in Bullet's stock solver;
+//   - all reactions are exact, without joint feedback;
+//   - the rows cost a third of Bullet's, and no sweep is made that changes nothing.
+// For constraints that were added by `add_to`, in SoftSequentialImpulseSolver, also one of many in
+// a pool, and in Bullet's own where world and solver are of Bullet's plain classes; otherwise the
+// rows go to Bullet.
+//
+// What Bullet does for its own rows is done here: the impulse of the last row is left in the
+// constraint, and joint feedback that the user asked for is filled.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btSolverBody.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/sweep_group.hpp"
+#include "ductile/joint/row_sweep.hpp"
+
+namespace ductile::bullet {
+
+/// Base beside PlasticConstraint, and one constraint's rows in the current solve.
+class SelfSolvedRows {
+  protected:
+    using Impulses = RowSweep<double>::Impulses;
+
+    SelfSolvedRows() = default;
+    ~SelfSolvedRows() = default;
+
+    /// The constraint is about to be added to `world`.
+    void join(btDynamicsWorld& world) {
+        if (!solves_in_one_thread(world)) return;
+        for (int i = world.getNumConstraints() - 1; i >= 0 && of_world_ == nullptr; --i) {
+            const auto* other = dynamic_cast<const SelfSolvedRows*>(world.getConstraint(i));
+            if (other != nullptr) of_world_ = other->of_world_;
+        }
+        if (of_world_ == nullptr) of_world_ = std::make_shared<SweepGroup>(world.getSolverInfo());
+    }
+    void leave() noexcept {
+        close();
+        of_world_.reset();
+    }
+    /// What the sweeps share of Bullet's own solver in the world that was joined; null: nothing may
+    /// be shared there.
+    [[nodiscard]] SweepGroup* sweeps_of_world() const noexcept { return of_world_.get(); }
+
+    /// Before the first sweep of a solve.
+    void open(SweepGroup& group) {
+        group_ = &group;
+        group_->enter();
+        impulses_ = {};
+        sweep_ = -1;
+        open_ = true;
+    }
+    void close() noexcept { open_ = false; }
+    /// True from open to close: the last solve was the constraint's own.
+    [[nodiscard]] bool is_open() const noexcept { return open_; }
+
+    /// In each sweep. `arm_a`, `arm_b`: of RowSweep; `add_rows(rows)` is called in the first one.
+    template <class AddRows>
+    void sweep(btSolverBody& a, btSolverBody& b, const Vector3<double>& arm_a,
+               const Vector3<double>& arm_b, const AddRows& add_rows) {
+        const bool first = ++sweep_ == 0;
+        if (first) place_ = group_->take();
+        RowSweep<double>& rows = group_->rows(place_);
+        if (first) {
+            rows.open(swept_body(a, arm_a), swept_body(b, arm_b));
+            add_rows(rows);
+        }
+        const SweptVelocities<double> already{to_core(a.internalGetDeltaLinearVelocity()),
+                                              to_core(a.internalGetDeltaAngularVelocity()),
+                                              to_core(b.internalGetDeltaLinearVelocity()),
+                                              to_core(b.internalGetDeltaAngularVelocity())};
+        const SweptVelocities<double> now{
+            already.linear_a + to_core(a.m_linearVelocity) + to_core(a.m_externalForceImpulse),
+            already.angular_a + to_core(a.m_angularVelocity) + to_core(a.m_externalTorqueImpulse),
+            already.linear_b + to_core(b.m_linearVelocity) + to_core(b.m_externalForceImpulse),
+            already.angular_b + to_core(b.m_angularVelocity) + to_core(b.m_externalTorqueImpulse)};
+        double asked = 0;
+        Impulses impulses = impulses_;
+        const SweptVelocities<double> more = rows.sweep(now, impulses, asked);
+        // what the bodies' velocities, and those that they are the sum of, cannot tell is left: so
+        // that what else is solved in the same sweeps, and how often, makes no difference
+        constexpr double digit = 2 * double(std::numeric_limits<btScalar>::epsilon());
+        if (asked > 0 &&
+            more.squared_norm() <= digit * digit * (now.squared_norm() + already.squared_norm())) {
+            asked = 0;
+        }
+        if (asked > 0) {
+            impulses_ = impulses;
+            a.internalGetDeltaLinearVelocity() += to_bullet(more.linear_a);
+            a.internalGetDeltaAngularVelocity() += to_bullet(more.angular_a);
+            b.internalGetDeltaLinearVelocity() += to_bullet(more.linear_b);
+            b.internalGetDeltaAngularVelocity() += to_bullet(more.angular_b);
+        }
+        group_->called(sweep_, asked);
+    }
+
+    /// Of the rows in the last solve, in the order in which they were added [N s | N m s].
+    [[nodiscard]] const Impulses& impulses() const noexcept { return impulses_; }
+
+  private:
+    /// A body's angular factor keeps impulses and velocities from the axes about which it may not
+    /// turn.
+    static SweptBody<double> swept_body(const btSolverBody& body, const Vector3<double>& arm) {
+        const btRigidBody* original = body.m_originalBody;
+        if (original == nullptr) return {.arm = arm}; // of the static world
+        if (body.m_angularFactor == btVector3(1, 1, 1)) {
+            return {to_core(body.internalGetInvMass()),
+                    to_core(original->getInvInertiaTensorWorld()), arm};
+        }
+        const Vector3<double> factor = to_core(body.m_angularFactor);
+        return {to_core(body.internalGetInvMass()),
+                factor.asDiagonal() * to_core(original->getInvInertiaTensorWorld()) *
+                    factor.asDiagonal(),
+                arm};
+    }
+
+    std::shared_ptr<SweepGroup> of_world_; ///< null: none, or not to be shared
+    SweepGroup* group_ = nullptr;          ///< of the open solve
+    Impulses impulses_{};
+    std::size_t place_ = 0; ///< in the group
+    int sweep_ = -1;        ///< the last; -1: none yet
+    bool open_ = false;
+};
+
+/// A wrench on A at the joint, acting for a tick, as Bullet's joint feedback; world axes.
+inline void write_feedback(btJointFeedback& feedback, const btRigidBody& a, const btRigidBody& b,
+                           const Vector3<double>& arm_a, const Vector3<double>& arm_b,
+                           const Vector3<double>& force, const Vector3<double>& moment) {
+    feedback.m_appliedForceBodyA = to_bullet(force) * a.getLinearFactor();
+    feedback.m_appliedForceBodyB = to_bullet(-force) * b.getLinearFactor();
+    feedback.m_appliedTorqueBodyA = to_bullet(arm_a.cross(force) + moment) * a.getAngularFactor();
+    feedback.m_appliedTorqueBodyB =
+        to_bullet(-(arm_b.cross(force) + moment)) * b.getAngularFactor();
+}
+
+} // namespace ductile::bullet
