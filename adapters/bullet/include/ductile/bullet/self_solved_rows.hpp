@@ -89,21 +89,21 @@ class SelfSolvedRows {
         double asked = 0;
         Impulses impulses = impulses_;
         const SweptVelocities<double> more = rows.sweep(now, impulses, asked);
-        // what the bodies' velocities, and those that they are the sum of, cannot tell is left: so
-        // that what else is solved in the same sweeps, and how often, makes no difference
+        // what the bodies' velocities, and those that they are the sum of, cannot tell
         constexpr double digit = 2 * double(std::numeric_limits<btScalar>::epsilon());
-        if (asked > 0 &&
-            more.squared_norm() <= digit * digit * (now.squared_norm() + already.squared_norm())) {
-            asked = 0;
-        }
-        if (asked > 0) {
+        const bool is_round_off =
+            asked > 0 &&
+            more.squared_norm() <= digit * digit * (now.squared_norm() + already.squared_norm());
+        // is left once the rows were taken up: so that what else is solved in the same sweeps, and
+        // how often, makes no difference; but a row that may give hardly anything gives it
+        if (asked > 0 && (first || !is_round_off)) {
             impulses_ = impulses;
             a.internalGetDeltaLinearVelocity() += to_bullet(more.linear_a);
             a.internalGetDeltaAngularVelocity() += to_bullet(more.angular_a);
             b.internalGetDeltaLinearVelocity() += to_bullet(more.linear_b);
             b.internalGetDeltaAngularVelocity() += to_bullet(more.angular_b);
         }
-        group_->called(sweep_, asked);
+        group_->called(sweep_, is_round_off ? 0 : asked);
     }
 
     /// Of the rows in the last solve, in the order in which they were added [N s | N m s].
