@@ -263,6 +263,15 @@ TEST_CASE("what an LCP solver cannot do falls back, with its compliance, and is 
     CHECK(solver.getNumFallbacks() == 1);
     CHECK(system.violation(solver.impulses) < solved);
 
+    // the iterations that the user sets are not meant for a direct solver's islands
+    RowSystem few, left;
+    fill(few, 1, {.given = false});
+    fill(left, 1, {.given = false});
+    few.solve(solver, 1);
+    NamedSolver iterative("soft-si");
+    left.solve(*iterative, 1);
+    CHECK(few.violation(solver.impulses) < 0.01 * left.violation(iterative.impulses()));
+
     Recording<bullet::SoftMlcpSolver> trusting(bad, bullet::Answer::iterated);
     RowSystem again;
     fill(again, 1, {.given = false});

@@ -3,13 +3,15 @@
 // Rows that a constraint solves by itself in the sweeps of Bullet's sequential impulse: the same
 // answer as Bullet's own rows, in no more sweeps than it takes, and what Bullet tells the user of
 // them.
-#include <catch2/catch.hpp>
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 
 #include <algorithm>
 #include <array>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -125,15 +127,6 @@ class FallingRow {
 
 using Stock = btSequentialImpulseConstraintSolver;
 
-btJointFeedback nothing() {
-    btJointFeedback feedback;
-    feedback.m_appliedForceBodyA.setZero();
-    feedback.m_appliedTorqueBodyA.setZero();
-    feedback.m_appliedForceBodyB.setZero();
-    feedback.m_appliedTorqueBodyB.setZero();
-    return feedback;
-}
-
 } // namespace
 
 TEST_CASE("a constraint knows which solvers call it", "[bullet][sweeps]") {
@@ -148,7 +141,9 @@ TEST_CASE("a constraint knows which solvers call it", "[bullet][sweeps]") {
     CHECK(bullet::calls_in_each_sweep(twice));
     CHECK_FALSE(bullet::calls_in_each_sweep(unknown));
     CHECK_FALSE(bullet::calls_in_each_sweep(before_unknown));
-    CHECK_FALSE(bullet::calls_in_each_sweep(conjugate));
+    CHECK(bullet::calls_in_each_sweep(conjugate));
+    bullet::SoftNncgSolver derived_of_conjugate; // honours compliance itself, and accelerates
+    CHECK_FALSE(bullet::calls_in_each_sweep(derived_of_conjugate));
 
     class Derived final : public btDiscreteDynamicsWorld { // may have threads
       public:
@@ -196,11 +191,12 @@ TEST_CASE("a joint of six axes that holds is solved in a few sweeps", "[bullet][
 TEST_CASE("rows that a joint solves by itself end where Bullet's do, in fewer sweeps",
           "[bullet][sweeps]") {
     const int boxes = GENERATE(2, 4);
-    const bool soft = GENERATE(false, true);
-    INFO(boxes << " boxes, soft solver " << soft);
+    const std::string name = GENERATE(as<std::string>(), "si", "soft-si", "nncg");
+    INFO(boxes << " boxes, " << name);
     constexpr int enough = 2000;
     std::unique_ptr<btConstraintSolver> solver = std::make_unique<Stock>();
-    if (soft) solver = std::make_unique<bullet::SoftSequentialImpulseSolver>();
+    if (name == "soft-si") solver = std::make_unique<bullet::SoftSequentialImpulseSolver>();
+    if (name == "nncg") solver = std::make_unique<btNNCGConstraintSolver>();
     FallingRow own(std::move(solver), boxes, enough);
     FallingRow engines(std::make_unique<UnknownSolver>(), boxes, enough);
     double apart = 0;
@@ -208,8 +204,9 @@ TEST_CASE("rows that a joint solves by itself end where Bullet's do, in fewer sw
     for (int i = 0; i < 120; ++i) {
         own.step();
         engines.step();
-        apart = std::max(apart, own.difference(engines));
         contacts = std::max(contacts, own.contacts());
+        if (name == "nncg" && contacts > 0) break; // it has rows of its own then, and errs in them
+        apart = std::max(apart, own.difference(engines));
     }
     CHECK(contacts > 0);
     CHECK(apart < (single ? 2e-2 : 1e-7));
@@ -241,7 +238,7 @@ TEST_CASE("sweeps go on while a joint changes something, within the user's thres
 TEST_CASE("what Bullet tells of a joint's rows it tells of those that a joint solves by itself",
           "[bullet][sweeps]") {
     struct Told {
-        btJointFeedback feedback = nothing();
+        btJointFeedback feedback; // a solver clears it
         double impulse = 0, angle = 0, residual = 0;
     };
     // a lever on an axis that is not its own, held by the static world and pushed askew; where it
@@ -285,8 +282,10 @@ TEST_CASE("what Bullet tells of a joint's rows it tells of those that a joint so
         return told;
     };
     Stock stock;
+    btNNCGConstraintSolver conjugate;
     UnknownSolver unknown;
-    const Told own = run(stock), engines = run(unknown);
+    const bool nncg = GENERATE(false, true);
+    const Told own = nncg ? run(conjugate) : run(stock), engines = run(unknown);
     const double tolerance = single ? 1e-3 : 1e-8;
     CHECK(own.residual < tolerance);
     CHECK(own.angle == Approx(engines.angle).epsilon(tolerance).margin(tolerance));

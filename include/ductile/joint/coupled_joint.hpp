@@ -145,8 +145,9 @@ class CoupledJoint {
         }
         Taken taken{.force = reaction.force};
         Scalar most = 0;
+        const Scalar kick = allowed_residual(start_);
         for (int i = 0; i < dimension; ++i) {
-            const RowBooking<Scalar> booked = open_row(i).book(
+            const RowBooking<Scalar> booked = open_row(i, kick).book(
                 {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
             taken.flow += booked.flow;
             if (booked.flow > most) {
@@ -260,7 +261,9 @@ class CoupledJoint {
 
     // ---- after the solve --------------------------------------------------------------------------
 
-    [[nodiscard]] OpenRow<Scalar> open_row(int i) const noexcept {
+    /// `kick`: a change of velocity between the steps by more is somebody's [m/s | rad/s].
+    [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar kick) const noexcept {
+        const bool kicked = std::abs(start_[i] - state_.velocity[i]) > kick;
         return {.limits = rows_[std::size_t(i)],
                 .lower = lower_[i],
                 .upper = upper_[i],
@@ -272,16 +275,12 @@ class CoupledJoint {
                 .noise = parameters_.absolute_residual,
                 .elastic = elastic_[i],
                 .offset = state_.plastic_offset[i],
-                .foretold = kicked(i) ? Scalar(0) : foretold_.change[i],
+                .foretold = kicked ? Scalar(0) : foretold_.change[i],
                 .midway = foretold_.midway,
-                .may_stop = (state_.flowing || kicked(i)) &&
+                .may_stop = (state_.flowing || kicked) &&
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
 
-    /// True where somebody changed the velocity between the steps, well above solver noise.
-    [[nodiscard]] bool kicked(int i) const noexcept {
-        return std::abs(start_[i] - state_.velocity[i]) > allowed_residual(start_);
-    }
     [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
         const Scalar speed = std::max(start_.cwiseAbs().maxCoeff(), velocity.cwiseAbs().maxCoeff());
         return parameters_.absolute_residual + parameters_.relative_residual * speed;

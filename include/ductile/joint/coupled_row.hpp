@@ -64,7 +64,8 @@ struct OpenRow {
             (slips || stops ? booked.flow : booked.other) = work;
             booked.travel = slips || stops ? travel : S(0);
             booked.moved = booked.at_bound || stops;
-            booked.error = error_of(booked, f, travel, dt);
+            // one that holds misplaces nothing
+            if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
             return booked;
         }
         const S trial = reaction.position - offset;

@@ -122,11 +122,17 @@ class Link {
     /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
     /// out of what it is shown.
     [[nodiscard]] bool reads_mass() const noexcept {
-        if constexpr (one_axis) {
-            return joint_.parameters().stiffness != std::numeric_limits<S>::infinity();
-        } else {
-            return true;
-        }
+        return one_axis ? !all_rigid() : mass_at_ != pose_.rest_changes();
+    }
+    /// True where M only serves to foretell forces: that of the rest position will do there for as
+    /// long as the joint does not flow.
+    [[nodiscard]] bool takes_mass_at_rest() const noexcept {
+        return !one_axis && all_rigid() && !joint_.state().flowing;
+    }
+    /// K at the rest position (inverse_mass_along_b): used until that changes.
+    void set_inverse_mass_at_rest(const Matrix6<S>& k) noexcept {
+        mass_ = mass_of_rows(k, axes_);
+        mass_at_ = pose_.rest_changes();
     }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
@@ -143,16 +149,18 @@ class Link {
             if (!whole) rows_[i].limits = {.lower = 0, .upper = 0};
         }
         offset_ = offset();
+        if (reads_mass()) {
+            mass_ = mass_of_rows(inverse_mass_of_rows(a, b, pose_.point(), pose_.axes()), axes_);
+        }
         if constexpr (one_axis) {
             const std::size_t i = index(axes_[0]);
-            const S mass = reads_mass() ? row_mass(a, b)(0, 0) : S(0);
             rows_[i].limits = joint_.prepare(
-                {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass, midway},
+                {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass_(0, 0),
+                 midway},
                 dt);
         } else {
             const auto limits = joint_.prepare(
-                {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), row_mass(a, b), midway},
-                dt);
+                {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), mass_, midway}, dt);
             for (std::size_t k = 0; k < limits.size(); ++k)
                 rows_[index(axes_[k])].limits = limits[k];
         }
@@ -281,6 +289,12 @@ class Link {
     using JointVector = Eigen::Matrix<S, dimension, 1>;
     using JointMatrix = Eigen::Matrix<S, dimension, dimension>;
 
+    /// No plastic row is elastic below yield.
+    [[nodiscard]] bool all_rigid() const noexcept {
+        const Eigen::Array<S, dimension, 1> stiffness(joint_.parameters().stiffness);
+        return (stiffness == std::numeric_limits<S>::infinity()).all();
+    }
+
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept {
         Vector6<S> result;
@@ -305,22 +319,6 @@ class Link {
         } else {
             return from_joint(last_.direction);
         }
-    }
-
-    /// M; the identity where the bodies cannot tell (both without mass on some axis).
-    [[nodiscard]] JointMatrix row_mass(const BodyState<S>& a,
-                                       const BodyState<S>& b) const noexcept {
-        const Matrix6<S> mass =
-            inverse_by_blocks(inverse_mass_of_rows(a, b, pose_.point(), pose_.axes()));
-        JointMatrix result;
-        for (int i = 0; i < dimension; ++i) {
-            for (int j = 0; j < dimension; ++j) {
-                result(i, j) = mass(Eigen::Index(index(axes_[std::size_t(i)])),
-                                    Eigen::Index(index(axes_[std::size_t(j)])));
-            }
-        }
-        if (!result.allFinite()) result.setIdentity();
-        return result;
     }
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept {
@@ -386,6 +384,9 @@ class Link {
     Axes axes_;
     std::array<bool, 6> plastic_{};
     LinkPose<S> pose_;
+    JointMatrix mass_ = JointMatrix::Zero(); ///< M, where it is read
+    /// LinkPose::rest_changes that it stays right for; the largest: that of the last prepare alone
+    unsigned mass_at_ = std::numeric_limits<unsigned>::max();
 
     // between prepare and commit, and what the last step did
     Rows rows_{};

@@ -5,8 +5,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <concepts>
+#include <cstddef>
 
+#include "ductile/joint/joint_axis.hpp"
 #include "ductile/joint/pair.hpp"
 #include "ductile/vocabulary/row.hpp"
 
@@ -57,6 +60,23 @@ template <std::floating_point S>
                               axes_in_world.transpose() * (joint - body.position)};
     };
     return inverse_mass_at_joint(along_axes(a), along_axes(b));
+}
+
+/// M of the rows of `axes` while the others hold, (K⁻¹)_pp; the identity where the bodies cannot
+/// tell (both without mass on some axis).
+template <std::floating_point S, std::size_t N>
+[[nodiscard]] Eigen::Matrix<S, int(N), int(N)> mass_of_rows(
+    const Matrix6<S>& k, const std::array<JointAxis, N>& axes) noexcept {
+    const Matrix6<S> mass = inverse_by_blocks(k);
+    Eigen::Matrix<S, int(N), int(N)> result;
+    for (std::size_t i = 0; i < N; ++i) {
+        for (std::size_t j = 0; j < N; ++j) {
+            result(Eigen::Index(i), Eigen::Index(j)) =
+                mass(Eigen::Index(index(axes[i])), Eigen::Index(index(axes[j])));
+        }
+    }
+    if (!result.allFinite()) result.setIdentity();
+    return result;
 }
 
 } // namespace ductile

@@ -231,7 +231,6 @@ class OneAxisJoint {
     [[nodiscard]] bool kicked() const noexcept {
         return std::abs(start_ - state_.velocity) > allowed_residual(start_);
     }
-
     [[nodiscard]] Scalar allowed_residual(Scalar velocity) const noexcept {
         const Scalar speed = std::max(std::abs(start_), std::abs(velocity));
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
@@ -249,6 +248,7 @@ class OneAxisJoint {
 
     [[nodiscard]] StepError<Scalar> error_of(const Step<Scalar>& step,
                                              const Taken& taken) const noexcept {
+        if (rigid() && !(step.plastic_work > 0)) return {}; // one that holds misplaces nothing
         return step_error<Scalar>({.force = taken.force,
                                    .start = start_,
                                    .travel = taken.travel,

@@ -11,8 +11,10 @@
 //   λ <- clamp(λ + (b - J y - C λ) / (k + C)),   y <- y + M⁻¹ Jᵀ Δλ,   k = J M⁻¹ Jᵀ.
 //
 // Any C >= 0 converges, since k + C is the row's own diagonal. Rows that do not push each other
-// (decoupled_rows.hpp) are solved by a single sweep; two sweeps without a change between them are
-// the solution.
+// (decoupled_rows.hpp) are solved by a single sweep. A block of rows that do is, where the first
+// sweep was not enough, also taken up at once, unless one of them would meet a bound:
+//
+//   Δλ = (J M⁻¹ Jᵀ + C)⁻¹ (b - J y - C λ).
 //
 // Symbols
 //   J    Jacobian: (n, r_A × n + m, -(r_B × n + m)) of a force n and a moment m at the joint
@@ -90,8 +92,16 @@ class RowSweep {
         turn(line, about + a_.arm.cross(along), about + b_.arm.cross(along),
              along.dot(line.moved.template head<3>()));
     }
+    /// The same of a force alone.
+    void add_force(const Vector3<S>& along, const RowLimits<S>& limits) noexcept {
+        Line& line = next(limits);
+        line.jacobian.template head<3>() = along;
+        line.moved.template head<3>() = both_.cwiseProduct(along);
+        turn(line, a_.arm.cross(along), b_.arm.cross(along),
+             along.dot(line.moved.template head<3>()));
+    }
     /// The same of a moment alone.
-    void add(const Vector3<S>& about, const RowLimits<S>& limits) noexcept {
+    void add_moment(const Vector3<S>& about, const RowLimits<S>& limits) noexcept {
         Line& line = next(limits);
         line.jacobian.template head<3>().setZero();
         line.moved.template head<3>().setZero();

@@ -20,7 +20,8 @@
 
 namespace ductile {
 
-/// Plain value. Rigid rows cost a product with a vector, elastic ones a factorisation of 1 + C M.
+/// Refers to M, which must outlive it. Rigid rows cost a product with a vector, elastic ones a
+/// factorisation of 1 + C M.
 template <std::floating_point S, int N>
 class Impedance {
   public:
@@ -49,7 +50,7 @@ class Impedance {
     }
 
   private:
-    Matrix mass_;
+    const Matrix& mass_;
     S dt_;
     bool rigid_ = true;
     Eigen::PartialPivLU<Matrix> factors_; ///< of 1 + C M, where not rigid

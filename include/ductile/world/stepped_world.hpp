@@ -101,7 +101,6 @@ class SteppedWorld {
     ~SteppedWorld() = default;
 
     [[nodiscard]] Supervisor& supervisor() noexcept { return supervisor_; }
-    [[nodiscard]] const Supervisor& supervisor() const noexcept { return supervisor_; }
     /// From the next step on forces act from the middle of one step to the middle of the next.
     void start_leapfrog() { leapfrog_.emplace(); }
     [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }

@@ -124,9 +124,9 @@ TEST_CASE("rows with bounds and compliance end where all conditions hold", "[joi
                              .bias = number(),
                              .compliance = i % 3 == 0 ? compliance : 0}});
             if (i < 3) {
-                sweep.add(rows.back().force, rows.back().moment, rows.back().limits);
+                sweep.add_force(rows.back().force, rows.back().limits);
             } else {
-                sweep.add(rows.back().moment, rows.back().limits);
+                sweep.add_moment(rows.back().moment, rows.back().limits);
             }
         }
         Sweep::Impulses impulses{};
@@ -167,9 +167,9 @@ TEST_CASE("a block of rows is solved by the second sweep unless it meets a bound
                                           .compliance = soft ? 0.3 * i : 0.0};
                 const V3 unit = V3::Unit(i % 3);
                 if (i < 3) {
-                    sweep->add(unit, V3(V3::Zero()), limits[std::size_t(i)]);
+                    sweep->add_force(unit, limits[std::size_t(i)]);
                 } else {
-                    sweep->add(unit, limits[std::size_t(i)]);
+                    sweep->add_moment(unit, limits[std::size_t(i)]);
                 }
             }
         }
@@ -200,8 +200,8 @@ TEST_CASE("what cannot be moved is left alone", "[joint][sweep]") {
     Sweep sweep;
     const SweptBody<double> fixed;
     sweep.open(fixed, fixed);
-    sweep.add(V3(1, 0, 0), V3(0, 0, 0), {.bias = 1});
-    sweep.add(V3(0, 0, 1), {.bias = 1});
+    sweep.add_force(V3(1, 0, 0), {.bias = 1});
+    sweep.add_moment(V3(0, 0, 1), {.bias = 1});
     Sweep::Impulses impulses{};
     double asked = -1;
     CHECK(sweep.sweep({}, impulses, asked).squared_norm() == 0);
@@ -211,9 +211,9 @@ TEST_CASE("what cannot be moved is left alone", "[joint][sweep]") {
     // a body that moves along x alone: the other takes the rest
     const SweptBody<double> rail{.inverse_mass = V3(1, 0, 0)}, free{.inverse_mass = V3(3, 3, 3)};
     sweep.open(rail, free);
-    sweep.add(V3(1, 0, 0), V3(0, 0, 0), {.bias = 1});
-    sweep.add(V3(0, 1, 0), V3(0, 0, 0), {.bias = 1});
-    sweep.add(V3(0, 0, 1), {.bias = 1}); // neither turns
+    sweep.add_force(V3(1, 0, 0), {.bias = 1});
+    sweep.add_force(V3(0, 1, 0), {.bias = 1});
+    sweep.add_moment(V3(0, 0, 1), {.bias = 1}); // neither turns
     const Velocities moved = sweep.sweep({}, impulses, asked);
     CHECK(moved.linear_a == V3(0.25, 0, 0));
     CHECK(moved.linear_b == V3(-0.75, -1, 0));

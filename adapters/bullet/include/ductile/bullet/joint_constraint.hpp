@@ -12,8 +12,8 @@
 //   what comes first.
 //
 // Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance,
-// and how rigid rows are combined. In sequential impulse a constraint that was added by `add_to`
-// solves them by itself (self_solved_rows.hpp).
+// and how rigid rows are combined. In sequential impulse and NNCG a constraint that was added by
+// `add_to` solves them by itself (self_solved_rows.hpp).
 //
 // Traps of Bullet 3.24 that this header deals with
 //   - The solver leaves the impulse of a constraint's last row in `m_appliedImpulse`: with one
@@ -21,8 +21,7 @@
 //   - Joint feedback is a force with its torque about the centre of mass, world axes, multiplied by
 //     the body's linear and angular factor.
 //   - Velocities changed while the solver asks for rows are lost: what a break found there must
-//   give
-//     back is given as six forces in that tick.
+//     give back is given as six forces in that tick.
 //   - `setBreakingImpulseThreshold` also clamps row limits: leave it infinite.
 //   - Bullet turns a body by at most π/4 a step; faster spins than that are cut by the engine.
 //
@@ -181,7 +180,6 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
 
     void getInfo2(btConstraintInfo2* info) override {
         if (open_ == Open::hand_back) {
-            dt_ = 1 / double(info->fps);
             write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
             return;
         }
@@ -267,6 +265,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     void prepare(double tick, double erp) {
         dt_ = kick_.share * tick;
         tick_kick_ = kick_.share;
+        if constexpr (!one_axis) recall_mass();
         const bool masses = link_.reads_mass();
         link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
                       masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
@@ -359,17 +358,23 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         combined_at_ = pose.rest_changes();
         combined_a_ = a;
         combined_b_ = b;
-        Vector3<double> offset = Vector3<double>::Zero();
-        for (const JointAxis axis : link_.axes()) {
-            if (!turns(axis)) offset[Eigen::Index(index(axis))] = link_.plastic_offset(axis);
-        }
         // a solver drops rows with less than its epsilon
         constexpr double least = 4 * double(SIMD_EPSILON);
         const Matrix6<double> k =
             flowing ? inverse_mass_along_b(pose, pose.orientation(), pose.displacement(), a, b)
-                    : inverse_mass_along_b(pose, pose.rest(), offset, a, b);
+                    : inverse_mass_at_rest(link_, a, b);
         combined_ = decoupled_rows<6 - dimension>(k, order_, least);
         return combined_;
+    }
+
+    /// Tells the link its mass at rest where it has no other use for it, unless it knows.
+    void recall_mass() {
+        if (!link_.takes_mass_at_rest()) return;
+        const PrincipalMass<double> a = principal_mass(m_rbA), b = principal_mass(m_rbB);
+        if (!link_.reads_mass() && known_a_ == a && known_b_ == b) return;
+        known_a_ = a;
+        known_b_ = b;
+        link_.set_inverse_mass_at_rest(inverse_mass_at_rest(link_, a, b));
     }
 
     btTransform frame_in_a_;
@@ -381,7 +386,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     ReactionArm reaction_arm_;
     std::array<std::size_t, 6> order_; ///< axis of each row
     CombinedRows<double> combined_;    ///< as below
-    PrincipalMass<double> combined_a_, combined_b_;
+    PrincipalMass<double> combined_a_, combined_b_, known_a_, known_b_; ///< known to the link
     unsigned combined_at_ = 0;     ///< LinkPose::rest_changes
     bool combined_flowing_ = true; ///< or never worked out
     BreakRelease<double> release_;

@@ -5,8 +5,7 @@
 //   C m             where another solver asks and C m <= 1/2: right in sequential impulse, whose
 //                   error each sweep multiplies by C m;
 //   a given force   otherwise: that of the pair as if it were alone (isolated_pair.hpp). Exact
-//   where
-//                   nothing else acts on the two bodies within the step.
+//                   where nothing else acts on the two bodies within the step.
 // Where that is not right (a chain of stiff rows; btMLCPSolver, which does not read C m) the row
 // misses u' + C λ = b, and the joint's certificate says so. Where no row is soft, the rigid ones
 // are combined so that they do not push each other (decoupled_rows.hpp).
@@ -130,6 +129,18 @@ template <std::size_t N>
     return order;
 }
 
+/// K of the link at its rest position (set_inverse_mass_at_rest).
+template <class Joint>
+[[nodiscard]] Matrix6<double> inverse_mass_at_rest(const Link<Joint>& link,
+                                                   const PrincipalMass<double>& a,
+                                                   const PrincipalMass<double>& b) noexcept {
+    Vector3<double> offset = Vector3<double>::Zero();
+    for (const JointAxis axis : link.axes()) {
+        if (!turns(axis)) offset[Eigen::Index(index(axis))] = link.plastic_offset(axis);
+    }
+    return inverse_mass_along_b(link.pose(), link.pose().rest(), offset, a, b);
+}
+
 /// True where no row of the link's last `prepare` is soft or given.
 template <class Joint>
 [[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
@@ -183,13 +194,19 @@ void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
     const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
     const Vector3<double> turning(rows[3].limits.bias, rows[4].limits.bias, rows[5].limits.bias);
     for (std::size_t i = 0; i < 6; ++i) {
-        const CombinedRow<double>& row = combined[i];
         RowLimits<double> limits = rows[order[i]].limits;
         limits.lower *= dt;
         limits.upper *= dt;
+        if constexpr (Link<Joint>::dimension == 6) { // nothing to be combined
+            const LinkRow<double>& row = rows[order[i]];
+            row.turns ? sweep.add_moment(row.direction, limits)
+                      : sweep.add_force(row.direction, limits);
+            continue;
+        }
+        const CombinedRow<double>& row = combined[i];
         limits.bias = row.moment.dot(turning);
         if (row.force.squaredNorm() == 0) {
-            sweep.add(axes * row.moment, limits);
+            sweep.add_moment(axes * row.moment, limits);
         } else {
             limits.bias += row.force.dot(moving);
             sweep.add(axes * row.force, axes * row.moment, limits);

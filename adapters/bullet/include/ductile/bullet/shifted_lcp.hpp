@@ -11,11 +11,9 @@
 //     s = clamp(0, lower, upper), x = s + y turns the problem into the same one for y with
 //     b - A s and bounds that enclose zero.
 //   - btLemkeSolver fails on rows whose bounds are equal, a degenerate case for its pivoting. Rows
-//   of
-//     given force are nothing to be solved and are left out: the inner problem is smaller.
+//     of given force are nothing to be solved and are left out: the inner problem is smaller.
 //   - btDantzigSolver gives up where a *starting* impulse is 1000 N s or more, btLemkeSolver where
-//   a
-//     result passes 1e5 N s. The problem is therefore handed on in units of its own impulses, by
+//     a result passes 1e5 N s. The problem is therefore handed on in units of its own impulses, by
 //     a power of two, which changes no digit.
 //   - btLemkeSolver returns true where its pivoting ended without a solution. So each solution
 //     is checked; what fails the check is reported as failed, and btMLCPSolver goes back to

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -36,10 +37,13 @@ class StandIn {
     ~StandIn() = default;
 };
 
-/// True for Bullet's own sequential impulse, alone or behind a StandIn: it calls every constraint
-/// in each sweep. What derives from it may do otherwise.
+/// True for Bullet's own sequential impulse and NNCG, alone or behind a StandIn: they call every
+/// constraint in each sweep. What derives from them may do otherwise.
 [[nodiscard]] inline bool calls_in_each_sweep(const btConstraintSolver& solver) {
-    if (typeid(solver) == typeid(btSequentialImpulseConstraintSolver)) return true;
+    if (typeid(solver) == typeid(btSequentialImpulseConstraintSolver) ||
+        typeid(solver) == typeid(btNNCGConstraintSolver)) {
+        return true;
+    }
     const auto* front = dynamic_cast<const StandIn*>(&solver);
     return front != nullptr && calls_in_each_sweep(front->usual());
 }
