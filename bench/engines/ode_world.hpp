@@ -57,11 +57,7 @@ class OdeWorld {
         for (const JointSpec& joint : scene.joints) add_joint(joint, settings.method);
         made_.resize(scene.contacts.size());
     }
-    ~OdeWorld() {
-        holders_.clear();
-        dJointGroupDestroy(contacts_);
-        dWorldDestroy(world_);
-    }
+    ~OdeWorld() = default;
     OdeWorld(const OdeWorld&) = delete;
     OdeWorld& operator=(const OdeWorld&) = delete;
 
@@ -170,10 +166,25 @@ class OdeWorld {
         }
     };
 
+    /// What ODE gives and takes back, also where the scene is refused.
+    struct Owned {
+        Owned() = default;
+        ~Owned() {
+            dJointGroupDestroy(contacts);
+            dWorldDestroy(world);
+        }
+        Owned(const Owned&) = delete;
+        Owned& operator=(const Owned&) = delete;
+
+        Library library;
+        dWorldID world = dWorldCreate();
+        dJointGroupID contacts = dJointGroupCreate(0);
+    };
+
     Scene scene_;
-    Library library_;
-    dWorldID world_ = dWorldCreate();
-    dJointGroupID contacts_ = dJointGroupCreate(0);
+    Owned owned_; ///< outlives what follows
+    dWorldID world_ = owned_.world;
+    dJointGroupID contacts_ = owned_.contacts;
     ductile::ode::World stepper_;
     std::vector<dBodyID> bodies_;
     std::vector<std::unique_ptr<Holder>> holders_;

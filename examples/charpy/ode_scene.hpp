@@ -59,12 +59,7 @@ class OdeScene {
         meter_->open();
     }
 
-    ~OdeScene() {
-        plastic_.clear();
-        dJointGroupDestroy(contacts_);
-        dWorldDestroy(world_);
-        dCloseODE();
-    }
+    ~OdeScene() = default;
     OdeScene(const OdeScene&) = delete;
     OdeScene& operator=(const OdeScene&) = delete;
 
@@ -391,16 +386,31 @@ class OdeScene {
         return fastest;
     }
 
-    /// ODE counts its users: initialised once per scene, before the world.
-    struct Library {
-        Library() { dInitODE2(0); }
+    /// What ODE gives and takes back, also where the scene is refused. ODE counts its users:
+    /// initialised once per scene, before the world.
+    struct Owned {
+        Owned() {
+            dInitODE2(0);
+            world = dWorldCreate();
+            contacts = dJointGroupCreate(0);
+        }
+        ~Owned() {
+            dJointGroupDestroy(contacts);
+            dWorldDestroy(world);
+            dCloseODE();
+        }
+        Owned(const Owned&) = delete;
+        Owned& operator=(const Owned&) = delete;
+
+        dWorldID world = nullptr;
+        dJointGroupID contacts = nullptr;
     };
 
     Scenario s_;
     Method method_;
-    Library library_;
-    dWorldID world_ = dWorldCreate();
-    dJointGroupID contacts_ = dJointGroupCreate(0);
+    Owned owned_; ///< outlives what follows
+    dWorldID world_ = owned_.world;
+    dJointGroupID contacts_ = owned_.contacts;
     std::unique_ptr<ductile::ode::World> stepper_;
     std::unique_ptr<ductile::ode::EnergyMeter> meter_;
     Joints plastic_;
