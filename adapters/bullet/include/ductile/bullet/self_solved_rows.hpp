@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Rows that a constraint solves by itself. Bullet's sequential impulse calls each constraint once
-// in every sweep (solveConstraintObsolete) with its two bodies: enough for a constraint to take up
-// its rows there (joint/row_sweep.hpp), instead of handing them to Bullet. Then
+// Rows that a constraint solves by itself. Bullet's sequential impulse and NNCG call each constraint
+// once in every sweep (solveConstraintObsolete) with its two bodies: enough for a constraint to take
+// up its rows there (joint/row_sweep.hpp), instead of handing them to Bullet. Then
 //   - compliance is exact whatever its size, also in Bullet's stock solver;
 //   - all reactions are exact, without joint feedback;
 //   - the rows cost a third of Bullet's, and no sweep is made that changes nothing.

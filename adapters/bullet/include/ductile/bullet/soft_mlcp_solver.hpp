@@ -81,12 +81,8 @@ class SoftMlcpSolver : public btMLCPSolver {
                                                const btContactSolverInfo& info,
                                                btIDebugDraw* drawer) override {
         btContactSolverInfo enough = info;
-        if (direct_) { // and reads none of this
+        if (direct_) { // and does not read it
             enough.m_numIterations = std::max(info.m_numIterations, fallback_sweeps);
-            for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
-                int& sweeps = m_tmpSolverNonContactConstraintPool[i].m_overrideNumSolverIterations;
-                sweeps = std::max(sweeps, fallback_sweeps);
-            }
         }
         return btMLCPSolver::solveGroupCacheFriendlyIterations(
             bodies, body_count, manifolds, manifold_count, constraints, constraint_count, enough,
@@ -117,12 +113,23 @@ class SoftMlcpSolver : public btMLCPSolver {
 
     bool solveMLCP(const btContactSolverInfo& info) override {
         if (m_A.rows() == 0) return true;
-        if (!solved_with_ties([&] { return solve_velocities(info); })) return false;
+        if (!solved_with_ties([&] { return solve_velocities(info); })) {
+            if (direct_) sweep_joints(info.m_numIterations);
+            return false;
+        }
         if (info.m_splitImpulse) push_apart(info);
         return true;
     }
 
   private:
+    /// Sequential impulse, which takes over, leaves each joint's rows after a number of their own.
+    void sweep_joints(int at_least) {
+        for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
+            int& sweeps = m_tmpSolverNonContactConstraintPool[i].m_overrideNumSolverIterations;
+            sweeps = std::max(sweeps, at_least);
+        }
+    }
+
     [[nodiscard]] int row_index(const btSolverConstraint& row) const {
         return int(&row - &m_tmpSolverNonContactConstraintPool[0]);
     }
