@@ -35,7 +35,7 @@ class PairWorld {
     void step(S dt, const Vector3<S>& force = Vector3<S>::Zero(),
               const Vector3<S>& torque = Vector3<S>::Zero(), S rate = 0) {
         const Vector3<S> v = a_.velocity, w = a_.spin;
-        const auto& rows = link_.prepare(a_, b_, dt, rate);
+        link_.prepare(a_, b_, dt, rate);
         a_.velocity += dt * a_.inverse_mass * force;
         a_.spin += dt * a_.inverse_inertia * torque;
         const Vector3<S> at = link_.point();
@@ -43,7 +43,7 @@ class PairWorld {
         Vector<S> bias(6), lower(6), upper(6);
         Matrix<S> compliance = Matrix<S>::Zero(6, 6);
         for (int i = 0; i < 6; ++i) {
-            const LinkRow<S>& row = rows[std::size_t(i)];
+            const LinkRow<S> row = link_.row(all_joint_axes[std::size_t(i)]);
             const Vector3<S> none = Vector3<S>::Zero(), n = row.direction;
             jacobian.row(i) << (row.turns ? none : n).transpose(),
                 (row.turns ? n : (at - a_.position).cross(n)).transpose(),
@@ -70,8 +70,9 @@ class PairWorld {
         supplied_ += dt * (force.dot(v + a_.velocity) + torque.dot(w + a_.spin)) / 2;
         JointWrench<S> wrench;
         for (std::size_t i = 0; i < 6; ++i) {
-            (rows[i].turns ? wrench.moment : wrench.force) +=
-                rows[i].direction * impulse[Eigen::Index(i)] / dt;
+            const LinkRow<S> row = link_.row(all_joint_axes[i]);
+            (row.turns ? wrench.moment : wrench.force) +=
+                row.direction * impulse[Eigen::Index(i)] / dt;
         }
         move(a_, dt);
         move(b_, dt);

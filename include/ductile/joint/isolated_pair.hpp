@@ -33,7 +33,7 @@ namespace ductile {
 /// λ/dt of the rows [N | N m]. `k` and `free`: K and u_free; `dt` > 0 [s]. Zero where the bodies
 /// cannot tell (both without mass on some axis). O(1): at most seven 6×6 factorisations.
 template <std::floating_point S>
-[[nodiscard]] Vector6<S> forces_of_isolated_pair(const std::array<LinkRow<S>, 6>& rows,
+[[nodiscard]] Vector6<S> forces_of_isolated_pair(const std::array<RowLimits<S>, 6>& rows,
                                                  const Matrix6<S>& k, const Vector6<S>& free,
                                                  S dt) noexcept {
     Vector6<S> impulse = Vector6<S>::Zero();
@@ -42,7 +42,7 @@ template <std::floating_point S>
         Matrix6<S> system = k;
         Vector6<S> wanted;
         for (int i = 0; i < 6; ++i) {
-            const RowLimits<S>& limits = rows[std::size_t(i)].limits;
+            const RowLimits<S>& limits = rows[std::size_t(i)];
             system(i, i) += limits.compliance;
             wanted[i] = limits.bias - free[i];
             for (int j = 0; j < 6; ++j) {
@@ -63,7 +63,7 @@ template <std::floating_point S>
         S most = 1;
         for (int i = 0; i < 6; ++i) {
             if (held[std::size_t(i)]) continue;
-            const RowLimits<S>& limits = rows[std::size_t(i)].limits;
+            const RowLimits<S>& limits = rows[std::size_t(i)];
             const S over = std::max(impulse[i] - limits.upper * dt, limits.lower * dt - impulse[i]);
             const S bound = std::max(std::abs(limits.upper), std::abs(limits.lower)) * dt;
             if (!(over > 0)) continue;
@@ -75,7 +75,7 @@ template <std::floating_point S>
         }
         if (worst < 0) break;
         held[std::size_t(worst)] = true;
-        const RowLimits<S>& limits = rows[std::size_t(worst)].limits;
+        const RowLimits<S>& limits = rows[std::size_t(worst)];
         impulse[worst] = std::clamp(impulse[worst], limits.lower * dt, limits.upper * dt);
     }
     return impulse / dt;

@@ -4,7 +4,7 @@
 // no engine. Some rows are ruled by a plastic joint of the core (OneAxisJoint, CoupledJoint), the
 // others hold rigidly.
 //
-//   before the solve   prepare(a, b, dt, rate)  -> six LinkRows
+//   before the solve   prepare(a, b, dt, rate)  -> limits of the six rows
 //   after the solve    commit(a, b, wrench, dt) -> the joint's step
 //
 // Frames. Each body carries a frame, z along the member. The joint is the origin of frame A; the
@@ -67,7 +67,7 @@ class Link {
         }
     }();
     using Axes = std::array<JointAxis, std::size_t(dimension)>;
-    using Rows = std::array<LinkRow<S>, 6>;
+    using Limits = std::array<RowLimits<S>, 6>; ///< in the order of JointAxis
     using Step = decltype(std::declval<Joint&>().commit({}, S(0)));
 
     /// Plain value: copy, compare, save and restore it.
@@ -137,16 +137,14 @@ class Link {
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
     /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all.
-    const Rows& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
-                        bool midway = false) noexcept {
+    const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
+                          bool midway = false) noexcept {
         pose_.look(a, b);
         const Vector6<S> error = strain();
         const bool whole = !broken();
-        for (std::size_t i = 0; i < rows_.size(); ++i) {
-            rows_[i].direction = pose_.axes().col(Eigen::Index(i % 3));
-            rows_[i].turns = i >= 3;
-            rows_[i].limits = {.bias = -rate * error[Eigen::Index(i)]};
-            if (!whole) rows_[i].limits = {.lower = 0, .upper = 0};
+        for (std::size_t i = 0; i < limits_.size(); ++i) {
+            limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
+            if (!whole) limits_[i] = {.lower = 0, .upper = 0};
         }
         offset_ = offset();
         if (reads_mass()) {
@@ -154,17 +152,16 @@ class Link {
         }
         if constexpr (one_axis) {
             const std::size_t i = index(axes_[0]);
-            rows_[i].limits = joint_.prepare(
+            limits_[i] = joint_.prepare(
                 {error[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass_(0, 0),
                  midway},
                 dt);
         } else {
             const auto limits = joint_.prepare(
                 {to_joint(error) + offset_, to_joint(pose_.twist(a, b)), mass_, midway}, dt);
-            for (std::size_t k = 0; k < limits.size(); ++k)
-                rows_[index(axes_[k])].limits = limits[k];
+            for (std::size_t k = 0; k < limits.size(); ++k) limits_[index(axes_[k])] = limits[k];
         }
-        return rows_;
+        return limits_;
     }
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
@@ -234,12 +231,15 @@ class Link {
     }
 
     // ---- what it says
-
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
     [[nodiscard]] const Axes& axes() const noexcept { return axes_; }
     [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
     [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }
-    [[nodiscard]] const Rows& rows() const noexcept { return rows_; } ///< of the last prepare
+    /// Of the last prepare.
+    [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
+    [[nodiscard]] LinkRow<S> row(JointAxis axis) const noexcept {
+        return {pose_.axes().col(Eigen::Index(index(axis) % 3)), turns(axis), limits_[index(axis)]};
+    }
     [[nodiscard]] const Step& last() const noexcept { return last_; }
     [[nodiscard]] bool broken() const noexcept { return joint_.state().broken; }
     [[nodiscard]] bool is_plastic(JointAxis axis) const noexcept { return plastic_[index(axis)]; }
@@ -323,9 +323,9 @@ class Link {
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept {
         std::array<S, 2> worst{}; // of translations and rotations
-        for (std::size_t i = 0; i < rows_.size(); ++i) {
+        for (std::size_t i = 0; i < limits_.size(); ++i) {
             if (plastic_[i]) continue;
-            const S residual = std::abs(velocity[Eigen::Index(i)] - rows_[i].limits.bias);
+            const S residual = std::abs(velocity[Eigen::Index(i)] - limits_[i].bias);
             worst[i / 3] = std::max(worst[i / 3], residual);
         }
         rigid_residual_ = std::max(worst[0], worst[1]);
@@ -389,7 +389,7 @@ class Link {
     unsigned mass_at_ = std::numeric_limits<unsigned>::max();
 
     // between prepare and commit, and what the last step did
-    Rows rows_{};
+    Limits limits_{};
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
     Vector6<S> force_ = Vector6<S>::Zero();    ///< axes of frame B [N | N m]
     Step last_{};

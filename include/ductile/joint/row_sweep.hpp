@@ -14,10 +14,15 @@
 // (decoupled_rows.hpp) are solved by a single sweep. A block of rows that do is, where the first
 // sweep was not enough, also taken up at once, unless one of them would meet a bound:
 //
-//   Δλ = (J M⁻¹ Jᵀ + C)⁻¹ (b - J y - C λ).
+//   Δλ = (K + C)⁻¹ (b - J y - C λ),   K = J M⁻¹ Jᵀ.
+//
+// All rows act in one point: a sweep reads from the bodies how A moves there beside B, J y = W w, and
+// at its end gives them one force and one moment; what its rows do to each other meanwhile is in K.
 //
 // Symbols
 //   J    Jacobian: (n, r_A × n + m, -(r_B × n + m)) of a force n and a moment m at the joint
+//   W    n and m of each row
+//   w    (v_A + ω_A × r_A - v_B - ω_B × r_B, ω_A - ω_B)   [m/s, rad/s]
 //   λ    impulse of a row                    [N s | N m s]
 //   b    target velocity                     [m/s | rad/s]
 //   C    compliance of the impulse           [1/kg | 1/(kg m²)]
@@ -30,10 +35,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <limits>
 
 #include "ductile/joint/pair.hpp"
@@ -67,18 +70,14 @@ struct SweptVelocities {
 template <std::floating_point S>
 class RowSweep {
   public:
-    using Impulses = std::array<S, 6>;
+    using Impulses = Vector6<S>;
 
     /// Begins with no rows, between these bodies.
     void open(const SweptBody<S>& a, const SweptBody<S>& b) noexcept {
         a_ = a;
         b_ = b;
-        both_ = a.inverse_mass + b.inverse_mass;
-        for (int i = 0; i < 3; ++i)
-            share_a_[i] = both_[i] > 0 ? a.inverse_mass[i] / both_[i] : S(0);
-        count_ = 0;
-        block_ = 0;
-        swept_ = false;
+        count_ = block_ = 0;
+        swept_ = has_mass_ = has_factor_ = false;
     }
 
     /// A row of the force `along` and the moment `about`; at most six of them. One that neither
@@ -86,147 +85,129 @@ class RowSweep {
     /// infinite.
     void add(const Vector3<S>& along, const Vector3<S>& about,
              const RowLimits<S>& limits) noexcept {
-        Line& line = next(limits);
-        line.jacobian.template head<3>() = along;
-        line.moved.template head<3>() = both_.cwiseProduct(along);
-        turn(line, about + a_.arm.cross(along), about + b_.arm.cross(along),
-             along.dot(line.moved.template head<3>()));
+        set(count_++, along, about, limits);
     }
-    /// The same of a force alone.
-    void add_force(const Vector3<S>& along, const RowLimits<S>& limits) noexcept {
-        Line& line = next(limits);
-        line.jacobian.template head<3>() = along;
-        line.moved.template head<3>() = both_.cwiseProduct(along);
-        turn(line, a_.arm.cross(along), b_.arm.cross(along),
-             along.dot(line.moved.template head<3>()));
-    }
-    /// The same of a moment alone.
-    void add_moment(const Vector3<S>& about, const RowLimits<S>& limits) noexcept {
-        Line& line = next(limits);
-        line.jacobian.template head<3>().setZero();
-        line.moved.template head<3>().setZero();
-        turn(line, about, about, S(0));
-    }
-
     /// The last `count` > 0 of the rows added are a block.
-    void join_last(int count) noexcept {
-        block_ = count;
-        factored_ = false;
-    }
+    void join_last(int count) noexcept { block_ = count; }
 
     /// One sweep over the rows, on top of `impulses`, which it changes, from the velocities `now`.
     /// Returns by how much it changed these; `asked` becomes the largest change of a row's own
     /// velocity that was asked for within its bounds [m/s | rad/s].
     SweptVelocities<S> sweep(const SweptVelocities<S>& now, Impulses& impulses, S& asked) noexcept {
-        Stacked y;
-        y << now.linear_a - now.linear_b, now.angular_a, now.angular_b, S(0);
-        const Stacked before = y;
+        if (!swept_) leave_out_the_rest();
+        Vector6<S> w;
+        w.template head<3>() = now.linear_a + now.angular_a.cross(a_.arm) - now.linear_b -
+                               now.angular_b.cross(b_.arm);
+        w.template tail<3>() = now.angular_a - now.angular_b;
+        Vector6<S> missing = bias_ - compliance_.cwiseProduct(impulses);
+        missing.noalias() -= directions_.transpose() * w;
+
         asked = 0;
+        if (!has_mass_) {
+            if (missing.isZero(0) && within_bounds(impulses)) return {};
+            find_mass();
+        }
+        const Impulses before = impulses;
         const int single = count_ - block_;
-        for (int i = 0; i < single; ++i) take_up(i, y, impulses, asked);
+        for (int i = 0; i < single; ++i) take_up(i, missing, impulses, asked);
         S of_block = 0;
-        for (int i = single; i < count_; ++i) take_up(i, y, impulses, of_block);
+        for (int i = single; i < count_; ++i) take_up(i, missing, impulses, of_block);
         constexpr S round_off = 4 * std::numeric_limits<S>::epsilon();
-        if (swept_ && of_block > round_off * y.cwiseAbs().maxCoeff()) {
-            take_up_block(single, y, impulses);
+        if (swept_ && of_block * of_block > round_off * round_off * now.squared_norm()) {
+            take_up_block(single, missing, impulses - before, impulses);
         }
         asked = std::max(asked, of_block);
         swept_ = true;
         if (asked == 0) return {};
-        const Stacked changed = y - before;
-        const Vector3<S> linear = changed.template head<3>();
-        const Vector3<S> linear_a = share_a_.cwiseProduct(linear);
-        // of a direction in which neither is moved nothing is changed
-        return {linear_a, changed.template segment<3>(3), linear_a - linear,
-                changed.template segment<3>(6)};
+        const Vector6<S> given = directions_ * (impulses - before);
+        const Vector3<S> force = given.template head<3>(), moment = given.template tail<3>();
+        return {a_.inverse_mass.cwiseProduct(force),
+                a_.inverse_inertia * (a_.arm.cross(force) + moment),
+                -b_.inverse_mass.cwiseProduct(force),
+                b_.inverse_inertia * -(b_.arm.cross(force) + moment)};
     }
 
   private:
-    /// y, and a row of J: padded, to be had two or four at a time.
-    using Stacked = Eigen::Matrix<S, 10, 1>;
     using BlockMatrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
     using BlockVector = Eigen::Matrix<S, Eigen::Dynamic, 1, 0, 6, 1>;
-    struct Line {
-        Stacked jacobian = Stacked::Zero(), moved = Stacked::Zero(); ///< J and M⁻¹ Jᵀ
-        S inverse_mass, gain;
-        RowLimits<S> limits;
-    };
 
-    Line& next(const RowLimits<S>& limits) noexcept {
-        Line& line = lines_[std::size_t(count_++)];
-        line.limits = limits;
-        return line;
+    void set(int i, const Vector3<S>& along, const Vector3<S>& about,
+             const RowLimits<S>& limits) noexcept {
+        directions_.template block<3, 1>(0, i) = along;
+        directions_.template block<3, 1>(3, i) = about;
+        bias_[i] = limits.bias;
+        lower_[i] = limits.lower;
+        upper_[i] = limits.upper;
+        compliance_[i] = limits.compliance;
     }
-    /// The turning part of a row whose moment is `on_a` on A and the opposite of `on_b` on B.
-    void turn(Line& line, const Vector3<S>& on_a, const Vector3<S>& on_b,
-              S inverse_mass) const noexcept {
-        constexpr S least = std::numeric_limits<S>::min();
-        const Vector3<S> turned_a = a_.inverse_inertia * on_a, turned_b = b_.inverse_inertia * on_b;
-        line.inverse_mass = inverse_mass + on_a.dot(turned_a) + on_b.dot(turned_b);
-        line.gain =
-            line.inverse_mass > least ? 1 / (line.inverse_mass + line.limits.compliance) : S(0);
-        line.jacobian.template segment<3>(3) = on_a;
-        line.jacobian.template segment<3>(6) = -on_b;
-        line.moved.template segment<3>(3) = turned_a;
-        line.moved.template segment<3>(6) = -turned_b;
+    /// Rows that were not added ask for nothing.
+    void leave_out_the_rest() noexcept {
+        const Vector3<S> none = Vector3<S>::Zero();
+        for (int i = count_; i < 6; ++i) set(i, none, none, {});
+    }
+    [[nodiscard]] bool within_bounds(const Impulses& impulses) const noexcept {
+        return (impulses.array() >= lower_.array()).all() &&
+               (impulses.array() <= upper_.array()).all();
     }
 
-    /// What row i is off by.
-    [[nodiscard]] S missing(int i, const Stacked& y, const Impulses& impulses) const noexcept {
-        const Line& line = lines_[std::size_t(i)];
-        return line.limits.bias - line.jacobian.dot(y) -
-               line.limits.compliance * impulses[std::size_t(i)];
-    }
-    void take_up(int i, Stacked& y, Impulses& impulses, S& asked) const noexcept {
-        const Line& line = lines_[std::size_t(i)];
-        S& impulse = impulses[std::size_t(i)];
-        const S wanted = std::clamp(impulse + line.gain * missing(i, y, impulses),
-                                    line.limits.lower, line.limits.upper);
-        const S change = wanted - impulse;
+    /// Row i alone; what it does to those after it is taken off `missing`.
+    void take_up(int i, Vector6<S>& missing, Impulses& impulses, S& asked) const noexcept {
+        const S wanted = std::clamp(impulses[i] + gain_[i] * missing[i], lower_[i], upper_[i]);
+        const S change = wanted - impulses[i];
         if (change == 0) return;
-        impulse = wanted;
-        y += change * line.moved;
-        asked = std::max(asked, std::abs(change) * line.inverse_mass);
+        impulses[i] = wanted;
+        for (int j = i + 1; j < count_; ++j) missing[j] -= mass_(j, i) * change;
+        asked = std::max(asked, std::abs(change) * mass_(i, i));
     }
-    /// All rows from `first` on at once, unless one would meet a bound.
-    void take_up_block(int first, Stacked& y, Impulses& impulses) noexcept {
-        if (!factored_) factor(first);
-        if (block_mass_.info() != Eigen::Success) return;
-        BlockVector change(block_);
-        for (int i = 0; i < block_; ++i) change[i] = missing(first + i, y, impulses);
-        block_mass_.solveInPlace(change);
-        for (int i = 0; i < block_; ++i) {
-            const RowLimits<S>& limits = lines_[std::size_t(first + i)].limits;
-            const S wanted = impulses[std::size_t(first + i)] + change[i];
-            if (!(wanted >= limits.lower && wanted <= limits.upper)) return;
+    /// All rows from `first` on at once, unless one would meet a bound. `missing` is of when they
+    /// were taken up one by one, which changed their impulses by `changed`.
+    void take_up_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
+                       Impulses& impulses) noexcept {
+        if (!has_factor_) {
+            BlockMatrix system = mass_.block(first, first, block_, block_);
+            system.diagonal() += compliance_.segment(first, block_);
+            factor_.compute(system);
+            has_factor_ = true;
         }
+        if (factor_.info() != Eigen::Success) return;
+        BlockVector wanted(block_);
         for (int i = 0; i < block_; ++i) {
-            impulses[std::size_t(first + i)] += change[i];
-            y += change[i] * lines_[std::size_t(first + i)].moved;
+            const int row = first + i;
+            wanted[i] = missing[row] - compliance_[row] * changed[row];
+            for (int j = row; j < count_; ++j) wanted[i] -= mass_(j, row) * changed[j];
         }
+        factor_.solveInPlace(wanted);
+        wanted += impulses.segment(first, block_);
+        for (int i = 0; i < block_; ++i) {
+            if (!(wanted[i] >= lower_[first + i] && wanted[i] <= upper_[first + i])) return;
+        }
+        impulses.segment(first, block_) = wanted;
     }
-    void factor(int first) noexcept {
-        BlockMatrix k(block_, block_);
-        for (int i = 0; i < block_; ++i) {
-            const Line& line = lines_[std::size_t(first + i)];
-            for (int j = 0; j < i; ++j) {
-                k(i, j) = line.jacobian.dot(lines_[std::size_t(first + j)].moved);
-            }
-            k(i, i) = line.inverse_mass + line.limits.compliance;
+    /// K, and from it the gains.
+    void find_mass() noexcept {
+        constexpr S least = std::numeric_limits<S>::min();
+        Matrix6<S> at_joint = inverse_mass_at_joint(
+            BodyAtJoint<S>{.inverse_inertia = a_.inverse_inertia, .arm = a_.arm},
+            BodyAtJoint<S>{.inverse_inertia = b_.inverse_inertia, .arm = b_.arm});
+        at_joint.diagonal().template head<3>() += a_.inverse_mass + b_.inverse_mass;
+        const Matrix6<S> moved = at_joint.lazyProduct(directions_);
+        mass_ = directions_.transpose().lazyProduct(moved);
+        for (int i = 0; i < 6; ++i) {
+            gain_[i] = mass_(i, i) > least ? 1 / (mass_(i, i) + compliance_[i]) : S(0);
         }
-        block_mass_.compute(k);
-        factored_ = true;
+        has_mass_ = true;
     }
 
     SweptBody<S> a_, b_;
-    Vector3<S> both_ = Vector3<S>::Zero();    ///< inverse mass that v_A - v_B feels [1/kg]
-    Vector3<S> share_a_ = Vector3<S>::Zero(); ///< what A has of a change of it
-    std::array<Line, 6> lines_;
+    Matrix6<S> directions_; ///< Wᵀ: n above m of each row
+    Vector6<S> bias_, lower_, upper_, compliance_;
     int count_ = 0;
     int block_ = 0; ///< how many of the last rows are taken up together
     bool swept_ = false;
-    bool factored_ = false;
-    Eigen::LLT<BlockMatrix> block_mass_; ///< of J M⁻¹ Jᵀ + C, where factored
+    bool has_mass_ = false, has_factor_ = false;
+    Vector6<S> gain_;                 ///< 1/(k + C)
+    Matrix6<S> mass_;                ///< K, from when a row first changed
+    Eigen::LLT<BlockMatrix> factor_; ///< of K + C of the block, from when first needed
 };
 
 } // namespace ductile

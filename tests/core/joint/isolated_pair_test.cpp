@@ -33,7 +33,7 @@ BodyState<double> body() {
 }
 
 struct Pair {
-    std::array<LinkRow<double>, 6> rows;
+    std::array<RowLimits<double>, 6> rows;
     Matrix6<double> k;
     Vector6<double> free;
 };
@@ -45,7 +45,7 @@ Pair pair(double bound) {
     p.k = inverse_mass_of_rows(body(), body(), vector(), axes);
     p.free << 3 * vector(), 5 * vector();
     for (std::size_t i = 0; i < 6; ++i) {
-        p.rows[i].limits = {.lower = -bound,
+        p.rows[i] = {.lower = -bound,
                             .upper = bound,
                             .bias = number(),
                             .compliance = i % 2 == 0 ? 0 : 1 + number()};
@@ -57,7 +57,7 @@ Vector6<double> boxed_answer(const Pair& p, double dt) {
     Eigen::VectorXd free(6), lower(6), upper(6);
     Eigen::MatrixXd system = p.k;
     for (int i = 0; i < 6; ++i) {
-        const auto& limits = p.rows[std::size_t(i)].limits;
+        const auto& limits = p.rows[std::size_t(i)];
         system(i, i) += limits.compliance;
         free[i] = p.free[i] - limits.bias;
         lower[i] = limits.lower * dt;
@@ -75,7 +75,7 @@ TEST_CASE("a pair alone is solved exactly where no row reaches its bound", "[joi
         const Vector6<double> force = forces_of_isolated_pair(p.rows, p.k, p.free, 0.01);
         Vector6<double> missed = p.free + 0.01 * p.k * force;
         for (Eigen::Index i = 0; i < 6; ++i) {
-            const auto& limits = p.rows[std::size_t(i)].limits;
+            const auto& limits = p.rows[std::size_t(i)];
             missed[i] += limits.compliance * force[i] * 0.01 - limits.bias;
         }
         RC_ASSERT(missed.norm() < 1e-9 * (1 + p.free.norm()));
@@ -87,8 +87,8 @@ TEST_CASE("with one row at its bound the pair's answer is that of the boxed prob
     rc::prop("one bounded row", [] {
         Pair p = pair(infinity);
         const auto row = std::size_t(*rc::gen::inRange(0, 6));
-        p.rows[row].limits.lower = -5;
-        p.rows[row].limits.upper = 5;
+        p.rows[row].lower = -5;
+        p.rows[row].upper = 5;
         const Vector6<double> force = forces_of_isolated_pair(p.rows, p.k, p.free, 0.01);
         const Vector6<double> exact = boxed_answer(p, 0.01);
         RC_ASSERT((force - exact).norm() < 1e-8 * (1 + exact.norm()));
@@ -104,7 +104,7 @@ TEST_CASE("the pair's answer keeps to every bound, and says nothing where it can
         RC_ASSERT(force.cwiseAbs().maxCoeff() > 0);
     });
     Pair p;
-    for (auto& row : p.rows) row.limits = {.compliance = 0};
+    for (auto& row : p.rows) row = {.compliance = 0};
     p.k.setZero();
     p.free.setOnes();
     CHECK(forces_of_isolated_pair(p.rows, p.k, p.free, 0.01).allFinite());

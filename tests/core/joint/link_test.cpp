@@ -218,8 +218,8 @@ TEST_CASE("a joint that holds foretells its forces with the mass of its rest pos
     const auto limits = [&](auto& link, const Body& of_a, const Body& of_b) {
         std::vector<double> all;
         for (const auto& row : link.prepare(of_a, of_b, dt, 0)) {
-            all.push_back(row.limits.lower);
-            all.push_back(row.limits.upper);
+            all.push_back(row.lower);
+            all.push_back(row.upper);
         }
         return all;
     };
@@ -344,7 +344,7 @@ TEST_CASE("what a break hands back is one impulse at the joint", "[joint][link]"
               {V3(0.6, 0, 0), M3::Identity()});
     link.start(a, b);
     link.prepare(a, b, 1.0 / 60, 0);
-    link.commit(a, b, {V3::Zero(), V3(0, 0, link.rows()[5].limits.lower)}, 1.0 / 60);
+    link.commit(a, b, {V3::Zero(), V3(0, 0, link.limits()[5].lower)}, 1.0 / 60);
     REQUIRE(link.broken());
     const auto release = link.release(a, b);
     const auto impulse = link.release_impulse(a, b);

@@ -80,7 +80,7 @@ TEST_CASE("decoupled rows are solved by a single sweep", "[joint][sweep]") {
             sweep.add(row.force, row.moment, {.bias = bias});
         }
         Velocities now = start;
-        Sweep::Impulses impulses{};
+        Sweep::Impulses impulses = Sweep::Impulses::Zero();
         double asked = 0;
         apply(now, sweep.sweep(now, impulses, asked));
         RC_ASSERT((twist(now, a, b) - target).norm() < 1e-11);
@@ -92,8 +92,8 @@ TEST_CASE("decoupled rows are solved by a single sweep", "[joint][sweep]") {
         // the bodies moved by what the impulses at the joint move them
         JointImpulse<double> sum;
         for (std::size_t i = 0; i < 6; ++i) {
-            sum.linear += impulses[i] * rows[i].force;
-            sum.angular += impulses[i] * rows[i].moment;
+            sum.linear += impulses[Eigen::Index(i)] * rows[i].force;
+            sum.angular += impulses[Eigen::Index(i)] * rows[i].moment;
         }
         const auto of_a = velocity_change(a, sum), of_b = velocity_change(b, sum);
         const Velocities expected{start.linear_a + of_a.linear, start.angular_a + of_a.angular,
@@ -123,13 +123,9 @@ TEST_CASE("rows with bounds and compliance end where all conditions hold", "[joi
                              .upper = bound,
                              .bias = number(),
                              .compliance = i % 3 == 0 ? compliance : 0}});
-            if (i < 3) {
-                sweep.add_force(rows.back().force, rows.back().limits);
-            } else {
-                sweep.add_moment(rows.back().moment, rows.back().limits);
-            }
+            sweep.add(rows.back().force, rows.back().moment, rows.back().limits);
         }
-        Sweep::Impulses impulses{};
+        Sweep::Impulses impulses = Sweep::Impulses::Zero();
         double asked = 1;
         for (int i = 0; i < 20000 && asked > 1e-13; ++i) {
             apply(now, sweep.sweep(now, impulses, asked));
@@ -137,7 +133,7 @@ TEST_CASE("rows with bounds and compliance end where all conditions hold", "[joi
         const V6 u = twist(now, a, b);
         for (int i = 0; i < 6; ++i) {
             const auto& limits = rows[std::size_t(i)].limits;
-            const double impulse = impulses[std::size_t(i)];
+            const double impulse = impulses[i];
             const double off = u[i] + limits.compliance * impulse - limits.bias;
             RC_ASSERT(impulse >= limits.lower);
             RC_ASSERT(impulse <= limits.upper);
@@ -165,17 +161,13 @@ TEST_CASE("a block of rows is solved by the second sweep unless it meets a bound
                                           .upper = bound,
                                           .bias = 0.1 * i,
                                           .compliance = soft ? 0.3 * i : 0.0};
-                const V3 unit = V3::Unit(i % 3);
-                if (i < 3) {
-                    sweep->add_force(unit, limits[std::size_t(i)]);
-                } else {
-                    sweep->add_moment(unit, limits[std::size_t(i)]);
-                }
+                const V3 unit = V3::Unit(i % 3), none = V3::Zero();
+                sweep->add(i < 3 ? unit : none, i < 3 ? none : unit, limits[std::size_t(i)]);
             }
         }
         block.join_last(6);
         Velocities other = now;
-        Sweep::Impulses impulses{}, others{};
+        Sweep::Impulses impulses = Sweep::Impulses::Zero(), others = impulses;
         double asked = 0;
         apply(now, block.sweep(now, impulses, asked));
         apply(now, block.sweep(now, impulses, asked));
@@ -183,7 +175,7 @@ TEST_CASE("a block of rows is solved by the second sweep unless it meets a bound
             const V6 u = twist(now, a, b);
             for (int i = 0; i < 6; ++i) {
                 const auto& row = limits[std::size_t(i)];
-                RC_ASSERT(std::abs(u[i] + row.compliance * impulses[std::size_t(i)] - row.bias) <
+                RC_ASSERT(std::abs(u[i] + row.compliance * impulses[i] - row.bias) <
                           1e-10);
             }
         }
@@ -199,21 +191,22 @@ TEST_CASE("a block of rows is solved by the second sweep unless it meets a bound
 TEST_CASE("what cannot be moved is left alone", "[joint][sweep]") {
     Sweep sweep;
     const SweptBody<double> fixed;
+    const V3 none = V3::Zero();
     sweep.open(fixed, fixed);
-    sweep.add_force(V3(1, 0, 0), {.bias = 1});
-    sweep.add_moment(V3(0, 0, 1), {.bias = 1});
-    Sweep::Impulses impulses{};
+    sweep.add(V3(1, 0, 0), none, {.bias = 1});
+    sweep.add(none, V3(0, 0, 1), {.bias = 1});
+    Sweep::Impulses impulses = Sweep::Impulses::Zero();
     double asked = -1;
     CHECK(sweep.sweep({}, impulses, asked).squared_norm() == 0);
     CHECK(asked == 0);
-    CHECK(impulses == Sweep::Impulses{});
+    CHECK(impulses == Sweep::Impulses::Zero());
 
     // a body that moves along x alone: the other takes the rest
     const SweptBody<double> rail{.inverse_mass = V3(1, 0, 0)}, free{.inverse_mass = V3(3, 3, 3)};
     sweep.open(rail, free);
-    sweep.add_force(V3(1, 0, 0), {.bias = 1});
-    sweep.add_force(V3(0, 1, 0), {.bias = 1});
-    sweep.add_moment(V3(0, 0, 1), {.bias = 1}); // neither turns
+    sweep.add(V3(1, 0, 0), none, {.bias = 1});
+    sweep.add(V3(0, 1, 0), none, {.bias = 1});
+    sweep.add(none, V3(0, 0, 1), {.bias = 1}); // neither turns
     const Velocities moved = sweep.sweep({}, impulses, asked);
     CHECK(moved.linear_a == V3(0.25, 0, 0));
     CHECK(moved.linear_b == V3(-0.75, -1, 0));

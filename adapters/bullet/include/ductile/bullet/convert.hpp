@@ -33,6 +33,12 @@ namespace ductile::bullet {
     return {to_core(frame.getOrigin()), to_core(frame.getBasis())};
 }
 
+[[nodiscard]] inline btTransform to_bullet(const JointFrame<double>& frame) noexcept {
+    btMatrix3x3 axes;
+    for (int row = 0; row < 3; ++row) axes[row] = to_bullet(frame.axes.row(row).transpose());
+    return btTransform(axes, to_bullet(frame.origin));
+}
+
 /// Place and velocities of the body as they are now, without its mass.
 [[nodiscard]] inline BodyState<double> body_motion(const btRigidBody& body) noexcept {
     const btTransform& at = body.getCenterOfMassTransform();

@@ -36,15 +36,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <type_traits>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/draw.hpp"
+#include "ductile/bullet/kept_mass.hpp"
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/reaction.hpp"
 #include "ductile/bullet/self_solved_rows.hpp"
-#include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/link.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -134,8 +136,8 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
 
     [[nodiscard]] JointView view() override {
         settle();
-        JointView view{.frame_a = m_rbA.getCenterOfMassTransform() * frame_in_a_,
-                       .frame_b = m_rbB.getCenterOfMassTransform() * frame_in_b_,
+        JointView view{.frame_a = m_rbA.getCenterOfMassTransform() * to_bullet(link_.frame_in_a()),
+                       .frame_b = m_rbB.getCenterOfMassTransform() * to_bullet(link_.frame_in_b()),
                        .outcome = link_.outcome(),
                        .utilisation = utilisation()};
         if (link_.broken()) view.outcome = Outcome::broken;
@@ -159,7 +161,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         settle_late(true);
         if (reads_ == Reads::all_rows && m_jointFeedback == nullptr &&
             sweeps_of_solver() == nullptr) {
-            m_jointFeedback = &feedback_;
+            m_jointFeedback = &reading().feedback;
         }
     }
 
@@ -174,8 +176,9 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         }
         const btContactSolverInfo& solver_info = world_->getSolverInfo();
         prepare(double(solver_info.m_timeStep), double(solver_info.m_erp));
-        if constexpr (dimension < 6) static_cast<void>(decoupled());
-        SelfSolvedRows::open(*sweeps);
+        decoupled_.look(link_, order_, m_rbA, m_rbB);
+        add_rows(open(*sweeps, m_rbA, m_rbB, link_.pose().arm_a(), link_.pose().arm_b()), link_,
+                 order_, decoupled_, dt_);
     }
 
     void getInfo2(btConstraintInfo2* info) override {
@@ -184,19 +187,22 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
             return;
         }
         prepare(1 / double(info->fps), double(info->erp));
-        if (reads_ == Reads::all_rows) reaction_arm_ = reaction_arm(m_rbA, m_rbB, link_.point());
-        if (dimension < 6 && all_hard(link_)) {
-            write_hard_rows(*info, link_, order_, decoupled(), dt_);
-        } else {
-            write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
+        if (reads_ == Reads::all_rows) {
+            reading().arm = reaction_arm(m_rbA, m_rbB, link_.point());
         }
+        if constexpr (dimension < 6) {
+            if (all_hard(link_)) {
+                decoupled_.look(link_, order_, m_rbA, m_rbB);
+                write_hard_rows(*info, link_, order_, decoupled_.rows(), dt_);
+                return;
+            }
+        }
+        write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
     }
 
     /// Bullet's own: sequential impulse calls it in each sweep.
     void solveConstraintObsolete(btSolverBody& a, btSolverBody& b, btScalar) override {
-        if (!is_open()) return;
-        sweep(a, b, link_.pose().arm_a(), link_.pose().arm_b(),
-              [this](RowSweep<double>& rows) { add_rows(rows, link_, order_, combined_, dt_); });
+        if (is_open()) sweep(a, b);
     }
 
     /// BT_CONSTRAINT_ERP and BT_CONSTRAINT_STOP_ERP: share of the rigid rows' error that is removed
@@ -223,12 +229,10 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
                     const btTransform& frame_in_b, Joint joint, const Axes& axes, Reads reads)
         // no built-in type: Bullet casts by type, e.g. when it draws
         : PlasticConstraint(MAX_CONSTRAINT_TYPE, a, b),
-          frame_in_a_(frame_in_a),
-          frame_in_b_(frame_in_b),
-          link_(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)),
           reads_(reads),
           order_(rigid_rotations_first(axes)),
-          combined_(single_rows<double>(order_)) {
+          link_(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)),
+          decoupled_(order_) {
         link_.start(body_motion(m_rbA), body_motion(m_rbB));
     }
     ~JointConstraint() override = default;
@@ -265,7 +269,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     void prepare(double tick, double erp) {
         dt_ = kick_.share * tick;
         tick_kick_ = kick_.share;
-        if constexpr (!one_axis) recall_mass();
+        if constexpr (!one_axis) mass_at_rest_.tell(link_, m_rbA, m_rbB);
         const bool masses = link_.reads_mass();
         link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
                       masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
@@ -319,7 +323,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         if (is_open()) return reaction_of_own_rows();
         Vector6<double> forces = Vector6<double>::Zero();
         if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
-            forces = forces_of_rows(*m_jointFeedback, reaction_arm_, link_.rows(), tick_kick_);
+            forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_kick_);
         }
         if constexpr (one_axis) {
             forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
@@ -330,11 +334,12 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     /// The same where the constraint solved them by itself: exact. Tells Bullet what it would know
     /// of rows of its own.
     [[nodiscard]] Vector6<double> reaction_of_own_rows() {
-        internalSetAppliedImpulse(btScalar(impulses().back()));
+        const double last = impulses()[5];
+        internalSetAppliedImpulse(btScalar(last));
         if (one_axis && reads_ == Reads::plastic_row && m_jointFeedback == nullptr) {
-            return impulses().back() / dt_ * Vector6<double>::Unit(Eigen::Index(order_.back()));
+            return last / dt_ * Vector6<double>::Unit(Eigen::Index(order_.back()));
         }
-        const Vector6<double> forces = forces_of_impulses(combined_, impulses(), dt_);
+        const Vector6<double> forces = forces_of_impulses(order_, decoupled_, impulses(), dt_);
         if (m_jointFeedback != nullptr) {
             const LinkPose<double>& pose = link_.pose();
             write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
@@ -344,57 +349,31 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         return forces;
     }
 
-    /// The rows as they do not push each other: of the joint as it is where it flows, else as it is
-    /// at rest, which stays the same for as long as it holds. Both are functions of what a restored
-    /// joint has as well.
-    [[nodiscard]] const CombinedRows<double>& decoupled() {
-        const LinkPose<double>& pose = link_.pose();
-        const PrincipalMass<double> a = principal_mass(m_rbA), b = principal_mass(m_rbB);
-        const bool flowing = link_.joint().state().flowing;
-        const bool known = !flowing && !combined_flowing_ && combined_at_ == pose.rest_changes() &&
-                           combined_a_ == a && combined_b_ == b;
-        if (known) return combined_;
-        combined_flowing_ = flowing;
-        combined_at_ = pose.rest_changes();
-        combined_a_ = a;
-        combined_b_ = b;
-        // a solver drops rows with less than its epsilon
-        constexpr double least = 4 * double(SIMD_EPSILON);
-        const Matrix6<double> k =
-            flowing ? inverse_mass_along_b(pose, pose.orientation(), pose.displacement(), a, b)
-                    : inverse_mass_at_rest(link_, a, b);
-        combined_ = decoupled_rows<6 - dimension>(k, order_, least);
-        return combined_;
+    /// What reading Bullet's own rows takes.
+    struct Reading {
+        btJointFeedback feedback; ///< for who has none of his own
+        ReactionArm arm;
+    };
+    [[nodiscard]] Reading& reading() {
+        if (reading_ == nullptr) reading_ = std::make_unique<Reading>();
+        return *reading_;
     }
+    struct Nothing {};
 
-    /// Tells the link its mass at rest where it has no other use for it, unless it knows.
-    void recall_mass() {
-        if (!link_.takes_mass_at_rest()) return;
-        const PrincipalMass<double> a = principal_mass(m_rbA), b = principal_mass(m_rbB);
-        if (!link_.reads_mass() && known_a_ == a && known_b_ == b) return;
-        known_a_ = a;
-        known_b_ = b;
-        link_.set_inverse_mass_at_rest(inverse_mass_at_rest(link_, a, b));
-    }
-
-    btTransform frame_in_a_;
-    btTransform frame_in_b_;
-    Link<Joint> link_;
+    // what every pass over the constraints asks for comes first
+    Open open_ = Open::nothing;
     Reads reads_;
-    CommitAction action_{*this};
-    btJointFeedback feedback_;
-    ReactionArm reaction_arm_;
+    btScalar rigid_erp_ = -1; ///< negative: the world's
+    double dt_ = 0;           ///< for which the rows' forces act in the open tick
+    double tick_kick_ = 1;    ///< as a share of the tick
     std::array<std::size_t, 6> order_; ///< axis of each row
-    CombinedRows<double> combined_;    ///< as below
-    PrincipalMass<double> combined_a_, combined_b_, known_a_, known_b_; ///< known to the link
-    unsigned combined_at_ = 0;     ///< LinkPose::rest_changes
-    bool combined_flowing_ = true; ///< or never worked out
+    Link<Joint> link_;
+    [[no_unique_address]] DecoupledLink<Joint> decoupled_;
+    [[no_unique_address]] std::conditional_t<one_axis, Nothing, MassAtRest> mass_at_rest_;
+    CommitAction action_{*this};
+    std::unique_ptr<Reading> reading_; ///< where Bullet ever solved the rows
     BreakRelease<double> release_;
     JointImpulse<double> handed_; ///< what Open::hand_back gives
-    double dt_ = 0;        ///< for which the rows' forces act in the open tick
-    double tick_kick_ = 1; ///< as a share of the tick
-    btScalar rigid_erp_ = -1; ///< negative: the world's
-    Open open_ = Open::nothing;
 };
 
 } // namespace ductile::bullet

@@ -29,6 +29,7 @@
 #include <cstddef>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/kept_mass.hpp"
 #include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/isolated_pair.hpp"
 #include "ductile/joint/joint_axis.hpp"
@@ -129,23 +130,11 @@ template <std::size_t N>
     return order;
 }
 
-/// K of the link at its rest position (set_inverse_mass_at_rest).
-template <class Joint>
-[[nodiscard]] Matrix6<double> inverse_mass_at_rest(const Link<Joint>& link,
-                                                   const PrincipalMass<double>& a,
-                                                   const PrincipalMass<double>& b) noexcept {
-    Vector3<double> offset = Vector3<double>::Zero();
-    for (const JointAxis axis : link.axes()) {
-        if (!turns(axis)) offset[Eigen::Index(index(axis))] = link.plastic_offset(axis);
-    }
-    return inverse_mass_along_b(link.pose(), link.pose().rest(), offset, a, b);
-}
-
 /// True where no row of the link's last `prepare` is soft or given.
 template <class Joint>
 [[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
     for (const JointAxis axis : link.axes()) {
-        const RowLimits<double>& limits = link.rows()[index(axis)].limits;
+        const RowLimits<double>& limits = link.limits()[index(axis)];
         if (limits.compliance > 0 || !(limits.lower < limits.upper)) return false;
     }
     return true;
@@ -158,9 +147,9 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
                      const std::array<std::size_t, 6>& order,
                      const CombinedRows<double>& combined, double dt) noexcept {
     const LinkPose<double>& pose = link.pose();
-    const auto& rows = link.rows();
-    const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
-    const Vector3<double> turning(rows[3].limits.bias, rows[4].limits.bias, rows[5].limits.bias);
+    const auto& rows = link.limits();
+    const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
+    const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
     int at = 0;
     for (const CombinedRow<double>& row : combined) {
         const Vector3<double> about = pose.axes() * row.moment;
@@ -177,51 +166,55 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
     }
     // Bullet leaves a row without bounds
     for (int row = 6 - Link<Joint>::dimension; row < 6; ++row) {
-        const RowLimits<double>& limits = rows[order[std::size_t(row)]].limits;
+        const RowLimits<double>& limits = rows[order[std::size_t(row)]];
         info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
         info.m_upperLimit[row * info.rowskip] = as_impulse(limits.upper, dt);
     }
 }
 
-/// The rows of the link's last `prepare`, combined as `combined` says, for the constraint to solve
-/// by itself; that of axis `order[i]` is row i. `dt`: for which their forces act [s].
+/// The rows of the link's last `prepare`, not pushing each other as `decoupled` says, for the
+/// constraint to solve by itself; that of axis `order[i]` is row i. `dt`: for which their forces act
+/// [s].
 template <class Joint>
 void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
-              const std::array<std::size_t, 6>& order, const CombinedRows<double>& combined,
+              const std::array<std::size_t, 6>& order, const DecoupledLink<Joint>& decoupled,
               double dt) noexcept {
+    constexpr int dimension = Link<Joint>::dimension;
     const Matrix3<double>& axes = link.pose().axes();
-    const auto& rows = link.rows();
-    const Vector3<double> moving(rows[0].limits.bias, rows[1].limits.bias, rows[2].limits.bias);
-    const Vector3<double> turning(rows[3].limits.bias, rows[4].limits.bias, rows[5].limits.bias);
+    const auto& rows = link.limits();
+    const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
+    const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
+    const Vector3<double> none = Vector3<double>::Zero();
     for (std::size_t i = 0; i < 6; ++i) {
-        RowLimits<double> limits = rows[order[i]].limits;
+        RowLimits<double> limits = rows[order[i]];
         limits.lower *= dt;
         limits.upper *= dt;
-        if constexpr (Link<Joint>::dimension == 6) { // nothing to be combined
-            const LinkRow<double>& row = rows[order[i]];
-            row.turns ? sweep.add_moment(row.direction, limits)
-                      : sweep.add_force(row.direction, limits);
-            continue;
-        }
-        const CombinedRow<double>& row = combined[i];
-        limits.bias = row.moment.dot(turning);
-        if (row.force.squaredNorm() == 0) {
-            sweep.add_moment(axes * row.moment, limits);
+        if constexpr (dimension == 6) {
+            const Vector3<double> direction = axes.col(Eigen::Index(order[i] % 3));
+            order[i] < 3 ? sweep.add(direction, none, limits) : sweep.add(none, direction, limits);
         } else {
-            limits.bias += row.force.dot(moving);
+            const CombinedRow<double>& row = decoupled.rows()[i];
+            limits.bias = row.force.dot(moving) + row.moment.dot(turning);
             sweep.add(axes * row.force, axes * row.moment, limits);
         }
     }
-    if constexpr (Link<Joint>::dimension > 1) sweep.join_last(Link<Joint>::dimension);
+    if constexpr (dimension > 1) sweep.join_last(dimension);
 }
 /// Forces along the axes of the link from the impulses of such rows [N | N m].
-[[nodiscard]] inline Vector6<double> forces_of_impulses(const CombinedRows<double>& combined,
-                                                        const std::array<double, 6>& impulses,
-                                                        double dt) noexcept {
+template <class Joint>
+[[nodiscard]] Vector6<double> forces_of_impulses(const std::array<std::size_t, 6>& order,
+                                                 const DecoupledLink<Joint>& decoupled,
+                                                 const RowSweep<double>::Impulses& impulses,
+                                                 double dt) noexcept {
     Vector6<double> forces = Vector6<double>::Zero();
     for (std::size_t i = 0; i < 6; ++i) {
-        forces.head<3>() += impulses[i] / dt * combined[i].force;
-        forces.tail<3>() += impulses[i] / dt * combined[i].moment;
+        const double force = impulses[Eigen::Index(i)] / dt;
+        if constexpr (Link<Joint>::dimension == 6) {
+            forces[Eigen::Index(order[i])] = force;
+        } else {
+            forces.head<3>() += force * decoupled.rows()[i].force;
+            forces.tail<3>() += force * decoupled.rows()[i].moment;
+        }
     }
     return forces;
 }
@@ -241,14 +234,14 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
             const Matrix6<double> k = inverse_mass_of_rows(body_state(a), body_state(b),
                                                            link.point(), link.axes_in_world());
             alone = forces_of_isolated_pair(
-                link.rows(), k, link.velocities(free_state(a, tick), free_state(b, tick)), dt);
+                link.limits(), k, link.velocities(free_state(a, tick), free_state(b, tick)), dt);
             solved_alone = true;
         }
         return alone[Eigen::Index(axis)];
     };
     for (int row = 0; row < 6; ++row) {
         const std::size_t axis = order[std::size_t(row)];
-        const LinkRow<double>& wanted = link.rows()[axis];
+        const LinkRow<double> wanted = link.row(all_joint_axes[axis]);
         const RowLimits<double>& limits = wanted.limits;
         const int at = row * info.rowskip;
         if (wanted.turns) {

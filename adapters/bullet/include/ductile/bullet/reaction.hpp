@@ -20,6 +20,8 @@
 #include <limits>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/joint/joint_axis.hpp"
+#include "ductile/joint/link.hpp"
 #include "ductile/joint/link_types.hpp"
 
 namespace ductile::bullet {
@@ -44,11 +46,12 @@ struct ReactionArm {
     return {from_b, from_b ? arm_b : arm_a};
 }
 
-/// Forces and moments of `rows`, which acted for the share `kick` of the tick, on A [N | N m].
-[[nodiscard]] inline Vector6<double> forces_of_rows(const btJointFeedback& feedback,
-                                                    const ReactionArm& from,
-                                                    const std::array<LinkRow<double>, 6>& rows,
-                                                    double kick) noexcept {
+/// Forces and moments of the link's rows, which acted for the share `kick` of the tick, on A
+/// [N | N m].
+template <class Joint>
+[[nodiscard]] Vector6<double> forces_of_rows(const btJointFeedback& feedback,
+                                             const ReactionArm& from, const Link<Joint>& link,
+                                             double kick) noexcept {
     const Vector3<double> force = from.from_b
                                       ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
                                       : to_core(feedback.m_appliedForceBodyA);
@@ -59,15 +62,15 @@ struct ReactionArm {
     const Vector3<double> moment = torque - arm.cross(force);
     constexpr double round_off = 8 * double(std::numeric_limits<btScalar>::epsilon());
     Vector6<double> result;
-    for (std::size_t i = 0; i < 6; ++i) {
-        const LinkRow<double>& row = rows[i];
+    for (const JointAxis axis : all_joint_axes) {
+        const LinkRow<double> row = link.row(axis);
         double value = row.direction.dot(row.turns ? moment : force) / kick;
         const double doubt =
             round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) / kick;
         for (const double bound : {row.limits.lower, row.limits.upper}) {
             if (std::abs(value - bound) <= doubt) value = bound;
         }
-        result[Eigen::Index(i)] = value;
+        result[Eigen::Index(index(axis))] = value;
     }
     return result;
 }

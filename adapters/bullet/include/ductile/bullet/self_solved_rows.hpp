@@ -19,7 +19,6 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <cstddef>
 #include <limits>
 #include <memory>
 
@@ -48,35 +47,33 @@ class SelfSolvedRows {
     }
     void leave() noexcept {
         close();
+        group_ = nullptr;
         of_world_.reset();
     }
     /// What the sweeps share of Bullet's own solver in the world that was joined; null: nothing may
     /// be shared there.
     [[nodiscard]] SweepGroup* sweeps_of_world() const noexcept { return of_world_.get(); }
 
-    /// Before the first sweep of a solve.
-    void open(SweepGroup& group) {
+    /// Before the first sweep of a solve: the rows, none yet. `arm_a`, `arm_b`: of RowSweep.
+    RowSweep<double>& open(SweepGroup& group, const btRigidBody& a, const btRigidBody& b,
+                           const Vector3<double>& arm_a, const Vector3<double>& arm_b) {
+        place_ = group.take(group_ == &group ? place_ : SweepGroup::Place{});
         group_ = &group;
-        group_->enter();
-        impulses_ = {};
+        impulses_.setZero();
         sweep_ = -1;
         open_ = true;
+        RowSweep<double>& rows = group.rows(place_);
+        rows.open(swept_body(a, arm_a), swept_body(b, arm_b));
+        return rows;
     }
     void close() noexcept { open_ = false; }
     /// True from open to close: the last solve was the constraint's own.
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
-    /// In each sweep. `arm_a`, `arm_b`: of RowSweep; `add_rows(rows)` is called in the first one.
-    template <class AddRows>
-    void sweep(btSolverBody& a, btSolverBody& b, const Vector3<double>& arm_a,
-               const Vector3<double>& arm_b, const AddRows& add_rows) {
+    /// In each sweep.
+    void sweep(btSolverBody& a, btSolverBody& b) {
         const bool first = ++sweep_ == 0;
-        if (first) place_ = group_->take();
         RowSweep<double>& rows = group_->rows(place_);
-        if (first) {
-            rows.open(swept_body(a, arm_a), swept_body(b, arm_b));
-            add_rows(rows);
-        }
         const SweptVelocities<double> already{to_core(a.internalGetDeltaLinearVelocity()),
                                               to_core(a.internalGetDeltaAngularVelocity()),
                                               to_core(b.internalGetDeltaLinearVelocity()),
@@ -110,27 +107,26 @@ class SelfSolvedRows {
     [[nodiscard]] const Impulses& impulses() const noexcept { return impulses_; }
 
   private:
-    /// A body's angular factor keeps impulses and velocities from the axes about which it may not
-    /// turn.
-    static SweptBody<double> swept_body(const btSolverBody& body, const Vector3<double>& arm) {
-        const btRigidBody* original = body.m_originalBody;
-        if (original == nullptr) return {.arm = arm}; // of the static world
-        if (body.m_angularFactor == btVector3(1, 1, 1)) {
-            return {to_core(body.internalGetInvMass()),
-                    to_core(original->getInvInertiaTensorWorld()), arm};
+    /// As the solver moves it. A body's angular factor keeps impulses and velocities from the axes
+    /// about which it may not turn.
+    static SweptBody<double> swept_body(const btRigidBody& body, const Vector3<double>& arm) {
+        if (body.isStaticObject() || (body.getInvMass() == 0 && !body.isKinematicObject())) {
+            return {.arm = arm};
         }
-        const Vector3<double> factor = to_core(body.m_angularFactor);
-        return {to_core(body.internalGetInvMass()),
-                factor.asDiagonal() * to_core(original->getInvInertiaTensorWorld()) *
-                    factor.asDiagonal(),
-                arm};
+        SweptBody<double> swept{to_core(body.getInvMass() * body.getLinearFactor()),
+                                to_core(body.getInvInertiaTensorWorld()), arm};
+        if (body.getAngularFactor() != btVector3(1, 1, 1)) {
+            const Vector3<double> factor = to_core(body.getAngularFactor());
+            swept.inverse_inertia = factor.asDiagonal() * swept.inverse_inertia * factor.asDiagonal();
+        }
+        return swept;
     }
 
     std::shared_ptr<SweepGroup> of_world_; ///< null: none, or not to be shared
     SweepGroup* group_ = nullptr;          ///< of the open solve
-    Impulses impulses_{};
-    std::size_t place_ = 0; ///< in the group
-    int sweep_ = -1;        ///< the last; -1: none yet
+    SweepGroup::Place place_;              ///< in the group
+    Impulses impulses_ = Impulses::Zero();
+    int sweep_ = -1; ///< the last; -1: none yet
     bool open_ = false;
 };
 

@@ -34,6 +34,7 @@ class SoftRowSolver : public Engine {
                        const btContactSolverInfo& info) override {
         // what derives from it may sweep otherwise
         constexpr bool sweeps = std::is_same_v<Engine, btSequentialImpulseConstraintSolver>;
+        sweeps_.begin();
         soft_.mark(constraints, count,
                    sweeps && typeid(*this) == typeid(SoftRowSolver) ? &sweeps_ : nullptr);
         Engine::convertJoints(constraints, count, info);

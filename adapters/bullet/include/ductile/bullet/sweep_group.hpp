@@ -60,19 +60,27 @@ class SweepGroup {
     /// Of a world, whose solver info must outlive this.
     explicit SweepGroup(btContactSolverInfo& info) : info_(&info) {}
 
-    /// A constraint will solve its rows by itself: before the first sweep of a solve.
-    void enter() noexcept {
-        if (sweep_ < 0) return;
+    /// Room for the rows of one constraint in one solve.
+    struct Place {
+        std::size_t rows = 0;
+        unsigned long solve = 0; ///< 0: none yet
+    };
+
+    /// A solve begins. Only a solver that asks for the change says so.
+    void begin() noexcept {
+        ++solve_;
         sweep_ = -1;
         taken_ = 0;
     }
-
-    /// Room for the rows of one constraint until the group is solved; at its first sweep.
-    [[nodiscard]] std::size_t take() {
+    /// Room for a constraint that will solve its rows by itself, before the first sweep; `last`:
+    /// what it had before in this group. Other solves begin with the first constraint that comes
+    /// after a sweep, or a second time.
+    [[nodiscard]] Place take(const Place& last) {
+        if (info_ != nullptr && (sweep_ >= 0 || last.solve == solve_)) begin();
         if (taken_ == rows_.size()) rows_.emplace_back();
-        return taken_++;
+        return {taken_++, solve_};
     }
-    [[nodiscard]] RowSweep<double>& rows(std::size_t place) noexcept { return rows_[place]; }
+    [[nodiscard]] RowSweep<double>& rows(const Place& place) noexcept { return rows_[place.rows]; }
 
     /// A constraint was called in sweep `sweep` = 0, 1, ...; `change`: largest change of velocity
     /// that one of its rows asked for, 0: nothing but round-off [m/s | rad/s].
@@ -109,6 +117,7 @@ class SweepGroup {
     double change_ = 0;
     std::vector<RowSweep<double>> rows_;
     std::size_t taken_ = 0;
+    unsigned long solve_ = 1;
 };
 
 } // namespace ductile::bullet

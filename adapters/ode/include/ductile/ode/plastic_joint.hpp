@@ -216,14 +216,14 @@ class PlasticJoint final : public PlasticConstraint {
         if (!put_back_) link_.go_along(a, b);
         put_back_ = false;
         const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
-        const auto& rows = link_.prepare(a, b, kick_.share * dt, rate, kick_.midway);
+        link_.prepare(a, b, kick_.share * dt, rate, kick_.midway);
         arm_a_ = link_.point() - a.position;
         arm_b_ = link_.point() - b.position;
         centre_ = {};
         std::array<PointRow, 3> force_rows, moment_rows;
         bool out_of_scale = false; // a moment's row
         for (const JointAxis axis : all_joint_axes) {
-            const LinkRow<double>& row = rows[index(axis)];
+            const LinkRow<double> row = link_.row(axis);
             SymmetricRow symmetric = symmetric_row(row.limits, dt, kick_.share);
             const double moved = mobility(a, arm_a_, row) + mobility(b, arm_b_, row);
             symmetric.cfm += softness * dt * moved;
