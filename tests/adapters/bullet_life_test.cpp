@@ -520,17 +520,55 @@ TEST_CASE("an existing hinge breaks with the right residual speed at every step"
     world.world().removeConstraint(&stock);
 }
 
-TEST_CASE("a motor refuses a hinge with limits and a joint with stiffness", "[bullet][motor]") {
-    BulletWorld world;
-    btRigidBody& body = world.body(1, 2);
+TEST_CASE("an existing hinge may be elastic below yield, as a plastic hinge is",
+          "[bullet][motor]") {
+    const auto solver = GENERATE(from_range(BulletWorld::solvers()));
+    const double rate = GENERATE(60.0, 1000.0); // the longer step does not resolve the spring
+    const double spin = GENERATE(0.1, 9.7);     // swings; yields
+    INFO(solver << ", 1/" << rate << ", spin " << spin);
+    const One elastic(Perfect<double>({.strength = 40}), TravelLimit<double>(), {.stiffness = 2e4});
+    BulletWorld world(solver), other(solver);
+    btRigidBody &body = rotor(world, spin), &twin = rotor(other, spin);
     btHingeConstraint stock(body, {0, 0, 0}, {0, 0, 1}, true);
-    CHECK(message_of([&] {
-              bullet::PlasticMotor(stock, One(Perfect<double>({.strength = 1}),
-                                              TravelLimit<double>(), {.stiffness = 5}));
-          }) ==
-          "OneAxisJoint.stiffness = 5 N/m or N m/rad: must be infinite: elastic rows are not "
-          "mapped here");
-    stock.setLimit(-1, 1);
-    CHECK(message_of([&] { bullet::PlasticMotor(stock, one(40)); }) ==
-          "PlasticMotor.hinge: must be without limits: they share the motor's row");
+    world.world().addConstraint(&stock);
+    bullet::PlasticMotor motor(stock, elastic);
+    motor.add_to(world.world());
+    bullet::PlasticHinge hinge(twin, here, elastic);
+    hinge.add_to(other.world());
+    double most = 0;
+    for (int i = 0; i < int(rate); ++i) {
+        world.step(1 / rate);
+        other.step(1 / rate);
+        most = std::max(most, motor.stored_energy());
+        REQUIRE(motor.outcome() != Outcome::unreliable);
+        REQUIRE(motor.rotation() == Approx(hinge.rotation()).margin(single ? 1e-5 : 1e-12));
+        REQUIRE(motor.moment() == Approx(hinge.moment()).margin(single ? 0.05 : 1e-8));
+    }
+    CHECK(most > 1e-3);
+    CHECK(motor.absorbed_energy() == Approx(hinge.absorbed_energy()).epsilon(exact));
+    CHECK((motor.absorbed_energy() > 0) == (spin > 1));
+    hinge.remove_from(other.world());
+    motor.remove_from(world.world());
+    world.world().removeConstraint(&stock);
+}
+
+TEST_CASE("the limits of an existing hinge hold beside what it absorbs", "[bullet][motor]") {
+    const auto solver = GENERATE(from_range(BulletWorld::solvers()));
+    INFO(solver);
+    constexpr double limit = 0.5;
+    BulletWorld world(solver);
+    btRigidBody& body = rotor(world);
+    btRigidBody& base = world.body(0, 0);
+    btHingeConstraint stock(body, base, here, here);
+    stock.setLimit(btScalar(-limit), btScalar(limit), btScalar(1), btScalar(0), btScalar(0));
+    world.world().addConstraint(&stock);
+    bullet::PlasticMotor motor(stock, one(40));
+    motor.add_to(world.world());
+    world.step(1e-3, 500);
+    CHECK(std::abs(motor.rotation()) == Approx(limit).margin(0.011)); // a step at 10 rad/s
+    CHECK(std::abs(double(body.getAngularVelocity().z())) < 1e-4);
+    close(motor.absorbed_energy(), 40 * motor.plastic_rotation());
+    CHECK(motor.plastic_rotation() == Approx(limit).margin(0.011));
+    motor.remove_from(world.world());
+    world.world().removeConstraint(&stock);
 }

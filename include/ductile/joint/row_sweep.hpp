@@ -16,8 +16,8 @@
 //
 //   Δλ = (K + C)⁻¹ (b - J y - C λ),   K = J M⁻¹ Jᵀ.
 //
-// All rows act in one point: a sweep reads from the bodies how A moves there beside B, J y = W w, and
-// at its end gives them one force and one moment; what its rows do to each other meanwhile is in K.
+// All rows act in one point: a sweep reads from the bodies how A moves there beside B, J y = W w,
+// and at its end gives them one force and one moment; what its rows do to each other is in K.
 //
 // Symbols
 //   J    Jacobian: (n, r_A × n + m, -(r_B × n + m)) of a force n and a moment m at the joint

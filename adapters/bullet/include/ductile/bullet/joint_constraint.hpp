@@ -160,7 +160,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     void buildJacobian() override {
         settle_late(true);
         if (reads_ == Reads::all_rows && m_jointFeedback == nullptr &&
-            sweeps_of_solver() == nullptr) {
+            sweeps_of_solver(*this, world_) == nullptr) {
             m_jointFeedback = &reading().feedback;
         }
     }
@@ -169,7 +169,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         *info = {.m_numConstraintRows = 0, .nub = 0};
         close();
         if (link_.broken() && open_ != Open::hand_back) return;
-        SweepGroup* sweeps = open_ == Open::hand_back ? nullptr : sweeps_of_solver();
+        SweepGroup* sweeps = open_ == Open::hand_back ? nullptr : sweeps_of_solver(*this, world_);
         if (sweeps == nullptr) {
             info->m_numConstraintRows = 6;
             return;
@@ -257,14 +257,6 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         hand_back ///< a break was found by the solver: this tick gives its energy back
     };
 
-    /// Of the solver that asks for rows, where it calls in each sweep; else null.
-    [[nodiscard]] SweepGroup* sweeps_of_solver() const {
-        if (world_ == nullptr) return nullptr;
-        if (compliance_is_exact()) return sweeps();
-        return sweeps_of_world() != nullptr && calls_in_each_sweep(*world_->getConstraintSolver())
-                   ? sweeps_of_world()
-                   : nullptr;
-    }
     /// Opens a tick [s]; `erp`: the world's.
     void prepare(double tick, double erp) {
         dt_ = kick_.share * tick;

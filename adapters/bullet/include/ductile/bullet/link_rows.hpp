@@ -130,6 +130,29 @@ template <std::size_t N>
     return order;
 }
 
+/// Bounds, target velocity and compliance of `wanted`, which acts at `joint`, as row `row`.
+/// `exact`: the solver honours C. `force_alone()`: of the pair as if it were alone [N | N m]. `dt`:
+/// for which the force acts [s].
+template <class ForceAlone>
+void write_limits(btTypedConstraint::btConstraintInfo2& info, int row,
+                  const LinkRow<double>& wanted, const btRigidBody& a, const btRigidBody& b,
+                  const Vector3<double>& joint, bool exact, double dt,
+                  const ForceAlone& force_alone) noexcept {
+    constexpr double largest_slack = 0.5; // C m
+    const RowLimits<double>& limits = wanted.limits;
+    const int at = row * info.rowskip;
+    info.m_constraintError[at] = btScalar(limits.bias);
+    info.m_lowerLimit[at] = as_impulse(limits.lower, dt);
+    info.m_upperLimit[at] = as_impulse(limits.upper, dt);
+    info.cfm[at] = btScalar(limits.compliance);
+    if (exact) return;
+    if (limits.lower == limits.upper) write_given(info, row, limits.lower * dt);
+    if (!(limits.compliance > 0)) return;
+    const double slack = limits.compliance / inverse_mass_of(wanted, a, b, joint);
+    info.cfm[at] = btScalar(slack);
+    if (slack > largest_slack) write_given(info, row, force_alone() * dt);
+}
+
 /// True where no row of the link's last `prepare` is soft or given.
 template <class Joint>
 [[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
@@ -173,8 +196,7 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
 }
 
 /// The rows of the link's last `prepare`, not pushing each other as `decoupled` says, for the
-/// constraint to solve by itself; that of axis `order[i]` is row i. `dt`: for which their forces act
-/// [s].
+/// constraint to solve by itself; that of axis `order[i]` is row i. `dt`: for which they act [s].
 template <class Joint>
 void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
               const std::array<std::size_t, 6>& order, const DecoupledLink<Joint>& decoupled,
@@ -225,7 +247,6 @@ template <class Joint>
 void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
                 const btRigidBody& b, const Link<Joint>& link,
                 const std::array<std::size_t, 6>& order, bool exact, double dt) noexcept {
-    constexpr double largest_slack = 0.5; // C m
     const double tick = 1 / double(info.fps);
     Vector6<double> alone = Vector6<double>::Zero();
     bool solved_alone = false;
@@ -242,7 +263,6 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
     for (int row = 0; row < 6; ++row) {
         const std::size_t axis = order[std::size_t(row)];
         const LinkRow<double> wanted = link.row(all_joint_axes[axis]);
-        const RowLimits<double>& limits = wanted.limits;
         const int at = row * info.rowskip;
         if (wanted.turns) {
             write_moment(info, at, wanted.direction);
@@ -250,16 +270,8 @@ void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a
             write_jacobian(info, at, link.pose().arm_a(), link.pose().arm_b(), wanted.direction,
                            Vector3<double>::Zero());
         }
-        info.m_constraintError[at] = btScalar(limits.bias);
-        info.m_lowerLimit[at] = as_impulse(limits.lower, dt);
-        info.m_upperLimit[at] = as_impulse(limits.upper, dt);
-        info.cfm[at] = btScalar(limits.compliance);
-        if (exact) continue;
-        if (limits.lower == limits.upper) write_given(info, row, limits.lower * dt);
-        if (!(limits.compliance > 0)) continue;
-        const double slack = limits.compliance / inverse_mass_of(wanted, a, b, link.point());
-        info.cfm[at] = btScalar(slack);
-        if (slack > largest_slack) write_given(info, row, force_alone(axis) * dt);
+        write_limits(info, row, wanted, a, b, link.point(), exact, dt,
+                     [&] { return force_alone(axis); });
     }
 }
 

@@ -23,6 +23,7 @@
 #include <memory>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/soft_rows.hpp"
 #include "ductile/bullet/sweep_group.hpp"
 #include "ductile/joint/row_sweep.hpp"
 
@@ -50,9 +51,16 @@ class SelfSolvedRows {
         group_ = nullptr;
         of_world_.reset();
     }
-    /// What the sweeps share of Bullet's own solver in the world that was joined; null: nothing may
-    /// be shared there.
-    [[nodiscard]] SweepGroup* sweeps_of_world() const noexcept { return of_world_.get(); }
+    /// Of the solver that asks this constraint, which is in `world` or not yet (null), for its
+    /// rows, where it calls in each sweep; else null.
+    [[nodiscard]] SweepGroup* sweeps_of_solver(const SoftRows& asked,
+                                               btDynamicsWorld* world) const {
+        if (world == nullptr) return nullptr;
+        if (asked.compliance_is_exact()) return asked.sweeps();
+        return of_world_ != nullptr && calls_in_each_sweep(*world->getConstraintSolver())
+                   ? of_world_.get()
+                   : nullptr;
+    }
 
     /// Before the first sweep of a solve: the rows, none yet. `arm_a`, `arm_b`: of RowSweep.
     RowSweep<double>& open(SweepGroup& group, const btRigidBody& a, const btRigidBody& b,
@@ -116,13 +124,15 @@ class SelfSolvedRows {
         SweptBody<double> swept{to_core(body.getInvMass() * body.getLinearFactor()),
                                 to_core(body.getInvInertiaTensorWorld()), arm};
         if (body.getAngularFactor() != btVector3(1, 1, 1)) {
-            const Vector3<double> factor = to_core(body.getAngularFactor());
-            swept.inverse_inertia = factor.asDiagonal() * swept.inverse_inertia * factor.asDiagonal();
+            const Vector3<double> f = to_core(body.getAngularFactor());
+            swept.inverse_inertia = f.asDiagonal() * swept.inverse_inertia * f.asDiagonal();
         }
         return swept;
     }
 
-    std::shared_ptr<SweepGroup> of_world_; ///< null: none, or not to be shared
+    /// What the sweeps share of Bullet's own solver in the world that was joined; null: nothing may
+    /// be shared there.
+    std::shared_ptr<SweepGroup> of_world_;
     SweepGroup* group_ = nullptr;          ///< of the open solve
     SweepGroup::Place place_;              ///< in the group
     Impulses impulses_ = Impulses::Zero();
