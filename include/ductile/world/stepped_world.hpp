@@ -77,7 +77,10 @@ class SteppedWorld {
     /// @throws std::logic_error where none is kept.
     [[nodiscard]] const Ledger<double>& ledger() const {
         const Ledger<double>* kept = kept_ledger();
-        if (kept == nullptr) throw std::logic_error("World.ledger = false: there is none");
+        if (kept == nullptr) {
+            throw std::logic_error(
+                "World.ledger: there is none: not asked for, or not to be had of such a world");
+        }
         return *kept;
     }
     /// Of the last step() or advance(), valid until the next one.

@@ -22,7 +22,8 @@
 // (multibody_solver.hpp); a btDiscreteDynamicsWorldMt with a solver for large islands of its own
 // gives those to that.
 //
-// Not booked and not split: forces on, and energy of, multibodies. Keep no ledger there.
+// Of a world with multibodies no ledger is kept, and forces on them are not split: what their
+// solve does to energies that depend on their pose cannot be told from outside.
 //
 // leapfrog: steps of second order (world/leapfrog.hpp). Velocities are then those in the middle of
 // the last step, and so is the joints' own clock. Not for btMultiBodyDynamicsWorld.
@@ -54,7 +55,7 @@ namespace ductile::bullet {
 
 struct WorldParameters {
     EffortParameters effort{};  ///< what is done where the solver did not converge
-    bool ledger = true;         ///< whether the energy account is kept
+    bool ledger = true;         ///< whether the energy account is kept; not with multibodies
     bool leapfrog = false;      ///< whether positions are of second order in the step
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
@@ -150,6 +151,11 @@ class World final : public SteppedWorld {
     }
     static const void* address(const MultiBodyPlasticConstraint& joint) { return &joint; }
 
+    [[nodiscard]] bool holds_multibodies() const noexcept {
+        const auto* world = dynamic_cast<const btMultiBodyDynamicsWorld*>(&world_);
+        return world != nullptr && world->getNumMultibodies() > 0;
+    }
+
     btDynamicsWorld& engine_of(const PlasticConstraint&) const { return world_; }
     btMultiBodyDynamicsWorld& engine_of(const MultiBodyPlasticConstraint&) const {
         auto* world = dynamic_cast<btMultiBodyDynamicsWorld*>(&world_);
@@ -168,12 +174,13 @@ class World final : public SteppedWorld {
         }
     }
     void do_part(double dt, const Kick& how, const Effort&) override {
-        if (meter_) meter_->before_step();
+        const bool keeps_ledger = meter_ && !holds_multibodies();
+        if (keeps_ledger) meter_->before_step();
         const bool told = how.share == 1 && told_ == world_.getNumConstraints();
         if (leapfrogs() && !told) kick(world_, how);
         told_ = how.share == 1 ? world_.getNumConstraints() : -1;
         world_.stepSimulation(btScalar(dt), 0);
-        if (meter_) meter_->after_step(double(btScalar(dt)), how.share);
+        if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.share);
     }
     void hold_forces() override { forces_.hold(world_); }
     void apply_held_forces() override { forces_.apply(); }
@@ -188,7 +195,7 @@ class World final : public SteppedWorld {
         if (!effort.direct && doubts_ != nullptr) doubts_->trust_all();
     }
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
-        return meter_ ? &meter_->ledger() : nullptr;
+        return meter_ && !holds_multibodies() ? &meter_->ledger() : nullptr;
     }
 
     btDiscreteDynamicsWorld& world_;
