@@ -31,11 +31,14 @@ class Impedance {
     /// Rigid rows. `dt` > 0 [s].
     Impedance(const Matrix& mass, S dt) noexcept : mass_(mass), dt_(dt) {}
 
+    Impedance(Matrix&&, S) = delete;
+
     /// Rows of which some are elastic.
     Impedance(const Matrix& mass, S dt, const Vector& compliance) noexcept
         : mass_(mass), dt_(dt), rigid_(false) {
         factors_.compute(Matrix(compliance.asDiagonal() * mass) + Matrix::Identity());
     }
+    Impedance(Matrix&&, S, const Vector&) = delete;
 
     /// Z v [N | N m] for a velocity v [m/s | rad/s].
     [[nodiscard]] Vector operator*(const Vector& velocity) const noexcept {
