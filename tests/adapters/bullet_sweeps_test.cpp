@@ -5,6 +5,8 @@
 // them.
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -331,4 +333,48 @@ TEST_CASE("joints that leave a world and come back share its sweeps again", "[bu
     CHECK(world.world().getSolverInfo().m_leastSquaresResidualThreshold == 0);
     first.remove_from(world.world());
     second.remove_from(world.world());
+}
+
+TEST_CASE("a body that may not turn about a hinge's axis does not swing", "[bullet][sweeps]") {
+    const std::string solver = GENERATE("si", "soft-si");
+    BulletWorld world(solver, {0, 0, -9.81});
+    btRigidBody& body = world.body(2, 0.5, {0.5, 0, 0});
+    body.setAngularFactor(btVector3(1, 0, 1));
+    Matrix3<double> axes; // z about the world's y
+    axes << 0, 1, 0, 0, 0, 1, 1, 0, 0;
+    bullet::PlasticHinge<> hinge(body, BulletWorld::frame({-0.5, 0, 0}, axes),
+                                 One(Perfect<double>({.strength = 1e-3})));
+    hinge.add_to(world.world());
+    world.step(0.01, 100);
+    CHECK(std::abs(hinge.rotation()) < 1e-6);
+    CHECK(std::abs(double(body.getCenterOfMassPosition().z())) < 1e-6);
+    CHECK(hinge.outcome() != Outcome::unreliable);
+    hinge.remove_from(world.world());
+}
+
+TEST_CASE("every solve uses the same room for rows, also where it makes no sweep",
+          "[bullet][sweeps]") {
+    const std::string solver = GENERATE("si", "soft-si");
+    const int iterations = GENERATE(0, 20);
+    INFO(solver << ", " << iterations << " iterations");
+    BulletWorld world(solver);
+    world.world().getSolverInfo().m_numIterations = iterations;
+    btRigidBody &a = world.body(1, 1), &b = world.body(1, 1, {1, 0, 0});
+    btRigidBody &c = world.body(1, 1, {5, 0, 0}), &d = world.body(1, 1, {6, 0, 0}); // an island
+    const auto right = BulletWorld::frame({0.5, 0, 0}), left = BulletWorld::frame({-0.5, 0, 0});
+    const One strong(Perfect<double>({.strength = 1e3}));
+    bullet::PlasticHinge<> first(a, b, right, left, strong), second(c, d, right, left, strong);
+    first.add_to(world.world());
+    second.add_to(world.world());
+    world.step(1e-3, 10);
+    const auto before = mallinfo2().uordblks;
+    world.step(1e-3, 1000);
+    CHECK(mallinfo2().uordblks < before + sizeof(RowSweep<double>));
+    world.world().getSolverInfo().m_numIterations = 20;
+    for (btRigidBody* body : {&b, &d}) body->setLinearVelocity(btVector3(0, 1, 0));
+    world.step(1e-3);
+    for (auto* hinge : {&first, &second}) {
+        CHECK(hinge->rigid_residual() < (single ? 1e-5 : 1e-12));
+        hinge->remove_from(world.world());
+    }
 }

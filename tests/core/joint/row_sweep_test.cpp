@@ -213,3 +213,19 @@ TEST_CASE("what cannot be moved is left alone", "[joint][sweep]") {
     CHECK(moved.angular_a == V3(0, 0, 0));
     CHECK(impulses[2] == 0);
 }
+
+TEST_CASE("a row gives what its bounds demand, also where nothing is amiss", "[joint][sweep]") {
+    const SweptBody<double> free{.inverse_mass = V3(3, 3, 3)};
+    Sweep sweep;
+    sweep.open(free, SweptBody<double>{});
+    sweep.add(V3(1, 0, 0), V3::Zero(), {.lower = 2, .upper = 5});
+    Sweep::Impulses impulses = Sweep::Impulses::Zero();
+    double asked = 0;
+    const Velocities moved = sweep.sweep({}, impulses, asked);
+    CHECK(impulses[0] == 2);
+    CHECK(asked == 6);
+    CHECK(moved.linear_a == V3(6, 0, 0));
+    sweep.sweep(moved, impulses, asked);
+    CHECK(impulses[0] == 2);
+    CHECK(asked == 0);
+}
