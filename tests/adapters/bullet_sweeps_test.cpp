@@ -335,6 +335,40 @@ TEST_CASE("joints that leave a world and come back share its sweeps again", "[bu
     second.remove_from(world.world());
 }
 
+TEST_CASE("a hinge that has bent is solved in about as few sweeps as a new one", "[bullet][sweeps]") {
+    BulletWorld world("si");
+    btRigidBody& lever = world.body(2, {0.1, 1.5, 2}, BulletWorld::frame({0.5, 0, 0}));
+    btRigidBody& base = world.body(3, {0.2, 0.9, 0.5}, BulletWorld::frame({0, -0.4, 0.3}));
+    bullet::PlasticHinge<> hinge(lever, base, BulletWorld::frame({-0.5, 0, 0}),
+                                 BulletWorld::frame({0, 0.4, -0.3}),
+                                 One(Perfect<double>({.strength = 8})));
+    hinge.add_to(world.world());
+    SweepCounter counter(lever);
+    world.world().addConstraint(&counter);
+    const auto sweeps_while_it_holds = [&] {
+        counter.sweeps = 0;
+        for (int i = 0; i < 20; ++i) {
+            lever.applyTorque(btVector3(1, -2, 0));
+            world.step(1e-3);
+            REQUIRE(hinge.outcome() == Outcome::elastic);
+        }
+        return counter.sweeps;
+    };
+    const long fresh = sweeps_while_it_holds();
+    CHECK(fresh <= 3 * 20);
+    lever.setAngularVelocity(btVector3(0, 0, 8));
+    for (int i = 0; i < 2000 && hinge.plastic_rotation() < 0.5; ++i) world.step(1e-3);
+    REQUIRE(hinge.plastic_rotation() > 0.5);
+    for (btRigidBody* body : {&lever, &base}) {
+        body->setLinearVelocity(btVector3(0, 0, 0));
+        body->setAngularVelocity(btVector3(0, 0, 0));
+    }
+    world.step(1e-3, 5);
+    CHECK(sweeps_while_it_holds() <= 2 * fresh); // twelve times as many with the rows it had new
+    world.world().removeConstraint(&counter);
+    hinge.remove_from(world.world());
+}
+
 TEST_CASE("a body that may not turn about a hinge's axis does not swing", "[bullet][sweeps]") {
     const std::string solver = GENERATE("si", "soft-si");
     BulletWorld world(solver, {0, 0, -9.81});
