@@ -335,7 +335,8 @@ TEST_CASE("joints that leave a world and come back share its sweeps again", "[bu
     second.remove_from(world.world());
 }
 
-TEST_CASE("a hinge that has bent is solved in about as few sweeps as a new one", "[bullet][sweeps]") {
+TEST_CASE("a hinge that has bent is solved in about as few sweeps as a new one",
+          "[bullet][sweeps]") {
     BulletWorld world("si");
     btRigidBody& lever = world.body(2, {0.1, 1.5, 2}, BulletWorld::frame({0.5, 0, 0}));
     btRigidBody& base = world.body(3, {0.2, 0.9, 0.5}, BulletWorld::frame({0, -0.4, 0.3}));
