@@ -46,9 +46,9 @@ Pair pair(double bound) {
     p.free << 3 * vector(), 5 * vector();
     for (std::size_t i = 0; i < 6; ++i) {
         p.rows[i] = {.lower = -bound,
-                            .upper = bound,
-                            .bias = number(),
-                            .compliance = i % 2 == 0 ? 0 : 1 + number()};
+                     .upper = bound,
+                     .bias = number(),
+                     .compliance = i % 2 == 0 ? 0 : 1 + number()};
     }
     return p;
 }

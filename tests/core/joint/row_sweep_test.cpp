@@ -175,8 +175,7 @@ TEST_CASE("a block of rows is solved by the second sweep unless it meets a bound
             const V6 u = twist(now, a, b);
             for (int i = 0; i < 6; ++i) {
                 const auto& row = limits[std::size_t(i)];
-                RC_ASSERT(std::abs(u[i] + row.compliance * impulses[i] - row.bias) <
-                          1e-10);
+                RC_ASSERT(std::abs(u[i] + row.compliance * impulses[i] - row.bias) < 1e-10);
             }
         }
         // where they end, with bounds or without, is where single rows end
