@@ -22,8 +22,8 @@ ALLOWED = {
     "joint": {"vocabulary", "law", "surface", "fracture"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
-    "world": {"vocabulary", "fracture", "detail", "energy"},
-    "detail": {"vocabulary", "material", "section", "law", "fracture", "joint"},
+    "world": {"vocabulary", "fracture", "fidelity", "energy"},
+    "fidelity": {"vocabulary", "material", "section", "law", "fracture", "joint"},
 }
 ADAPTERS = ("bullet", "ode")
 

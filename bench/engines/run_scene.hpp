@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cpu_time.hpp"
-#include "ductile/detail/step_control.hpp"
+#include "ductile/fidelity/step_control.hpp"
 #include "engines/settings.hpp"
 #include "methods/holder.hpp"
 #include "methods/names.hpp"

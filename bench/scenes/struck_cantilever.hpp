@@ -11,7 +11,7 @@
 //
 // The expected values are those of the N-segment chain, not of the continuum: event-driven exact
 // solutions for small displacements, for N = 5 with finite rotation. With the segments' mass at
-// their ends they are the closed form of ductile/detail/struck_cantilever.hpp, for every N.
+// their ends they are the closed form of ductile/fidelity/struck_cantilever.hpp, for every N.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -19,7 +19,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "ductile/detail/struck_cantilever.hpp"
+#include "ductile/fidelity/struck_cantilever.hpp"
 #include "scenes/scene.hpp"
 
 namespace bench {

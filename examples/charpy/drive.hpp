@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "ductile/detail/step_control.hpp"
+#include "ductile/fidelity/step_control.hpp"
 #include "simulation.hpp"
 
 namespace charpy {

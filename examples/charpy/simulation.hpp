@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ductile/detail/step_control.hpp"
+#include "ductile/fidelity/step_control.hpp"
 #include "ductile/energy.hpp"
 #include "scenario.hpp"
 

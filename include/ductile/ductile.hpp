@@ -4,13 +4,13 @@
 // ductile/bullet/bullet.hpp and ductile/ode/ode.hpp.
 #pragma once
 
-#include "ductile/detail/joint_detail.hpp"
-#include "ductile/detail/member_subdivision.hpp"
-#include "ductile/detail/model_choice.hpp"
-#include "ductile/detail/peak_response.hpp"
-#include "ductile/detail/rehearsal.hpp"
-#include "ductile/detail/step_control.hpp"
-#include "ductile/detail/struck_cantilever.hpp"
+#include "ductile/fidelity/joint_detail.hpp"
+#include "ductile/fidelity/member_subdivision.hpp"
+#include "ductile/fidelity/model_choice.hpp"
+#include "ductile/fidelity/peak_response.hpp"
+#include "ductile/fidelity/rehearsal.hpp"
+#include "ductile/fidelity/step_control.hpp"
+#include "ductile/fidelity/struck_cantilever.hpp"
 #include "ductile/energy.hpp"
 #include "ductile/fracture/any_of.hpp"
 #include "ductile/fracture/brittle_force.hpp"

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "adapters/bullet_world.hpp"
-#include "ductile/bullet/doubt_solver.hpp"
+#include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/soft_solvers.hpp"
@@ -135,9 +135,9 @@ TEST_CASE("a constraint knows which solvers call it", "[bullet][sweeps]") {
     Stock stock;
     UnknownSolver unknown;
     btNNCGConstraintSolver conjugate;
-    bullet::DoubtSolver before_stock(stock), before_unknown(unknown);
+    bullet::SuspectSolver before_stock(stock), before_unknown(unknown);
     btConstraintSolver& in_front = before_stock;
-    bullet::DoubtSolver twice(in_front);
+    bullet::SuspectSolver twice(in_front);
     CHECK(bullet::calls_in_each_sweep(stock));
     CHECK(bullet::calls_in_each_sweep(before_stock));
     CHECK(bullet::calls_in_each_sweep(twice));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// What only Bullet's World has: a direct solver for the islands in doubt, worlds for threads,
+// What only Bullet's World has: a direct solver for the islands suspect, worlds for threads,
 // multibodies, and that joints need none of it.
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
@@ -132,7 +132,7 @@ TEST_CASE("joints need no World: they are the same without one, bit for bit", "[
     CHECK(with.state() == without.state());
 }
 
-TEST_CASE("only islands in doubt go to the direct solver, and the user's is put back",
+TEST_CASE("only islands suspect go to the direct solver, and the user's is put back",
           "[bullet][world]") {
     CountingSolver own;
     Beams<btDiscreteDynamicsWorld> beams(direct(), &own);
@@ -200,10 +200,10 @@ TEST_CASE("a World over Bullet's world for threads does what it does over that f
     btSetTaskScheduler(nullptr);
 }
 
-TEST_CASE("one doubt solver serves several threads at once", "[bullet][world][threads]") {
+TEST_CASE("one proxy solver serves several threads at once", "[bullet][world][threads]") {
     // as Bullet built with BT_THREADSAFE does it: islands by threads, a usual solver that may
     btSequentialImpulseConstraintSolver usual;
-    bullet::DoubtSolver doubts(usual);
+    bullet::SuspectSolver proxy(usual);
     std::array<std::unique_ptr<BulletWorld>, 4> worlds;
     std::vector<std::unique_ptr<Hinge>> hinges;
     for (auto& world : worlds) {
@@ -212,8 +212,8 @@ TEST_CASE("one doubt solver serves several threads at once", "[bullet][world][th
         body.setAngularVelocity({0, 0, 10});
         hinges.push_back(std::make_unique<Hinge>(body, at(0, 0), joint(64)));
         hinges.back()->add_to(world->world());
-        world->world().setConstraintSolver(&doubts);
-        doubts.doubt(static_cast<btTypedConstraint*>(hinges.back().get()));
+        world->world().setConstraintSolver(&proxy);
+        proxy.suspect(static_cast<btTypedConstraint*>(hinges.back().get()));
     }
     std::vector<std::thread> threads;
     for (auto& world : worlds) threads.emplace_back([&world] { world->step(1e-3, 300); });
@@ -222,7 +222,7 @@ TEST_CASE("one doubt solver serves several threads at once", "[bullet][world][th
         CHECK(hinge->absorbed_energy() == hinges[0]->absorbed_energy());
         CHECK(hinge->absorbed_energy() == Approx(99.84).epsilon(single ? 1e-4 : 1e-9));
     }
-    CHECK(doubts.fallbacks() == 0);
+    CHECK(proxy.fallbacks() == 0);
     for (std::size_t i = 0; i < worlds.size(); ++i) hinges[i]->remove_from(worlds[i]->world());
 }
 

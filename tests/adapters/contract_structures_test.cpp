@@ -166,11 +166,11 @@ TEST_CASE("P11 a beam is still just below its collapse load and moves just above
         }
         return std::pair(beam.fastest(), unreliable);
     };
-    const auto [still, doubted] = run(0.999, 20);
-    const auto [moving, doubted_too] = run(1.01, 1);
+    const auto [still, suspects] = run(0.999, 20);
+    const auto [moving, suspects_too] = run(1.01, 1);
     if (Rig::can(solver, Capability::chains)) {
         CHECK(still < at_rest(segments, mass, dt) * kick);
-        CHECK_FALSE(doubted);
+        CHECK_FALSE(suspects);
         CHECK(moving > 0.005 * kick);
         Shown(solver, "P11 clamped beams").small(still / kick, at_rest(segments, mass, dt));
     } else {
@@ -179,10 +179,10 @@ TEST_CASE("P11 a beam is still just below its collapse load and moves just above
         INFO("crept at " << still / kick << " of a kick");
         if (certified) {
             Shown shown(solver, "P11 clamped beams");
-            shown.right_or_reported(still < 0.02 * kick, doubted);
-            shown.right_or_reported(moving > 0.005 * kick, doubted_too);
+            shown.right_or_reported(still < 0.02 * kick, suspects);
+            shown.right_or_reported(moving > 0.005 * kick, suspects_too);
         } else {
-            CHECK((moving > 0.005 * kick || doubted_too));
+            CHECK((moving > 0.005 * kick || suspects_too));
         }
     }
 }
@@ -364,12 +364,12 @@ TEST_CASE("P12 a portal is still just below its collapse factor and sways just a
         }
         return std::pair(std::abs(Rig::spin(left).z()), unreliable);
     };
-    const auto [still, doubted] = sway(0.999 * p.factor, 20);
-    const auto [moving, doubted_too] = sway(1.01 * p.factor, 1);
+    const auto [still, suspects] = sway(0.999 * p.factor, 20);
+    const auto [moving, suspects_too] = sway(1.01 * p.factor, 1);
     const double kick = p.horizontal * h * dt / 16000;
     if (Rig::can(solver, Capability::chains)) {
         CHECK(still < at_rest(4, 16000, dt) * kick);
-        CHECK_FALSE(doubted);
+        CHECK_FALSE(suspects);
         CHECK(moving > 0.005 * kick);
         if (p.acceleration > 0) {
             CHECK(sway(1.1 * p.factor, 1).first / dt ==
@@ -377,8 +377,8 @@ TEST_CASE("P12 a portal is still just below its collapse factor and sways just a
         }
     } else {
         INFO("crept at " << still / kick << " of a kick");
-        shown.right_or_reported(still < 0.02 * kick, doubted);
-        shown.right_or_reported(moving > 0.005 * kick, doubted_too);
+        shown.right_or_reported(still < 0.02 * kick, suspects);
+        shown.right_or_reported(moving > 0.005 * kick, suspects_too);
     }
 }
 

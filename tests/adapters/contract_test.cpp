@@ -241,15 +241,15 @@ TEST_CASE("a mass dropped on a crushing column", "[contract]") {
         auto& column = rig.slider(head, nullptr, {0, 1, 0}, joint(30e3));
         rig.stack(head, mass, 0.5);
         rig.open_ledger();
-        bool doubted = false;
+        bool suspects = false;
         const auto step = [&] {
             rig.step(dt);
-            doubted = doubted || column.outcome() == Outcome::unreliable;
+            suspects = suspects || column.outcome() == Outcome::unreliable;
         };
         while (Rig::position(mass).y() > 0.55) step();
         for (double t = 0; t < 0.25; t += dt) step();
         // a solver that lacks the capability may be wrong where it says so
-        if (doubted && !Rig::can(solver, Capability::coupled)) return;
+        if (suspects && !Rig::can(solver, Capability::coupled)) return;
         // the contact is made up to a step early or late: twice the row's own -V₁ dt/2
         CHECK(-column.elongation() == Approx(crush).margin(3 * v1 * dt / 2));
         // while the contact is being made the column's force acts against it for half to one and a

@@ -93,7 +93,7 @@ struct Struck {
     Effort most;             ///< that was ever made
     Effort last;
     std::vector<std::string> warnings;
-    std::vector<std::string> doubted; ///< joints that were ever unreliable
+    std::vector<std::string> suspects; ///< joints that were ever unreliable
     std::size_t unreliable_steps = 0;
     double worst = 0;
     std::string worst_name;
@@ -126,7 +126,7 @@ Struck strike(const EffortParameters& effort, int segments, int calm_steps = 0) 
     const Watch<double>& watch = rig.world().watch();
     for (std::size_t i = 0; i < beam.hinges.size(); ++i) {
         result.unreliable_steps += watch.unreliable_steps(i);
-        if (watch.unreliable_steps(i) > 0) result.doubted.push_back(watch.name(i));
+        if (watch.unreliable_steps(i) > 0) result.suspects.push_back(watch.name(i));
     }
     result.worst = watch.worst_ever().residual;
     result.worst_name = watch.name(watch.worst_ever().joint);
@@ -241,16 +241,16 @@ TEST_CASE("a chain that ten iterations get wrong is told by name, once per joint
     INFO(to_text(struck));
     CHECK(struck.tip_error > 0.5);
     CHECK(struck.most == Effort{});
-    CHECK(struck.doubted.size() >= 5);
+    CHECK(struck.suspects.size() >= 5);
     const auto warnings_with = [&struck](const std::string& words) {
         return std::size_t(std::count_if(struck.warnings.begin(), struck.warnings.end(),
                                          [&words](const std::string& line) {
                                              return line.find(words) != std::string::npos;
                                          }));
     };
-    CHECK(warnings_with("was left unsolved") == struck.doubted.size());
-    for (const std::string& doubted : struck.doubted) {
-        CHECK(warnings_with("joint \"" + doubted + "\" was left unsolved") == 1);
+    CHECK(warnings_with("was left unsolved") == struck.suspects.size());
+    for (const std::string& suspects : struck.suspects) {
+        CHECK(warnings_with("joint \"" + suspects + "\" was left unsolved") == 1);
     }
     REQUIRE_FALSE(struck.warnings.empty());
     CHECK(struck.warnings[0].find(" s (off by ") != std::string::npos);

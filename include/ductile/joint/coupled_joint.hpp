@@ -97,7 +97,7 @@ class CoupledJoint {
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
-    /// The velocity that the step left, seen along the axes as they are now: not a kick [m/s | rad/s].
+    /// The velocity that the step left, seen along the axes as they are now: not a jump [m/s | rad/s].
     void carry(const Vector& velocity) noexcept { state_.velocity = velocity; }
 
     /// γ of the last step's forces on the present surface: 1 where it flows [-].
@@ -125,7 +125,7 @@ class CoupledJoint {
     /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
-        foretold_ = foretell(state_, motion.midway, dt);
+        predicted_ = predict(state_, motion.midway, dt);
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) {
             rows_.fill({.lower = 0, .upper = 0});
@@ -145,9 +145,9 @@ class CoupledJoint {
         }
         Taken taken{.force = reaction.force};
         Scalar most = 0;
-        const Scalar kick = allowed_residual(start_);
+        const Scalar jump = allowed_residual(start_);
         for (int i = 0; i < dimension; ++i) {
-            const RowBooking<Scalar> booked = open_row(i, kick).book(
+            const RowBooking<Scalar> booked = open_row(i, jump).book(
                 {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
             taken.flow += booked.flow;
             if (booked.flow > most) {
@@ -164,7 +164,7 @@ class CoupledJoint {
             if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
         }
         taken.error.flow =
-            std::max(taken.error.flow, astray(reaction.force, step.direction, taken.flow));
+            std::max(taken.error.flow, off_normal_work(reaction.force, step.direction, taken.flow));
         if (brittle(reaction.force)) {
             snap(step, taken, reaction, dt);
         } else {
@@ -261,9 +261,9 @@ class CoupledJoint {
 
     // ---- after the solve --------------------------------------------------------------------------
 
-    /// `kick`: a change of velocity between the steps by more is somebody's [m/s | rad/s].
-    [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar kick) const noexcept {
-        const bool kicked = std::abs(start_[i] - state_.velocity[i]) > kick;
+    /// `jump`: a change of velocity between the steps by more is somebody's [m/s | rad/s].
+    [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar jump) const noexcept {
+        const bool jumped = std::abs(start_[i] - state_.velocity[i]) > jump;
         return {.limits = rows_[std::size_t(i)],
                 .lower = lower_[i],
                 .upper = upper_[i],
@@ -275,9 +275,9 @@ class CoupledJoint {
                 .noise = parameters_.absolute_residual,
                 .elastic = elastic_[i],
                 .offset = state_.plastic_offset[i],
-                .foretold = kicked ? Scalar(0) : foretold_.change[i],
-                .midway = foretold_.midway,
-                .may_stop = (state_.flowing || kicked) &&
+                .predicted = jumped ? Scalar(0) : predicted_.change[i],
+                .midway = predicted_.midway,
+                .may_stop = (state_.flowing || jumped) &&
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
 
@@ -300,7 +300,7 @@ class CoupledJoint {
 
     /// Plastic work that the flow did along another direction than the surface's normal at the force
     /// [J]: more than round-off where the box was made around the wrong force.
-    [[nodiscard]] Scalar astray(const Vector& force, const Vector& travel, Scalar work) const noexcept {
+    [[nodiscard]] Scalar off_normal_work(const Vector& force, const Vector& travel, Scalar work) const noexcept {
         if (!(work > 0)) return 0;
         const Vector associated = -work / surface_.value(force) * surface_.normal(force);
         return force.cwiseProduct(travel - associated).cwiseAbs().sum() / 2;
@@ -392,7 +392,7 @@ class CoupledJoint {
     Scalar left_ = 0;  ///< travel left before a break
     Scalar share_ = 1; ///< of the strength that the bounds allow
     Scalar cap_ = 0;   ///< γ of a brittle break
-    Foretold<Vector> foretold_{Vector::Zero()};
+    Predicted<Vector> predicted_{Vector::Zero()};
 };
 
 } // namespace ductile

@@ -38,7 +38,7 @@ struct OpenRow {
     S noise;             ///< speed below which nothing moves [m/s | rad/s]
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
-    S foretold;          ///< as RowStep's [m/s | rad/s]
+    S predicted;          ///< as RowStep's [m/s | rad/s]
     bool midway;         ///< as RowStep's
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
@@ -90,7 +90,7 @@ struct OpenRow {
                               .start = start,
                               .travel = moved,
                               .dt = dt,
-                              .foretold = foretold,
+                              .predicted = predicted,
                               .midway = midway,
                               .noise = noise,
                               .strength = std::max(upper, -lower) / share,

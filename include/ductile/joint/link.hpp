@@ -101,9 +101,9 @@ class Link {
         turn_rest(q.template tail<3>());
     }
 
-    /// What moved the bodies since the last look was hands, and no deformation: the plastic axes keep
-    /// their strain and their rest position goes along.
-    void go_along(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+    /// The bodies were put elsewhere by the user since the last look, which is no deformation: the plastic
+    /// axes keep their strain, and their rest position moves with the bodies.
+    void teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept {
         if (pose_.is_now(a, b)) return;
         const Vector6<S> before = strain();
         pose_.look(a, b);
@@ -124,7 +124,7 @@ class Link {
     [[nodiscard]] bool reads_mass() const noexcept {
         return one_axis ? !all_rigid() : mass_at_ != pose_.rest_changes();
     }
-    /// True where M only serves to foretell forces: that of the rest position will do there for as
+    /// True where M only serves to predict forces: that of the rest position will do there for as
     /// long as the joint does not flow.
     [[nodiscard]] bool takes_mass_at_rest() const noexcept {
         return !one_axis && all_rigid() && !joint_.state().flowing;

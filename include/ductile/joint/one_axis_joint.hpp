@@ -25,7 +25,7 @@
 // all rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any dt,
 // where M_p |Δθ| is first order only. Plastic travel is counted by the same rule, so that a break is
 // invariant under the step.
-//   Counted as plastic: steps that flow, and the step that brings a flowing (or just now kicked) rigid
+//   Counted as plastic: steps that flow, and the step that brings a flowing (or just now jumped) rigid
 //   row to rest inside the bounds: a force R acting until rest would do the very same work. Everything
 //   else, such as the jitter of a solver below yield, drift being removed or numerical damping, is
 //   booked as `other_work` and never consumes life.
@@ -85,7 +85,7 @@ class OneAxisJoint {
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
-    /// The velocity that the step left, seen along the axis as it is now: not a kick [m/s | rad/s].
+    /// The velocity that the step left, seen along the axis as it is now: not a jump [m/s | rad/s].
     void carry(Scalar velocity) noexcept { state_.velocity = velocity; }
 
     /// Force at which the row would flow now towards `direction` = ±1 [N | N m].
@@ -117,7 +117,7 @@ class OneAxisJoint {
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
         start_ = motion.velocity;
-        foretold_ = foretell(state_, motion.midway, dt);
+        predicted_ = predict(state_, motion.midway, dt);
         elastic_ = motion.position - state_.plastic_offset;
         if (state_.broken) return {.lower = 0, .upper = 0};
         bound(dt);
@@ -228,7 +228,7 @@ class OneAxisJoint {
     // ---- after the solve ----------------------------------------------------------------------------
 
     /// True where somebody changed the velocity between the steps, well above solver noise.
-    [[nodiscard]] bool kicked() const noexcept {
+    [[nodiscard]] bool jumped() const noexcept {
         return std::abs(start_ - state_.velocity) > allowed_residual(start_);
     }
     [[nodiscard]] Scalar allowed_residual(Scalar velocity) const noexcept {
@@ -253,8 +253,8 @@ class OneAxisJoint {
                                    .start = start_,
                                    .travel = taken.travel,
                                    .dt = taken.dt,
-                                   .foretold = kicked() ? Scalar(0) : foretold_.change,
-                                   .midway = foretold_.midway,
+                                   .predicted = jumped() ? Scalar(0) : predicted_.change,
+                                   .midway = predicted_.midway,
                                    .noise = parameters_.absolute_residual,
                                    .strength = resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
@@ -289,7 +289,7 @@ class OneAxisJoint {
 
     void commit_rigid(Step<Scalar>& step, const Taken& taken) noexcept {
         const Scalar direction = std::copysign(Scalar(1), taken.travel);
-        const bool stops = !taken.at_bound() && taken.work > 0 && (state_.flowing || kicked());
+        const bool stops = !taken.at_bound() && taken.work > 0 && (state_.flowing || jumped());
         if (flows_with_bound(taken)) {
             flow(step, taken, taken.work, taken.travel * share_);
         } else if (stops) {
@@ -336,10 +336,10 @@ class OneAxisJoint {
         }
     }
 
-    /// An implicit row that came to rest inside its bounds after flow or a kick.
+    /// An implicit row that came to rest inside its bounds after flow or a jump.
     [[nodiscard]] bool stopped_in_step(const Taken& taken) const noexcept {
         return !RestsByItself<Cyclic> && !given() && !taken.at_bound() && taken.work > 0 &&
-               (state_.flowing || kicked());
+               (state_.flowing || jumped());
     }
 
     /// Flows by the signed `travel`, for which `work` was taken; breaks where no more is left.
@@ -394,7 +394,7 @@ class OneAxisJoint {
     Scalar left_ = 0;  ///< travel left before a break
     Scalar share_ = 1; ///< of the strength that the bounds allow
     Scalar implicit_ = 1; ///< θ of an elastic row
-    Foretold<Scalar> foretold_{};
+    Predicted<Scalar> predicted_{};
 };
 
 } // namespace ductile

@@ -109,12 +109,12 @@ class RowSweep {
         }
         const Impulses before = impulses;
         const int single = count_ - block_;
-        for (int i = 0; i < single; ++i) take_up(i, missing, impulses, asked);
+        for (int i = 0; i < single; ++i) sweep_row(i, missing, impulses, asked);
         S of_block = 0;
-        for (int i = single; i < count_; ++i) take_up(i, missing, impulses, of_block);
+        for (int i = single; i < count_; ++i) sweep_row(i, missing, impulses, of_block);
         constexpr S round_off = 4 * std::numeric_limits<S>::epsilon();
         if (swept_ && of_block * of_block > round_off * round_off * now.squared_norm()) {
-            take_up_block(single, missing, impulses - before, impulses);
+            sweep_block(single, missing, impulses - before, impulses);
         }
         asked = std::max(asked, of_block);
         swept_ = true;
@@ -151,7 +151,7 @@ class RowSweep {
     }
 
     /// Row i alone; what it does to those after it is taken off `missing`.
-    void take_up(int i, Vector6<S>& missing, Impulses& impulses, S& asked) const noexcept {
+    void sweep_row(int i, Vector6<S>& missing, Impulses& impulses, S& asked) const noexcept {
         const S wanted = std::clamp(impulses[i] + gain_[i] * missing[i], lower_[i], upper_[i]);
         const S change = wanted - impulses[i];
         if (change == 0) return;
@@ -161,7 +161,7 @@ class RowSweep {
     }
     /// All rows from `first` on at once, unless one would meet a bound. `missing` is of when they
     /// were taken up one by one, which changed their impulses by `changed`.
-    void take_up_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
+    void sweep_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
                        Impulses& impulses) noexcept {
         if (!has_factor_) {
             BlockMatrix system = mass_.block(first, first, block_, block_);

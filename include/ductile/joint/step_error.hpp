@@ -12,13 +12,13 @@
 // Flow in the middle of steps. Where every force acts from the middle of one step to the middle of
 // the next (world/leapfrog.hpp), a force that stays the same misplaces nothing. What is misplaced
 // is where it changes: by up to |Δu - Δu₋| dt, or |Δu| dt where that is less, with the change of
-// speed Δu₋ that the last step foretells. The stop of above is then off by up to 1/(4 n²) of its
+// speed Δu₋ that the last step predicts. The stop of above is then off by up to 1/(4 n²) of its
 // travel and said to be off by up to 1.5/n². A flow that a contact begins within a step is off by
 // up to u' dt, as here no stop half a step early makes up for half of that.
 //
 // Direction. Rows that share a yield surface flow along its normal as far as their bounds were set
 // around the right force. Plastic work done along another direction is misplaced as well
-// (CoupledJoint::astray).
+// (CoupledJoint::off_normal_work).
 //
 // Spring. One that the step cannot resolve is damped: it comes to rest under the force f where it
 // should swing on about it, by √(2 k E) with the energy E that it lost. Where that would have
@@ -43,7 +43,7 @@ struct RowStep {
     S start;      ///< u [m/s | rad/s]
     S travel;     ///< (u + u') dt/2, signed [m | rad]
     S dt;         ///< [s]
-    S foretold;   ///< Δu₋ in the middle of steps, else 0 [m/s | rad/s]
+    S predicted;   ///< Δu₋ in the middle of steps, else 0 [m/s | rad/s]
     bool midway;  ///< velocities are those in the middle of steps
     S noise;      ///< speed below which nothing flows [m/s | rad/s]
     S strength;   ///< R [N | N m]
@@ -68,15 +68,15 @@ struct StepError {
 
 /// What the last step says of this one. `Axes` is a number or a vector, one entry per axis.
 template <class Axes>
-struct Foretold {
+struct Predicted {
     Axes change;         ///< Δu₋ where it flowed, else 0 [m/s | rad/s]
     bool midway = false; ///< velocities are those in the middle of steps; else Δu₋ is 0
 };
 
 /// For a step of `dt` [s] after the one that left `state`.
 template <class State, std::floating_point S>
-[[nodiscard]] auto foretell(const State& state, bool midway, S dt) noexcept {
-    Foretold<decltype(State::velocity)> result{state.velocity, midway};
+[[nodiscard]] auto predict(const State& state, bool midway, S dt) noexcept {
+    Predicted<decltype(State::velocity)> result{state.velocity, midway};
     result.change -= state.start_velocity;
     result.change *= midway && state.flowing ? dt / state.dt : S(0);
     return result;
@@ -90,7 +90,7 @@ template <std::floating_point S>
     if (row.flowed) {
         const bool still =
             std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt;
-        const S unlike = std::abs(row.force * (changed - row.foretold * row.dt / 2));
+        const S unlike = std::abs(row.force * (changed - row.predicted * row.dt / 2));
         const S misplaced = row.midway ? 2 * std::min(change, unlike) : change;
         return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * misplaced};
     }

@@ -27,8 +27,8 @@ namespace ductile {
 
 /// How the forces of a step act. Plain value; of an engine that does not leapfrog as it is at
 /// first.
-struct Kick {
-    double share = 1;    ///< κ, > 0
+struct ForceShare {
+    double value = 1;    ///< κ, > 0
     bool midway = false; ///< velocities are those in the middle of steps
 };
 
@@ -36,8 +36,8 @@ struct Kick {
 class Leapfrog {
   public:
     /// Of the coming step of `dt` > 0 [s].
-    [[nodiscard]] Kick next(double dt) noexcept {
-        return {.share = (std::exchange(last_, dt) + dt) / (2 * dt), .midway = true};
+    [[nodiscard]] ForceShare next(double dt) noexcept {
+        return {.value = (std::exchange(last_, dt) + dt) / (2 * dt), .midway = true};
     }
     /// The next step is a first one: somebody gave the bodies velocities that are those of now.
     void restart() noexcept { last_ = 0; }

@@ -114,13 +114,13 @@ class SteppedWorld {
     /// Called before each part of `dt` [s], and before its forces are applied again.
     /// @throws what makes it impossible; nothing has changed then.
     virtual void require_possible(double dt) = 0;
-    virtual void do_part(double dt, const Kick& kick, const Effort& effort) = 0;
+    virtual void do_part(double dt, const ForceShare& share, const Effort& effort) = 0;
     virtual void hold_forces() = 0;
     virtual void apply_held_forces() = 0;
     [[nodiscard]] virtual int iterations() const = 0;
     virtual void set_iterations(int iterations) = 0;
     /// The last part left `joint` (as the supervisor knows it) unsolved.
-    virtual void doubt(const void* /*joint*/) {}
+    virtual void suspect(const void* /*joint*/) {}
     /// The step ended; the next one is done with `effort`.
     virtual void finish(const Effort& effort) = 0;
     /// Null: none is kept.
@@ -150,9 +150,9 @@ class SteppedWorld {
         for (int i = 1; i <= effort.parts; ++i) {
             require_possible(part);
             if (i > 1) apply_held_forces();
-            do_part(part, leapfrog_ ? leapfrog_->next(part) : Kick{}, effort);
+            do_part(part, leapfrog_ ? leapfrog_->next(part) : ForceShare{}, effort);
             supervisor_.look(i < effort.parts ? start + i * part : end,
-                             [this](const void* joint) { doubt(joint); });
+                             [this](const void* joint) { suspect(joint); });
         }
         finish(supervisor_.close());
     }

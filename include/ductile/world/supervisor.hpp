@@ -3,7 +3,7 @@
 // The part of an adapter's World that knows no engine: whom it asks after each step, what it tells,
 // with what effort the next step is done, the clock, and steps that follow the motion.
 //
-//   every step:  open();  each part: engine's step, look(time, doubt);  close()
+//   every step:  open();  each part: engine's step, look(time, suspect);  close()
 //
 // Of a joint it knows an address, a name, and whom to ask for its report.
 //
@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/detail/step_control.hpp"
+#include "ductile/fidelity/step_control.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/effort.hpp"
 #include "ductile/world/joint_report.hpp"
@@ -131,10 +131,10 @@ class Supervisor {
     /// Of the last step whose motion was told.
     [[nodiscard]] bool may_miss_contact() const noexcept { return may_miss_contact_; }
 
-    /// Asks all joints after a part of a step that ended at `time` [s]; doubt(joint) is called for
+    /// Asks all joints after a part of a step that ended at `time` [s]; suspect(joint) is called for
     /// each that was left unsolved.
-    template <class Doubt>
-    void look(double time, Doubt&& doubt) {
+    template <class Suspect>
+    void look(double time, Suspect&& suspect) {
         time_ = time;
         watch_.go_on(time);
         const Looking guard(looking_);
@@ -145,7 +145,7 @@ class Supervisor {
             const Report report = joints_[i].ask();
             if (report.outcome == Outcome::unreliable) {
                 reliable_ = false;
-                doubt(joint);
+                suspect(joint);
             }
             watch_.see(joints_[i].number, report);
         }

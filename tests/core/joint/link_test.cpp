@@ -208,7 +208,7 @@ TEST_CASE("bent about one axis and then about another, a joint stays as it was b
     CHECK(std::abs(state.other_work) < 1e-3 * state.plastic_work);
 }
 
-TEST_CASE("a joint that holds foretells its forces with the mass of its rest position",
+TEST_CASE("a joint that holds predicts its forces with the mass of its rest position",
           "[joint][link]") {
     Body a = body(2, 0.3, V3(0.4, 0, 0.5)), b = body(3, 0.5, V3(0, -0.2, -0.6));
     a.spin = V3(0.1, 0.2, 0.3);
@@ -288,12 +288,12 @@ TEST_CASE("hands that move a body bend nothing", "[joint][link]") {
         before[Eigen::Index(index(axis))] = link.plastic_offset(axis);
     }
     CHECK(strain.norm() > 0.01);
-    link.go_along(a, b); // nobody did
+    link.teleport(a, b); // nobody did
     CHECK(strained() == strain);
 
     a.position += V3(0.4, -3, 0.1);
     a.orientation = turned(2, {0, 3, 1}) * a.orientation;
-    link.go_along(a, b);
+    link.teleport(a, b);
     CHECK((strained() - strain).norm() < 1e-12);
     CHECK(link.position(JointAxis::shear_x) == Approx(0.401).epsilon(1e-12));
     CHECK(link.plastic_offset(JointAxis::shear_x) - before[0] == Approx(0.4).epsilon(1e-12));

@@ -41,9 +41,9 @@ struct Body {
                 {.stiffness = stiffness}) {}
 
     Step<double> step(double dt, double load = 0) {
-        const Kick kick = leapfrog ? leapfrog->next(dt) : Kick{};
-        const double acts = kick.share * dt;
-        const auto row = joint.prepare({position, velocity, mass, kick.midway}, acts);
+        const ForceShare share = leapfrog ? leapfrog->next(dt) : ForceShare{};
+        const double acts = share.value * dt;
+        const auto row = joint.prepare({position, velocity, mass, share.midway}, acts);
         const double free = velocity + acts * load / mass;
         const double impulse = std::clamp((row.bias - free) / (1 / mass + row.compliance),
                                           row.lower * acts, row.upper * acts);
@@ -116,7 +116,7 @@ TEST_CASE("in the middle of steps of changing length a steady force misplaces no
     body.step(0.01);
     for (int i = 0; i < 20; ++i) error = body.step(i % 3 == 0 ? 0.02 : 0.007).step_error;
     CHECK(body.velocity > 3);
-    // of the first step alone, which has half a kick: 0.1 m/s in 5 ms
+    // of the first step alone, which has half its forces: 0.1 m/s in 5 ms
     const double travel = body.joint.state().plastic_travel;
     CHECK(error == Approx(0.1 * 0.005 / (travel + 2e-3)).epsilon(1e-6));
 }
@@ -156,7 +156,7 @@ TEST_CASE("a flow that begins within a step is as uncertain as that step", "[ste
     const double dt = 0.01;
     if (leapfrog) {
         body.leapfrog.emplace();
-        body.step(dt); // the first, with half a kick, is at rest
+        body.step(dt); // the first, with half its forces, is at rest
     }
     body.step(dt, 50 + 1 / dt);
     CHECK(body.velocity == Approx(1));

@@ -36,18 +36,18 @@ struct Scribe final : SteppedWorld {
     void require_possible(double dt) override {
         if (dt < shortest) throw std::invalid_argument("too short");
     }
-    void do_part(double dt, const Kick& kick, const Effort& effort) override {
+    void do_part(double dt, const ForceShare& share, const Effort& effort) override {
         if (fails) throw std::runtime_error("engine");
         lines.push_back("part " + std::to_string(int(dt * 1000 + 0.5)) + " ms, share " +
-                        std::to_string(int(kick.share * 100 + 0.5)) + " %" +
-                        (kick.midway ? ", midway" : "") + (effort.direct ? ", direct" : "") +
+                        std::to_string(int(share.value * 100 + 0.5)) + " %" +
+                        (share.midway ? ", midway" : "") + (effort.direct ? ", direct" : "") +
                         ", " + std::to_string(iterations_now) + " iterations");
     }
     void hold_forces() override { lines.emplace_back("hold"); }
     void apply_held_forces() override { lines.emplace_back("apply"); }
     [[nodiscard]] int iterations() const override { return iterations_now; }
     void set_iterations(int n) override { iterations_now = n; }
-    void doubt(const void* joint) override { lines.emplace_back(joint == this ? "doubt" : "?"); }
+    void suspect(const void* joint) override { lines.emplace_back(joint == this ? "suspect" : "?"); }
     void finish(const Effort& effort) override {
         lines.push_back("finish, next " + std::to_string(effort.parts) + " parts");
     }
@@ -79,11 +79,11 @@ TEST_CASE("a split step applies its forces again for each further part", "[world
     world.unsolved = true;
     world.step(0.01);
     CHECK(world.said() ==
-          Lines{"part 10 ms, share 100 %, 10 iterations", "doubt", "finish, next 2 parts"});
+          Lines{"part 10 ms, share 100 %, 10 iterations", "suspect", "finish, next 2 parts"});
     CHECK(world.events().size() == 1);
     world.step(0.01);
-    CHECK(world.said() == Lines{"hold", "part 5 ms, share 100 %, 10 iterations", "doubt", "apply",
-                                "part 5 ms, share 100 %, 10 iterations", "doubt",
+    CHECK(world.said() == Lines{"hold", "part 5 ms, share 100 %, 10 iterations", "suspect", "apply",
+                                "part 5 ms, share 100 %, 10 iterations", "suspect",
                                 "finish, next 2 parts"});
     CHECK(world.time() == 0.02);
 }

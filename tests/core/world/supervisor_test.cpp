@@ -24,7 +24,7 @@ struct Puppet {
 
 } // namespace
 
-TEST_CASE("a supervisor warns once, by name, and reports who is in doubt", "[world]") {
+TEST_CASE("a supervisor warns once, by name, and reports who is suspect", "[world]") {
     std::vector<std::string> lines;
     Supervisor supervisor({.action = OnUnconverged::split_step},
                           [&lines](const std::string& line) { lines.push_back(line); });
@@ -32,16 +32,16 @@ TEST_CASE("a supervisor warns once, by name, and reports who is in doubt", "[wor
     supervisor.add(&post, "post", post.ask());
     supervisor.add(&sign, "", sign.ask());
     sign.says = {.outcome = Outcome::unreliable, .residual = 0.25};
-    std::vector<const void*> doubted;
-    const auto doubt = [&doubted](const void* joint) { doubted.push_back(joint); };
+    std::vector<const void*> suspects;
+    const auto suspect = [&suspects](const void* joint) { suspects.push_back(joint); };
     supervisor.open();
-    supervisor.look(0.5, doubt);
+    supervisor.look(0.5, suspect);
     CHECK(supervisor.close().parts == 2);
     supervisor.open();
-    supervisor.look(0.75, doubt);
-    supervisor.look(1, doubt);
+    supervisor.look(0.75, suspect);
+    supervisor.look(1, suspect);
     CHECK(supervisor.close().parts == 4); // one step, whatever its parts
-    CHECK(doubted == std::vector<const void*>{&sign, &sign, &sign});
+    CHECK(suspects == std::vector<const void*>{&sign, &sign, &sign});
     CHECK(lines == std::vector<std::string>{
                        "ductile: joint \"joint 1\" was left unsolved by the solver at t = 0.5 s "
                        "(off by 0.25 m/s or rad/s)"});

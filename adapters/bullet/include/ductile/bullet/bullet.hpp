@@ -4,7 +4,7 @@
 #pragma once
 
 #include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/doubt_solver.hpp"
+#include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/draw.hpp"
 #include "ductile/bullet/energy.hpp"
 #include "ductile/bullet/held_forces.hpp"

@@ -95,12 +95,12 @@ class EnergyMeter {
         }
     }
 
-    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `kick` of which
-    /// forces acted (kick.hpp).
-    void after_step(double dt, double kick = 1) {
+    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
+    /// forces acted (force_share.hpp).
+    void after_step(double dt, double share = 1) {
         for (auto& [body, start] : start_) start.finish(*body, dt);
         for (int i = 0; i < world_.getNumConstraints(); ++i) undo_release(*world_.getConstraint(i));
-        for (auto& [body, start] : start_) book_body(*body, start, dt, kick);
+        for (auto& [body, start] : start_) book_body(*body, start, dt, share);
         for (int i = 0; i < world_.getNumConstraints(); ++i) {
             book_constraint(*world_.getConstraint(i), dt);
         }
@@ -220,17 +220,17 @@ class EnergyMeter {
         start->second.angular_after -= change.angular;
     }
 
-    void book_body(const btRigidBody& body, const BodyStart& start, double dt, double kick) {
+    void book_body(const btRigidBody& body, const BodyStart& start, double dt, double share) {
         const Vector3<double> mean_linear = (start.linear + start.linear_after) / 2;
         const Vector3<double> mean_angular = (start.angular + start.angular_after) / 2;
         const Vector3<double> weight = mass(body) * to_core(body.getGravity());
-        ledger_.supply(kick * dt *
+        ledger_.supply(share * dt *
                        (start.force.dot(mean_linear) + start.torque.dot(mean_angular)));
 
         const double damping = start.kinetic(body, start.raw_linear, start.raw_angular) -
                                start.kinetic(body, start.linear, start.angular);
         const Vector3<double> moved = to_core(body.getCenterOfMassPosition()) - start.position;
-        const double potential = weight.dot(moved) - kick * dt * weight.dot(mean_linear);
+        const double potential = weight.dot(moved) - share * dt * weight.dot(mean_linear);
         const Vector3<double>& w = start.angular_after;
         const double turning = w.dot((start.inertia_world - inertia(body)) * w) / 2;
         const double gyroscopic = -gyroscopic_impulse(body, start, dt).dot(mean_angular);

@@ -259,13 +259,13 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
 
     /// Opens a tick [s]; `erp`: the world's.
     void prepare(double tick, double erp) {
-        dt_ = kick_.share * tick;
-        tick_kick_ = kick_.share;
+        dt_ = force_share_.value * tick;
+        tick_share_ = force_share_.value;
         if constexpr (!one_axis) mass_at_rest_.tell(link_, m_rbA, m_rbB);
         const bool masses = link_.reads_mass();
         link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
                       masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
-                      (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, kick_.midway);
+                      (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, force_share_.midway);
         open_ = Open::tick;
     }
 
@@ -315,7 +315,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         if (is_open()) return reaction_of_own_rows();
         Vector6<double> forces = Vector6<double>::Zero();
         if (reads_ == Reads::all_rows && m_jointFeedback != nullptr) {
-            forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_kick_);
+            forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_share_);
         }
         if constexpr (one_axis) {
             forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
@@ -335,8 +335,8 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
         if (m_jointFeedback != nullptr) {
             const LinkPose<double>& pose = link_.pose();
             write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
-                           pose.axes() * forces.head<3>() * tick_kick_,
-                           pose.axes() * forces.tail<3>() * tick_kick_);
+                           pose.axes() * forces.head<3>() * tick_share_,
+                           pose.axes() * forces.tail<3>() * tick_share_);
         }
         return forces;
     }
@@ -357,7 +357,7 @@ class JointConstraint : public PlasticConstraint, public SelfSolvedRows {
     Reads reads_;
     btScalar rigid_erp_ = -1; ///< negative: the world's
     double dt_ = 0;           ///< for which the rows' forces act in the open tick
-    double tick_kick_ = 1;    ///< as a share of the tick
+    double tick_share_ = 1;    ///< as a share of the tick
     std::array<std::size_t, 6> order_; ///< axis of each row
     Link<Joint> link_;
     [[no_unique_address]] DecoupledLink<Joint> decoupled_;

@@ -42,7 +42,7 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows {
     /// disabled, an idle one. Speeds are those of now.
     [[nodiscard]] virtual JointReport<double> report() = 0;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
-    void set_kick(const Kick& kick) noexcept { kick_ = kick; }
+    void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     /// True from add_to to remove_from.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
 
@@ -56,7 +56,7 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows {
     }
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
-    Kick kick_;
+    ForceShare force_share_;
 };
 
 } // namespace ductile::bullet

@@ -233,13 +233,13 @@ class PlasticMotor final : public PlasticConstraint, public SelfSolvedRows {
 
     void prepare() {
         tick_ = double(world_->getSolverInfo().m_timeStep);
-        dt_ = kick_.share * tick_;
+        dt_ = force_share_.value * tick_;
         axis_ = axis();
         position_ = measure(position_);
         const bool elastic = std::isfinite(joint_.parameters().stiffness);
         const double mass =
             elastic ? mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0) : 0.0;
-        limits_ = joint_.prepare({position_, velocity(), mass, kick_.midway}, dt_);
+        limits_ = joint_.prepare({position_, velocity(), mass, force_share_.midway}, dt_);
         pending_ = true;
     }
 

@@ -46,12 +46,12 @@ struct ReactionArm {
     return {from_b, from_b ? arm_b : arm_a};
 }
 
-/// Forces and moments of the link's rows, which acted for the share `kick` of the tick, on A
+/// Forces and moments of the link's rows, which acted for the share `share` of the tick, on A
 /// [N | N m].
 template <class Joint>
 [[nodiscard]] Vector6<double> forces_of_rows(const btJointFeedback& feedback,
                                              const ReactionArm& from, const Link<Joint>& link,
-                                             double kick) noexcept {
+                                             double share) noexcept {
     const Vector3<double> force = from.from_b
                                       ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
                                       : to_core(feedback.m_appliedForceBodyA);
@@ -64,11 +64,11 @@ template <class Joint>
     Vector6<double> result;
     for (const JointAxis axis : all_joint_axes) {
         const LinkRow<double> row = link.row(axis);
-        double value = row.direction.dot(row.turns ? moment : force) / kick;
-        const double doubt =
-            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) / kick;
+        double value = row.direction.dot(row.turns ? moment : force) / share;
+        const double round_off_of_value =
+            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) / share;
         for (const double bound : {row.limits.lower, row.limits.upper}) {
-            if (std::abs(value - bound) <= doubt) value = bound;
+            if (std::abs(value - bound) <= round_off_of_value) value = bound;
         }
         result[Eigen::Index(index(axis))] = value;
     }

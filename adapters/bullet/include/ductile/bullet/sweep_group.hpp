@@ -29,22 +29,22 @@
 namespace ductile::bullet {
 
 /// Base of a solver that stands before another one and mostly leaves the work to it.
-class StandIn {
+class ProxySolver {
   public:
     [[nodiscard]] virtual btConstraintSolver& usual() const noexcept = 0;
 
   protected:
-    ~StandIn() = default;
+    ~ProxySolver() = default;
 };
 
-/// True for Bullet's own sequential impulse and NNCG, alone or behind a StandIn: they call every
+/// True for Bullet's own sequential impulse and NNCG, alone or behind a ProxySolver: they call every
 /// constraint in each sweep. What derives from them may do otherwise.
 [[nodiscard]] inline bool calls_in_each_sweep(const btConstraintSolver& solver) {
     if (typeid(solver) == typeid(btSequentialImpulseConstraintSolver) ||
         typeid(solver) == typeid(btNNCGConstraintSolver)) {
         return true;
     }
-    const auto* front = dynamic_cast<const StandIn*>(&solver);
+    const auto* front = dynamic_cast<const ProxySolver*>(&solver);
     return front != nullptr && calls_in_each_sweep(front->usual());
 }
 

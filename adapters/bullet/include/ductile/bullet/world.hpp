@@ -16,8 +16,8 @@
 // for the step; a kinematic body moved by hand makes its whole motion in the first part. A step
 // throws std::invalid_argument where it, or its part, is shorter than Bullet steps.
 //
-// OnUnconverged::direct_solver: the group of islands with a joint in doubt goes to Dantzig's method
-// (doubt_solver.hpp) until all is calm. The user's solver is in place again when this object ends.
+// OnUnconverged::direct_solver: the group of islands with a joint suspect goes to Dantzig's method
+// (suspect_solver.hpp) until all is calm. The user's solver is in place again when this object ends.
 // Not for btMultiBodyDynamicsWorld, whose solver has to be direct from the start
 // (multibody_solver.hpp); a btDiscreteDynamicsWorldMt with a solver for large islands of its own
 // gives those to that.
@@ -42,10 +42,10 @@
 #include <string>
 #include <utility>
 
-#include "ductile/bullet/doubt_solver.hpp"
+#include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/energy.hpp"
 #include "ductile/bullet/held_forces.hpp"
-#include "ductile/bullet/kick.hpp"
+#include "ductile/bullet/force_share.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -69,8 +69,8 @@ class World final : public SteppedWorld {
         : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
         if (parameters.effort.action == OnUnconverged::direct_solver) {
             require_exchangeable_solver();
-            doubts_ = std::make_unique<DoubtSolver>(*world_.getConstraintSolver());
-            world_.setConstraintSolver(doubts_.get());
+            suspect_solver_ = std::make_unique<SuspectSolver>(*world_.getConstraintSolver());
+            world_.setConstraintSolver(suspect_solver_.get());
         }
         if (parameters.ledger) meter_.emplace(world_);
         if (parameters.leapfrog) {
@@ -80,9 +80,9 @@ class World final : public SteppedWorld {
     }
     /// Joints stay in Bullet's world.
     ~World() {
-        if (leapfrogs()) kick(world_, {});
-        if (doubts_ != nullptr && world_.getConstraintSolver() == doubts_.get()) {
-            world_.setConstraintSolver(&doubts_->usual());
+        if (leapfrogs()) share_forces(world_, {});
+        if (suspect_solver_ != nullptr && world_.getConstraintSolver() == suspect_solver_.get()) {
+            world_.setConstraintSolver(&suspect_solver_->usual());
         }
     }
 
@@ -110,10 +110,10 @@ class World final : public SteppedWorld {
     void remove(Joint& joint) {
         if (!supervisor().knows(address(joint))) return;
         supervisor().remove(address(joint));
-        if (doubts_ != nullptr) doubts_->trust(address(joint));
+        if (suspect_solver_ != nullptr) suspect_solver_->trust(address(joint));
         if constexpr (std::derived_from<Joint, PlasticConstraint>) {
             if (meter_) meter_->forget(joint);
-            joint.set_kick({});
+            joint.set_force_share({});
         }
         if (joint.in_world()) joint.remove_from(engine_of(joint));
     }
@@ -173,14 +173,14 @@ class World final : public SteppedWorld {
             check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
         }
     }
-    void do_part(double dt, const Kick& how, const Effort&) override {
+    void do_part(double dt, const ForceShare& how, const Effort&) override {
         const bool keeps_ledger = meter_ && !holds_multibodies();
         if (keeps_ledger) meter_->before_step();
-        const bool told = how.share == 1 && told_ == world_.getNumConstraints();
-        if (leapfrogs() && !told) kick(world_, how);
-        told_ = how.share == 1 ? world_.getNumConstraints() : -1;
+        const bool told = how.value == 1 && told_ == world_.getNumConstraints();
+        if (leapfrogs() && !told) share_forces(world_, how);
+        told_ = how.value == 1 ? world_.getNumConstraints() : -1;
         world_.stepSimulation(btScalar(dt), 0);
-        if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.share);
+        if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.value);
     }
     void hold_forces() override { forces_.hold(world_); }
     void apply_held_forces() override { forces_.apply(); }
@@ -188,18 +188,18 @@ class World final : public SteppedWorld {
     void set_iterations(int iterations) override {
         world_.getSolverInfo().m_numIterations = iterations;
     }
-    void doubt(const void* joint) override {
-        if (doubts_ != nullptr) doubts_->doubt(joint);
+    void suspect(const void* joint) override {
+        if (suspect_solver_ != nullptr) suspect_solver_->suspect(joint);
     }
     void finish(const Effort& effort) override {
-        if (!effort.direct && doubts_ != nullptr) doubts_->trust_all();
+        if (!effort.direct && suspect_solver_ != nullptr) suspect_solver_->trust_all();
     }
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
         return meter_ && !holds_multibodies() ? &meter_->ledger() : nullptr;
     }
 
     btDiscreteDynamicsWorld& world_;
-    std::unique_ptr<DoubtSolver> doubts_;
+    std::unique_ptr<SuspectSolver> suspect_solver_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
     int told_ = -1; ///< how many constraints know that forces act for the whole step

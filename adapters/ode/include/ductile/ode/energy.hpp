@@ -99,14 +99,14 @@ class EnergyMeter {
         }
     }
 
-    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `kick` of which
-    /// forces acted (kick.hpp).
-    void after_step(double dt, double kick = 1) {
+    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
+    /// forces acted (force_share.hpp).
+    void after_step(double dt, double share = 1) {
         for (auto& [body, start] : start_) start.finish(body);
         for (const PlasticShare& share : plastic_) undo_release(share);
         for (dBodyID body : bodies_) {
             const auto start = start_.find(body);
-            if (start != start_.end()) book_body(body, start->second, dt, kick);
+            if (start != start_.end()) book_body(body, start->second, dt, share);
         }
         for (const WatchedJoint& joint : joints_) book_joint(joint, dt);
         take_feedback_back();
@@ -221,18 +221,18 @@ class EnergyMeter {
         start->second.angular_after -= change.angular;
     }
 
-    void book_body(dBodyID body, const BodyStart& start, double dt, double kick) {
+    void book_body(dBodyID body, const BodyStart& start, double dt, double share) {
         if (dBodyIsEnabled(body) == 0) {
             if (start.awake) ledger_.book(Account::integration, kinetic(body, start));
             return;
         }
         const Vector3<double> mean_linear = (start.linear + start.linear_after) / 2;
         const Vector3<double> mean_angular = (start.angular + start.angular_after) / 2;
-        ledger_.supply(kick * dt *
+        ledger_.supply(share * dt *
                        (start.force.dot(mean_linear) + start.torque.dot(mean_angular)));
 
         const Vector3<double> moved = to_core(dBodyGetPosition(body)) - start.position;
-        const double potential = weight(body).dot(moved - kick * dt * mean_linear);
+        const double potential = weight(body).dot(moved - share * dt * mean_linear);
         const Vector3<double>& w = start.angular_after;
         const double turning = w.dot((start.inertia_world - inertia(body)) * w) / 2;
         const double gyroscopic = -gyroscopic_impulse(body, start, dt).dot(mean_angular);

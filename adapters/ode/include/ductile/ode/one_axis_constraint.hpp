@@ -143,11 +143,11 @@ class OneAxisConstraint : public PlasticConstraint {
         acting_ = true;
         if (restored_ || !is_where_left()) {
             pose_.look(row_);
-            follow_hands();
+            follow_teleport();
         }
-        Motion<double> motion{position_, pose_.velocity(row_), 0, kick_.midway};
+        Motion<double> motion{position_, pose_.velocity(row_), 0, force_share_.midway};
         if (std::isfinite(joint_.parameters().stiffness)) motion.mass = mass();
-        set_motor(joint_.prepare(motion, kick_.share * dt), dt);
+        set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
         rigid_target_ = rigid_target(dt);
     }
 
@@ -166,7 +166,7 @@ class OneAxisConstraint : public PlasticConstraint {
         position_ = row_.measured() ? row_.measure(position_ + velocity * dt)
                                     : position_ + row_.increment(pose_.placement(), pose_.axis(),
                                                                  pose_.point());
-        last_ = joint_.commit({force_, velocity, position_}, kick_.share * dt);
+        last_ = joint_.commit({force_, velocity, position_}, force_share_.value * dt);
         pose_.look(row_);
         joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
         if (last_.outcome == Outcome::broken) {
@@ -248,7 +248,7 @@ class OneAxisConstraint : public PlasticConstraint {
     [[nodiscard]] bool is_where_left() const { return owned_ && pose_.is_now(row_); }
 
     /// Somebody moved the bodies since the last step: the rest position goes along.
-    void follow_hands() {
+    void follow_teleport() {
         const double now = row_.measure(position_);
         if (now != position_ && !restored_) {
             auto state = joint_.state();
@@ -282,7 +282,7 @@ class OneAxisConstraint : public PlasticConstraint {
     }
 
     void set_motor(const RowLimits<double>& limits, double dt) {
-        const SymmetricRow row = symmetric_row(limits, dt, kick_.share);
+        const SymmetricRow row = symmetric_row(limits, dt, force_share_.value);
         centre_ = row.centre;
         strength_ = row.strength;
         row_.set(dParamCFM, row.cfm);
@@ -347,8 +347,8 @@ class OneAxisConstraint : public PlasticConstraint {
     /// Of the plastic row: its impulse over the time for which it acted.
     [[nodiscard]] double row_force() const {
         const dJointFeedback* feedback = dJointGetFeedback(id());
-        if (!(strength_ > 0) || feedback == nullptr) return centre_ / kick_.share;
-        return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / kick_.share;
+        if (!(strength_ > 0) || feedback == nullptr) return centre_ / force_share_.value;
+        return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / force_share_.value;
     }
 
     /// Gives the energy that the breaking step took in excess back to the motion along the axis.

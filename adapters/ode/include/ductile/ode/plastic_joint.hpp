@@ -213,10 +213,10 @@ class PlasticJoint final : public PlasticConstraint {
         }
         acting_ = true;
         const BodyState<double> a = body_state(a_), b = body_state(b_);
-        if (!put_back_) link_.go_along(a, b);
+        if (!put_back_) link_.teleport(a, b);
         put_back_ = false;
         const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
-        link_.prepare(a, b, kick_.share * dt, rate, kick_.midway);
+        link_.prepare(a, b, force_share_.value * dt, rate, force_share_.midway);
         arm_a_ = link_.point() - a.position;
         arm_b_ = link_.point() - b.position;
         centre_ = {};
@@ -224,7 +224,7 @@ class PlasticJoint final : public PlasticConstraint {
         bool out_of_scale = false; // a moment's row
         for (const JointAxis axis : all_joint_axes) {
             const LinkRow<double> row = link_.row(axis);
-            SymmetricRow symmetric = symmetric_row(row.limits, dt, kick_.share);
+            SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
             const double moved = mobility(a, arm_a_, row) + mobility(b, arm_b_, row);
             symmetric.cfm += softness * dt * moved;
             (row.turns ? centre_.moment : centre_.force) += symmetric.centre * row.direction;
@@ -258,9 +258,9 @@ class PlasticJoint final : public PlasticConstraint {
         const Vector3<double> torque = outside_.torque_a + to_core(moments_.t1);
         link_.commit(
             body_motion(a_), body_motion(b_),
-            JointWrench<double>{.force = outside_.force / kick_.share,
-                                .moment = (torque - arm_a_.cross(outside_.force)) / kick_.share},
-            kick_.share * dt);
+            JointWrench<double>{.force = outside_.force / force_share_.value,
+                                .moment = (torque - arm_a_.cross(outside_.force)) / force_share_.value},
+            force_share_.value * dt);
         if (broken()) let_go();
     }
 

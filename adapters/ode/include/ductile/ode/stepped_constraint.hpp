@@ -14,12 +14,12 @@ class SteppedConstraint {
     /// @throws what makes the step impossible; nothing has changed then.
     virtual void check() const {}
     /// How the constraint's forces act in the coming steps; of a World that leapfrogs.
-    void set_kick(const Kick& kick) noexcept { kick_ = kick; }
+    void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
 
   protected:
-    Kick kick_;
+    ForceShare force_share_;
 };
 
 } // namespace ductile::ode

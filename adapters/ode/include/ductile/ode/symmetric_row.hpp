@@ -26,11 +26,11 @@ struct SymmetricRow {
     double cfm = 0;      ///< [s/kg | s/(kg m²)]
 };
 
-/// For a step of `dt` > 0 [s], for the share `kick` of which the row's forces act.
+/// For a step of `dt` > 0 [s], for the share `share` of which the row's forces act.
 [[nodiscard]] inline SymmetricRow symmetric_row(const RowLimits<double>& limits, double dt,
-                                                double kick) noexcept {
-    const double half = kick * (limits.upper - limits.lower) / 2;
-    const double centre = std::isfinite(half) ? kick * (limits.lower + limits.upper) / 2 : 0;
+                                                double share) noexcept {
+    const double half = share * (limits.upper - limits.lower) / 2;
+    const double centre = std::isfinite(half) ? share * (limits.lower + limits.upper) / 2 : 0;
     const double cfm = limits.compliance * dt;
     return {.centre = centre, .strength = half, .velocity = limits.bias - cfm * centre, .cfm = cfm};
 }

@@ -18,7 +18,7 @@
 // std::invalid_argument where it leapfrogs and a joint's body was not added.
 //
 // OnUnconverged::direct_solver: ODE has no solver per island, so the whole world's step goes to
-// dWorldStep while a joint is in doubt. OnUnconverged::raise_iterations is for dWorldQuickStep;
+// dWorldStep while a joint is suspect. OnUnconverged::raise_iterations is for dWorldQuickStep;
 // dWorldStep has none to raise.
 //
 // leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be
@@ -39,7 +39,7 @@
 
 #include "ductile/ode/energy.hpp"
 #include "ductile/ode/held_forces.hpp"
-#include "ductile/ode/kick.hpp"
+#include "ductile/ode/force_share.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/world/stepped_world.hpp"
@@ -80,7 +80,7 @@ class World final : public SteppedWorld {
         constraints_.push_back(&joint);
         plastic_.push_back(&joint);
         bodies_known_ = false;
-        joint.set_kick({});
+        joint.set_force_share({});
         if (meter_) meter_->add(joint);
     }
     /// What is not here is left alone.
@@ -88,14 +88,14 @@ class World final : public SteppedWorld {
         supervisor().remove(&joint);
         std::erase(constraints_, &joint);
         std::erase(plastic_, &joint);
-        joint.set_kick({});
+        joint.set_force_share({});
         if (meter_) meter_->remove(joint);
     }
     /// Steps what is no plastic joint.
     void add(SteppedConstraint& constraint) { constraints_.push_back(&constraint); }
     void remove(SteppedConstraint& constraint) {
         std::erase(constraints_, &constraint);
-        constraint.set_kick({});
+        constraint.set_force_share({});
     }
 
     /// Tells of a dynamic body: ODE does not say which a world has.
@@ -131,12 +131,12 @@ class World final : public SteppedWorld {
         for (const SteppedConstraint* constraint : constraints_) constraint->check();
         if (leapfrogs() && !bodies_known_) require_bodies();
     }
-    void do_part(double dt, const Kick& how, const Effort& effort) override {
+    void do_part(double dt, const ForceShare& how, const Effort& effort) override {
         if (meter_) {
             for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
             meter_->before_step();
         }
-        if (leapfrogs()) kick(bodies_, constraints_, how);
+        if (leapfrogs()) share_forces(bodies_, constraints_, how);
         for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
         if (effort.direct || solver_ == Solver::direct) {
             dWorldStep(world_, dReal(dt));
@@ -144,7 +144,7 @@ class World final : public SteppedWorld {
             dWorldQuickStep(world_, dReal(dt));
         }
         for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
-        if (meter_) meter_->after_step(dt, how.share);
+        if (meter_) meter_->after_step(dt, how.value);
     }
     void hold_forces() override { forces_.hold(bodies_); }
     void apply_held_forces() override { forces_.apply(); }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
 
-#include "ductile/detail/step_control.hpp"
+#include "ductile/fidelity/step_control.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// A solver that hands each island to the user's own solver, or, where one of its constraints is in
-// doubt, to a direct one (SoftMlcpSolver with Dantzig's method). World installs it where the user
+// A solver that hands each island to the user's own solver, or, where one of its constraints is
+// suspect, to a direct one (SoftMlcpSolver with Dantzig's method). World installs it where the user
 // chose OnUnconverged::direct_solver.
 //
 // Bullet gathers small islands to groups of m_minimumSolverBatchSize constraints; the decision is
 // for the group.
 //
 // Thread-safety: `solveGroup` may be called by several threads at once as far as the user's solver
-// allows it (btConstraintSolverPoolMt does): each call borrows a direct solver of its own. Doubts
+// allows it (btConstraintSolverPoolMt does): each call borrows a direct solver of its own. Suspects
 // are changed between steps only.
 #pragma once
 
@@ -28,19 +28,19 @@
 
 namespace ductile::bullet {
 
-class DoubtSolver final : public btConstraintSolver, public StandIn {
+class SuspectSolver final : public btConstraintSolver, public ProxySolver {
   public:
     /// `usual` must outlive this.
-    explicit DoubtSolver(btConstraintSolver& usual) : usual_(usual) {}
-    DoubtSolver(const DoubtSolver&) = delete;
-    DoubtSolver& operator=(const DoubtSolver&) = delete;
+    explicit SuspectSolver(btConstraintSolver& usual) : usual_(usual) {}
+    SuspectSolver(const SuspectSolver&) = delete;
+    SuspectSolver& operator=(const SuspectSolver&) = delete;
 
     [[nodiscard]] btConstraintSolver& usual() const noexcept override { return usual_; }
 
     /// From now on the constraint's island is solved directly. Only its address is kept.
-    void doubt(const void* constraint) { doubted_.insert(constraint); }
-    void trust(const void* constraint) { doubted_.erase(constraint); }
-    void trust_all() noexcept { doubted_.clear(); }
+    void suspect(const void* constraint) { suspects_.insert(constraint); }
+    void trust(const void* constraint) { suspects_.erase(constraint); }
+    void trust_all() noexcept { suspects_.clear(); }
 
     /// Islands that a direct solver was given and did not solve: the iterative one took over.
     [[nodiscard]] int fallbacks() const {
@@ -64,12 +64,12 @@ class DoubtSolver final : public btConstraintSolver, public StandIn {
             return solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
                                      constraint_count, info, drawer, dispatcher);
         };
-        const bool in_doubt =
-            !doubted_.empty() && std::any_of(constraints, constraints + constraint_count,
+        const bool has_suspect =
+            !suspects_.empty() && std::any_of(constraints, constraints + constraint_count,
                                              [this](const btTypedConstraint* constraint) {
-                                                 return doubted_.count(constraint) > 0;
+                                                 return suspects_.count(constraint) > 0;
                                              });
-        if (!in_doubt) return solve(usual_);
+        if (!has_suspect) return solve(usual_);
         auto direct = borrow();
         const btScalar result = solve(direct->solver);
         give_back(std::move(direct));
@@ -105,7 +105,7 @@ class DoubtSolver final : public btConstraintSolver, public StandIn {
     }
 
     btConstraintSolver& usual_;
-    std::unordered_set<const void*> doubted_;
+    std::unordered_set<const void*> suspects_;
     mutable std::mutex mutex_; ///< of idle_
     std::vector<std::unique_ptr<Direct>> idle_;
 };

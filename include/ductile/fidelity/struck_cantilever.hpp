@@ -50,7 +50,7 @@
 #include <limits>
 #include <string>
 
-#include "ductile/detail/joint_detail.hpp"
+#include "ductile/fidelity/joint_detail.hpp"
 #include "ductile/vocabulary/check.hpp"
 
 namespace ductile {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "core/detail/oscillator.hpp"
-#include "ductile/detail/model_choice.hpp"
+#include "core/fidelity/oscillator.hpp"
+#include "ductile/fidelity/model_choice.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "ductile/detail/member_subdivision.hpp"
+#include "ductile/fidelity/member_subdivision.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

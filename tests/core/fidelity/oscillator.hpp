@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ductile/detail/peak_response.hpp"
+#include "ductile/fidelity/peak_response.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
 

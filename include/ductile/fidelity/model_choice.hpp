@@ -32,8 +32,8 @@
 #include <numbers>
 #include <string>
 
-#include "ductile/detail/joint_detail.hpp"
-#include "ductile/detail/rehearsal.hpp"
+#include "ductile/fidelity/joint_detail.hpp"
+#include "ductile/fidelity/rehearsal.hpp"
 #include "ductile/vocabulary/check.hpp"
 
 namespace ductile {

@@ -16,10 +16,10 @@
 namespace ductile::ode {
 
 /// To be called for each step, with what is applied for it; `bodies`: all that move.
-inline void kick(std::span<const dBodyID> bodies, std::span<SteppedConstraint* const> constraints,
-                 const Kick& how) {
-    for (SteppedConstraint* constraint : constraints) constraint->set_kick(how);
-    if (how.share == 1) return;
+inline void share_forces(std::span<const dBodyID> bodies, std::span<SteppedConstraint* const> constraints,
+                 const ForceShare& how) {
+    for (SteppedConstraint* constraint : constraints) constraint->set_force_share(how);
+    if (how.value == 1) return;
     for (dBodyID body : bodies) {
         if (dBodyIsKinematic(body) || dBodyIsEnabled(body) == 0) continue;
         Vector3<double> force = to_core(dBodyGetForce(body));
@@ -30,8 +30,8 @@ inline void kick(std::span<const dBodyID> bodies, std::span<SteppedConstraint* c
             dBodyGetMass(body, &mass);
             force += double(mass.mass) * to_core(gravity);
         }
-        force *= how.share - 1;
-        const Vector3<double> torque = (how.share - 1) * to_core(dBodyGetTorque(body));
+        force *= how.value - 1;
+        const Vector3<double> torque = (how.value - 1) * to_core(dBodyGetTorque(body));
         dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
         dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
     }

@@ -28,7 +28,7 @@
 #include <concepts>
 #include <limits>
 
-#include "ductile/detail/peak_response.hpp"
+#include "ductile/fidelity/peak_response.hpp"
 #include "ductile/fracture/travel_limit.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"

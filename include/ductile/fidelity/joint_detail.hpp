@@ -53,7 +53,7 @@
 #include <string>
 #include <string_view>
 
-#include "ductile/detail/peak_response.hpp"
+#include "ductile/fidelity/peak_response.hpp"
 #include "ductile/section/capacity.hpp"
 #include "ductile/vocabulary/check.hpp"
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/detail/oscillator.hpp"
-#include "ductile/detail/peak_response.hpp"
+#include "core/fidelity/oscillator.hpp"
+#include "ductile/fidelity/peak_response.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "core/detail/oscillator.hpp"
-#include "ductile/detail/joint_detail.hpp"
+#include "core/fidelity/oscillator.hpp"
+#include "ductile/fidelity/joint_detail.hpp"
 #include "ductile/material.hpp"
 #include "ductile/section/rectangle.hpp"
 #include "support/throws.hpp"

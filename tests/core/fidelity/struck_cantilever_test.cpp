@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "ductile/detail/struck_cantilever.hpp"
+#include "ductile/fidelity/struck_cantilever.hpp"
 #include "reference/problems/impact.hpp"
 #include "support/throws.hpp"
 

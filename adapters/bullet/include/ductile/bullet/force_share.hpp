@@ -15,13 +15,13 @@
 namespace ductile::bullet {
 
 /// To be called for each step, with what is applied for it.
-inline void kick(btDiscreteDynamicsWorld& world, const Kick& how) {
+inline void share_forces(btDiscreteDynamicsWorld& world, const ForceShare& how) {
     for (int i = 0; i < world.getNumConstraints(); ++i) {
         auto* plastic = dynamic_cast<PlasticConstraint*>(world.getConstraint(i));
-        if (plastic != nullptr) plastic->set_kick(how);
+        if (plastic != nullptr) plastic->set_force_share(how);
     }
-    if (how.share == 1) return;
-    const btScalar more = btScalar(how.share - 1);
+    if (how.value == 1) return;
+    const btScalar more = btScalar(how.value - 1);
     const auto& objects = world.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {
         btRigidBody* body = btRigidBody::upcast(objects[i]);
