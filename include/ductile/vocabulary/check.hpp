@@ -4,6 +4,8 @@
 // allowed range, thrown as std::invalid_argument. Constructors call these; hot functions never do.
 #pragma once
 
+#include "ductile/vocabulary/build_check.hpp"
+
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -11,10 +13,6 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
-
-#ifdef __FAST_MATH__
-#error "ductile: -ffast-math removes the NaN checks that bad input relies on; build without it"
-#endif
 
 namespace ductile::check {
 
