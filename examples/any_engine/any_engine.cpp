@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "ductile/joint/one_axis_joint.hpp"
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/planar_release.hpp"
 
 // ---- Part 1: the engine -------------------------------------------------------------------------
 
@@ -144,27 +144,22 @@ class PlasticHinge {
   private:
     double angle() const { return pin_.b->angle - pin_.a->angle; }
 
-    static ductile::BodyAtJoint<double> at_joint(const engine::Body& body,
-                                                 const engine::Point& local) {
+    static ductile::PlanarBody<double> at_joint(const engine::Body& body,
+                                                const engine::Point& local) {
         const engine::Point r = engine::arm(body, local);
-        ductile::BodyAtJoint<double> side{.inverse_mass = body.inverse_mass, .arm = {r.x, r.y, 0}};
-        side.inverse_inertia(2, 2) = body.inverse_inertia;
-        return side;
+        return {body.inverse_mass, body.inverse_inertia, r.x, r.y, {body.vx, body.vy, body.spin}};
     }
-    static void change(engine::Body& body, const ductile::VelocityChange<double>& by) {
-        body.vx += by.linear.x();
-        body.vy += by.linear.y();
-        body.spin += by.angular.z();
+    static void change(engine::Body& body, const ductile::PlanarVelocity<double>& by) {
+        body.vx += by.x;
+        body.vy += by.y;
+        body.spin += by.spin;
     }
     void give_back(double energy) {
         engine::Body &a = *pin_.a, &b = *pin_.b;
-        ductile::Vector6<double> axis, twist;
-        axis << 0, 0, 0, 0, 0, 1;
-        twist << 0, 0, 0, 0, 0, b.spin - a.spin; // the pin holds the rest
-        const auto release = ductile::break_release(at_joint(b, pin_.on_b), at_joint(a, pin_.on_a),
-                                                    axis, twist, energy);
-        change(b, release.a);
-        change(a, release.b);
+        const auto release =
+            ductile::planar_release(at_joint(a, pin_.on_a), at_joint(b, pin_.on_b), energy);
+        change(a, release.a);
+        change(b, release.b);
     }
 
     engine::Pin pin_;
