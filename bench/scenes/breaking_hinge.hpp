@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A rotor on a plastic hinge that breaks in mid-motion (REFERENCE P02 b): what spins on afterwards
-// shows how much energy the joint really took.
+// A rotor on a plastic hinge that breaks in mid-motion (problem P02b of tests/reference): what
+// spins on afterwards shows how much energy the joint really took.
 //
 //   α = M_p/I,   ω_res = √(ω₀² - 2 α θ_max),   E = M_p θ_max
 #pragma once

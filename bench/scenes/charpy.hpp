@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The blow of the Charpy test (REFERENCE P17): numbers, contact geometry and expected values of
-// examples/charpy, started when the nose is 20 mm from the specimen so that the swing, which is the
-// same for every method, does not enter the cost.
+// The blow of the Charpy test (problem P17 of tests/reference): numbers, contact geometry and
+// expected values of examples/charpy, started when the nose is 20 mm from the specimen so that the
+// swing, which is the same for every method, does not enter the cost.
 #pragma once
 
 #include "charpy/reference.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A mass dropped on the head of a crushing column (REFERENCE P25 a), through an inelastic contact.
+// A mass dropped on the head of a crushing column (problem P25a of tests/reference), through an
+// inelastic contact.
 //
 //   V₀ = √(2 g H),   V₁ = V₀ m/(m + m_h),   a = R/(m + m_h) - g,   crush = V₁²/(2 a),   E = R crush
 #pragma once

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // A moving mass on a yielding bar that a constant force below the bar's strength keeps pulling
-// (REFERENCE P22 with an initial speed): it comes to a stop and must then hold still under load.
+// (problem P22 of tests/reference with an initial speed): it comes to a stop and must then hold
+// still under load.
 //
 //   a = (R - F)/m,   travel = v₀²/(2 a),   t = v₀/a,   E = R travel,   valid for F < R
 #pragma once

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // A mass on an elastic-perfectly plastic bar under a force that is applied at once and held
-// (REFERENCE P04).
+// (problem P04 of tests/reference).
 //
 //   u_y = R/k,   u_max = u_y/(2 (1 - F/R)),   u_p = u_max - u_y,   E = R u_p,   valid for R/2 <= F
 //   < R

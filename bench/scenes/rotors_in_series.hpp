@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Ground -[M₁]- rotor I₁ -[M₂]- rotor I₂ (REFERENCE P27 a): only the second spins. The hinge
-// between them turns until both spin alike, then holds while the one to the ground stops both.
+// Ground -[M₁]- rotor I₁ -[M₂]- rotor I₂ (problem P27a of tests/reference): only the second spins.
+// The hinge between them turns until both spin alike, then holds while the one to the ground stops
+// both.
 //
 //   α₁ = (M₂ - M₁)/I₁,  α₂ = M₂/I₂,   t_lock = ω/(α₁ + α₂),   ω_lock = α₁ t_lock
 //   hinge 2 turns ω t_lock/2;  t_stop = t_lock + ω_lock (I₁ + I₂)/M₁;  hinge 1 turns ω_lock

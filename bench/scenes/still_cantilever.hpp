@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A heavy cantilever of N rigid segments that stays just below its plastic moment (REFERENCE P11,
-// the side below the limit load): nothing may move. A closed energy ledger proves nothing about a
-// solve that has not converged; this does.
+// A heavy cantilever of N rigid segments that stays just below its plastic moment (problem P11 of
+// tests/reference, the side below the limit load): nothing may move. A closed energy ledger proves
+// nothing about a solve that has not converged; this does.
 //
 //   M_root = μ g L²/2 + G g L = utilisation × M_p
 #pragma once

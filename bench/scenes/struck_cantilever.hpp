@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // A cantilever with a mass at its tip, struck there: Parkes (1955), as a chain of N equal rigid
-// segments with a plastic hinge at every joint (REFERENCE P13 a). The impulse G V₀ acts at t = 0
-// with all hinges free to turn, so the chain starts with the velocities of the impulsive motion.
+// segments with a plastic hinge at every joint (problem P13a of tests/reference). The impulse G V₀
+// acts at t = 0 with all hinges free to turn, so the chain starts with the velocities of the
+// impulsive motion.
 //
 // Symbols
 //   L, μ, M_p   length [m], mass per length [kg/m], plastic moment [N m]

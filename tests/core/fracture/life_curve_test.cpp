@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reference: P21 of the reference problems (Coffin-Manson with ε_f' = 1, c = -0.6; total strain
+// Reference: P21 of tests/reference (Coffin-Manson with ε_f' = 1, c = -0.6; total strain
 // with σ_f' = 900 MPa, b = -0.09, E = 200 GPa).
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Reference: P21g of the reference problems, and closed forms written out here.
+// Reference: P21g of tests/reference, and closed forms written out here.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <rapidcheck/catch.h>

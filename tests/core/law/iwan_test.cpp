@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// Parallel elements with memory (P08, P09 of the reference problems).
+// Parallel elements with memory (P08, P09 of tests/reference).
 #include <rapidcheck/catch.h>
 
 #include <array>

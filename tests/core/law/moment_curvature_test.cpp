@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bending by fibres against closed forms (P10, and the plastic moments of P18 and P19, of the
-// reference problems), and the hinge made of it.
+// Bending by fibres against closed forms (P10, and the plastic moments of P18 and P19, of
+// tests/reference), and the hinge made of it.
 #include "ductile/law/moment_curvature.hpp"
 
 #include <rapidcheck/catch.h>

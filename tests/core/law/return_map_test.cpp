@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The elastic-plastic form: loops and peaks with known answers (P06, P07 of the reference
-// problems).
+// The elastic-plastic form: loops and peaks with known answers (P06, P07 of tests/reference).
 #include <rapidcheck/catch.h>
 
 #include <algorithm>
