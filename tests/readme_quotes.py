@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Checks that the code shown in the README is code of the examples, which are built and run:
-readme_quotes.py REPOSITORY
+"""Checks that what the READMEs show is of the examples, which are built and run: readme_quotes.py REPOSITORY
 
-Every ```cpp block must stand, line by line and but for its indentation, in one file of examples/.
+Every ```cpp block of README.md must stand, line by line and but for its indentation, in one file of examples/,
+and the lines of every ```text block of examples/README.md, in their order, in the output that a source's opening
+comment expects or that is stored in a table.
 """
 
 import re
@@ -21,15 +22,24 @@ def stands_in(block, text):
     return any(lines[i:i + len(wanted)] == wanted for i in range(len(lines) - len(wanted) + 1))
 
 
+def printed(block, text):
+    lines = iter([line.removeprefix("//").strip() for line in text.splitlines()])
+    return all(wanted in lines for wanted in lines_of(block))  # one after the other
+
+
 def main():
     root = Path(sys.argv[1])
     examples = [path.read_text() for path in sorted(root.glob("examples/*/*.cpp"))]
     blocks = re.findall(r"^```cpp\n(.*?)^```", (root / "README.md").read_text(), re.M | re.S)
     missing = [block for block in blocks if not any(stands_in(block, text) for text in examples)]
+    expected = examples + [path.read_text() for path in sorted(root.glob("examples/*/results/table.txt"))]
+    outputs = re.findall(r"^```text\n(.*?)^```", (root / "examples/README.md").read_text(), re.M | re.S)
+    missing += [block for block in outputs if not any(printed(block, text) for text in expected)]
     for block in missing:
         print("not in any example:\n" + textwrap.indent(block, "    "), file=sys.stderr)
-    print(f"{len(blocks) - len(missing)} of {len(blocks)} blocks are code of the examples")
-    return 1 if missing or not blocks else 0
+    shown = len(blocks) + len(outputs)
+    print(f"{shown - len(missing)} of {shown} blocks are of the examples")
+    return 1 if missing or not blocks or not outputs else 0
 
 
 if __name__ == "__main__":
