@@ -2,7 +2,7 @@
 //
 // The energy that a breaking hinge took in excess, given back to its two bodies in an engine of the
 // plane: the equal and opposite impulses (P, L) at the pin that change how fast the hinge turns and
-// not the velocity at its pin. release_impulse of pair.hpp does the same in space.
+// not the velocity at its pin. release_impulse of break_release.hpp does the same in space.
 //
 // An impulse (P, L) on A, and its opposite on B, changes the velocity v of A relative to B at the
 // pin and its spin ω by
@@ -36,8 +36,8 @@
 //   I    inertia the hinge feels while its pin holds      [kg m²]
 //   v, ω velocity at the pin and spin of A minus B's      [m/s, rad/s]
 //
-// Source: as release_impulse of pair.hpp, whose K without its rows out of the plane this is; the
-// closed form of 1/I is the Schur complement of K, written out here.
+// Source: as release_impulse of break_release.hpp, whose K without its rows out of the plane this is;
+// the closed form of 1/I is the Schur complement of K, written out here.
 #pragma once
 
 #include <cmath>
