@@ -13,13 +13,14 @@ from pathlib import Path
 # folder -> folders it may include, besides itself
 ALLOWED = {
     "vocabulary": set(),
+    "numeric": set(),
     "material": {"vocabulary"},
     "section": {"vocabulary", "material"},
     "law": {"vocabulary"},
-    "surface": {"vocabulary"},
+    "surface": {"vocabulary", "numeric"},
     "fracture": {"vocabulary"},
     "energy": set(),
-    "joint": {"vocabulary", "law", "surface", "fracture"},
+    "joint": {"vocabulary", "numeric", "law", "surface", "fracture"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
     "world": {"vocabulary", "fracture", "fidelity", "energy"},

@@ -16,7 +16,6 @@
 //   λ       impulses                         [N s | N m s]
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -26,7 +25,8 @@
 #include <limits>
 
 #include "ductile/joint/link_types.hpp"
-#include "ductile/joint/pair.hpp"
+#include "ductile/numeric/ldlt.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 
@@ -56,7 +56,7 @@ template <std::floating_point S>
             system(i, i) = 1;
             wanted[i] = impulse[i];
         }
-        impulse = system.ldlt().solve(wanted);
+        impulse = numeric::solve_semidefinite(system, wanted);
         if (!impulse.allFinite()) return Vector6<S>::Zero();
 
         int worst = -1;

@@ -13,9 +13,10 @@
 #include <cstddef>
 #include <limits>
 
+#include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
-#include "ductile/joint/pair.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 

@@ -9,9 +9,10 @@
 #include <concepts>
 #include <cstddef>
 
+#include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/joint_axis.hpp"
-#include "ductile/joint/pair.hpp"
 #include "ductile/vocabulary/row.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 

@@ -32,15 +32,16 @@
 // Source: Catto (2005), Iterative Dynamics with Temporal Coherence, GDC: projected Gauss-Seidel.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>
 
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/inverse_mass.hpp"
+#include "ductile/numeric/cholesky.hpp"
 #include "ductile/vocabulary/row.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 
@@ -128,9 +129,6 @@ class RowSweep {
     }
 
   private:
-    using BlockMatrix = Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6>;
-    using BlockVector = Eigen::Matrix<S, Eigen::Dynamic, 1, 0, 6, 1>;
-
     void set(int i, const Vector3<S>& along, const Vector3<S>& about,
              const RowLimits<S>& limits) noexcept {
         directions_.template block<3, 1>(0, i) = along;
@@ -164,24 +162,29 @@ class RowSweep {
     void sweep_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
                        Impulses& impulses) noexcept {
         if (!has_factor_) {
-            BlockMatrix system = mass_.block(first, first, block_, block_);
-            system.diagonal() += compliance_.segment(first, block_);
-            factor_.compute(system);
+            Matrix6<S> system = Matrix6<S>::Identity();
+            for (int j = 0; j < block_; ++j) {
+                for (int i = 0; i < block_; ++i) system(i, j) = mass_(first + i, first + j);
+                system(j, j) += compliance_[first + j];
+            }
+            factor_ = numeric::Cholesky<S, 6>(system);
             has_factor_ = true;
         }
-        if (factor_.info() != Eigen::Success) return;
-        BlockVector wanted(block_);
+        if (!factor_.succeeded()) return;
+        Vector6<S> wanted = Vector6<S>::Zero();
         for (int i = 0; i < block_; ++i) {
             const int row = first + i;
             wanted[i] = missing[row] - compliance_[row] * changed[row];
             for (int j = row; j < count_; ++j) wanted[i] -= mass_(j, row) * changed[j];
         }
-        factor_.solveInPlace(wanted);
-        wanted += impulses.segment(first, block_);
+        wanted = factor_.solve(wanted);
+        Impulses next = impulses;
         for (int i = 0; i < block_; ++i) {
-            if (!(wanted[i] >= lower_[first + i] && wanted[i] <= upper_[first + i])) return;
+            const int row = first + i;
+            next[row] += wanted[i];
+            if (!(next[row] >= lower_[row] && next[row] <= upper_[row])) return;
         }
-        impulses.segment(first, block_) = wanted;
+        impulses = next;
     }
     /// K, and from it the gains.
     void find_mass() noexcept {
@@ -207,7 +210,7 @@ class RowSweep {
     bool has_mass_ = false, has_factor_ = false;
     Vector6<S> gain_;                 ///< 1/(k + C)
     Matrix6<S> mass_;                ///< K, from when a row first changed
-    Eigen::LLT<BlockMatrix> factor_; ///< of K + C of the block, from when first needed
+    numeric::Cholesky<S, 6> factor_; ///< of K + C of the block, from when first needed
 };
 
 } // namespace ductile

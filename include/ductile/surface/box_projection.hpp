@@ -13,12 +13,13 @@
 // doi:10.1016/0305-0548(94)90106-6.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <concepts>
 #include <limits>
+
+#include "ductile/numeric/ldlt.hpp"
 
 namespace ductile {
 
@@ -47,7 +48,7 @@ template <std::floating_point S, int N>
             excess[i] = trial[i] - bound(i);
             for (int j = 0; j < N; ++j) k(i, j) = state(j) == Row::free ? S(0) : stiffness(i, j);
         }
-        const Vector slip = k.ldlt().solve(excess);
+        const Vector slip = numeric::solve_semidefinite(k, excess);
         const Vector given = stiffness * slip;
         force = trial - given;
         bool solved = true;

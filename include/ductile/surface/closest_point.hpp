@@ -19,12 +19,12 @@
 // Newton steps of one Cholesky factorisation each.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <concepts>
 #include <limits>
 
+#include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/surface.hpp"
 
 namespace ductile {
@@ -66,7 +66,7 @@ template <CurvedSurface T>
         const Vector gradient = k * e - trial + force;
         if (gradient.norm() <= 4 * epsilon * trial.norm()) return force;
         const Matrix hessian = k + surface.support_slope(e);
-        const Vector change = -hessian.ldlt().solve(gradient);
+        const Vector change = -numeric::solve_semidefinite(hessian, gradient);
         const S descent = change.dot(gradient);
         const S phi = potential(e, force);
         const S noise = 8 * epsilon * (std::abs(phi) + e.norm() * trial.norm());

@@ -22,13 +22,13 @@
 // Source: the equation of one unknown as in Moré & Sorensen (1983), doi:10.1137/0904038; exact path: Krieg & Krieg (1977), doi:10.1115/1.3454568.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <string>
 
+#include "ductile/numeric/cholesky.hpp"
 #include "ductile/surface/surface.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -129,9 +129,11 @@ class Ellipsoid {
                 break;
             }
             mu += ahead;
-            const Eigen::LLT<Matrix> factors(Matrix::Identity() + mu * stiffness);
+            Matrix system = mu * stiffness;
+            for (int i = 0; i < N; ++i) system(i, i) += 1;
+            const numeric::Cholesky<S, N> factors(system);
             x = factors.solve(trial);
-            slope = -factors.solve(stiffness * x);
+            slope = -factors.solve(Vector(stiffness * x));
         }
         return x / norm(x);
     }

@@ -15,8 +15,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <concepts>
+
+#include "ductile/numeric/lu.hpp"
 
 namespace ductile {
 
@@ -36,7 +37,9 @@ class Impedance {
     /// Rows of which some are elastic.
     Impedance(const Matrix& mass, S dt, const Vector& compliance) noexcept
         : mass_(mass), dt_(dt), rigid_(false) {
-        factors_.compute(Matrix(compliance.asDiagonal() * mass) + Matrix::Identity());
+        Matrix soft = compliance.asDiagonal() * mass;
+        for (int i = 0; i < N; ++i) soft(i, i) += 1;
+        factors_ = numeric::Lu<S, N>(soft);
     }
     Impedance(Matrix&&, S, const Vector&) = delete;
 
@@ -56,7 +59,7 @@ class Impedance {
     const Matrix& mass_;
     S dt_;
     bool rigid_ = true;
-    Eigen::PartialPivLU<Matrix> factors_; ///< of 1 + C M, where not rigid
+    numeric::Lu<S, N> factors_; ///< of 1 + C M, where not rigid
 };
 
 } // namespace ductile

@@ -11,8 +11,7 @@
 // Source: Simo & Hughes (1998), Computational Inelasticity, section 3.6; radial: Wilkins (1964).
 #pragma once
 
-#include <Eigen/Cholesky>
-
+#include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/surface.hpp"
 
 namespace ductile {
@@ -31,7 +30,7 @@ template <YieldSurface T>
     const typename T::Matrix& stiffness) noexcept {
     const typename T::Vector trial = force + stiffness * increment;
     const typename T::Vector next = surface.project(trial, stiffness);
-    return {next, stiffness.ldlt().solve(trial - next)};
+    return {next, numeric::solve_semidefinite(stiffness, typename T::Vector(trial - next))};
 }
 
 /// Radial return.
@@ -41,7 +40,7 @@ template <YieldSurface T>
     const typename T::Matrix& stiffness) noexcept {
     const typename T::Vector trial = force + stiffness * increment;
     const typename T::Vector next = project_radially(surface, trial);
-    return {next, stiffness.ldlt().solve(trial - next)};
+    return {next, numeric::solve_semidefinite(stiffness, typename T::Vector(trial - next))};
 }
 
 } // namespace ductile

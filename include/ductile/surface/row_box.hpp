@@ -59,14 +59,14 @@
 // Ortiz & Simo (1986), doi:10.1002/nme.1620230303.
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <concepts>
 #include <limits>
 
+#include "ductile/numeric/cholesky.hpp"
+#include "ductile/numeric/householder.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/box_projection.hpp"
 #include "ductile/surface/surface.hpp"
 
@@ -85,7 +85,7 @@ template <std::floating_point S, int N>
 [[nodiscard]] Eigen::Matrix<S, N, 1> enforce(const RowBox<S, N>& box,
                                              const Eigen::Matrix<S, N, 1>& trial,
                                              const Eigen::Matrix<S, N, N>& mass) noexcept {
-    const Eigen::Matrix<S, N, N> inverse = box.basis.inverse();
+    const Eigen::Matrix<S, N, N> inverse = numeric::inverse(box.basis);
     const Eigen::Matrix<S, N, N> turned = inverse * mass * inverse.transpose();
     return box.basis * project_on_box<S, N>(inverse * trial, box.lower, box.upper, turned);
 }
@@ -178,10 +178,10 @@ template <YieldSurface T>
     if (!(normal.squaredNorm() > 0)) return box_along(surface, predicted);
 
     RowBox<S, T::dimension> box;
-    const Matrix root = (mass / mass.trace()).llt().matrixL();
+    const Matrix root = numeric::Cholesky<S, T::dimension>(mass / mass.trace()).lower();
     const Vector turned = root.transpose() * normal;
-    box.basis = root * (turned.householderQr().householderQ() * Matrix::Identity());
-    const Matrix covectors = box.basis.inverse();
+    box.basis = root * numeric::basis_along(turned);
+    const Matrix covectors = numeric::inverse(box.basis);
 
     const S value = surface.value(predicted);
     const Vector point =

@@ -14,6 +14,7 @@
 #include "ductile/joint/rotation.hpp"
 #include "ductile/law/linear.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 #include "ductile/surface/scaled.hpp"
@@ -166,7 +167,7 @@ TEST_CASE("the rows of a coupled joint are the chords through the predicted forc
             }
             const V2 predicted =
                 predicted_force(surface, from, velocity, before.start_velocity,
-                                Eigen::Matrix2d(compliance.inverse() / dt));
+                                Eigen::Matrix2d(numeric::inverse(compliance) / dt));
             const auto box = box_along(surface, predicted);
             for (int k = 0; k < 2; ++k) {
                 const auto& row = rows[std::size_t(k)];

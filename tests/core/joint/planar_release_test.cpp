@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <tuple>
 
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/break_release.hpp"
 #include "ductile/joint/planar_release.hpp"
 
 using namespace ductile;

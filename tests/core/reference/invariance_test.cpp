@@ -8,7 +8,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/linear.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 #include "reference/boxed_lcp.hpp"
 #include "reference/world.hpp"
@@ -113,7 +113,7 @@ struct Turners {
         const M3 j = sign * axes.transpose(); // rows: the axes, of b less a
         const M3 response = j * (inverse_a + inverse_b) * j.transpose();
         const V3 start = j * (spin_b - spin_a);
-        const auto rows = joint.prepare({position, start, response.inverse()}, dt);
+        const auto rows = joint.prepare({position, start, numeric::inverse(response)}, dt);
         Matrix<double> a = response;
         Vector<double> excess = start, lower(3), upper(3);
         for (int i = 0; i < 3; ++i) {

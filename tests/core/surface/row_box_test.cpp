@@ -4,12 +4,14 @@
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "cases.hpp"
+#include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/row_box.hpp"
 
 using namespace ductile;
@@ -32,7 +34,7 @@ struct Rows {
     Vector force = Vector::Zero(), velocity = force, last_velocity = force, travel = force;
 
     void step(const Vector& load, double dt) {
-        const Vector loaded = velocity + mass.inverse() * load * dt;
+        const Vector loaded = velocity + numeric::inverse(mass) * load * dt;
         const Vector trial = -(mass * loaded) / dt;
         if constexpr (std::is_same_v<Mapping, Exact>) {
             force = surface.project(trial, mass);
@@ -43,7 +45,7 @@ struct Rows {
                             trial, mass);
         }
         last_velocity = velocity;
-        velocity = loaded + mass.inverse() * force * dt;
+        velocity = loaded + numeric::inverse(mass) * force * dt;
         travel += velocity * dt;
     }
 };
@@ -73,7 +75,7 @@ TEST_CASE("the box solver finds the closest point of a box", "[surface]") {
         const auto k = any_stiffness<Eigen::Matrix4d>();
         const Vector trial = 5 * any_vector<Vector>();
         const Vector force = project_on_box<double, 4>(trial, lower, upper, k);
-        const Vector slip = k.ldlt().solve(trial - force);
+        const Vector slip = numeric::solve_semidefinite(k, Vector(trial - force));
         constexpr double tolerance = 1e-11; // condition about 100
         for (int i = 0; i < 4; ++i) {
             RC_ASSERT(force[i] >= lower[i]);
@@ -172,7 +174,7 @@ TEST_CASE("told the right force, the rows give it and its associated flow", "[su
             const Vector exact = surface.project(trial, mass);
             RC_ASSERT((enforce(box_along(surface, exact), trial, mass) - exact).norm() <= 1e-6);
             // turned rows know one normal only: not where the answer is in a corner of the surface
-            const Vector flow = mass.inverse() * (trial - exact);
+            const Vector flow = numeric::solve_semidefinite(mass, Vector(trial - exact));
             if (flow.normalized().dot(surface.normal(exact).normalized()) < 1 - 1e-12) return;
             RC_ASSERT((enforce(turned_box(surface, exact, mass), trial, mass) - exact).norm() <=
                       1e-6);
@@ -214,13 +216,13 @@ TEST_CASE("turned rows decouple, and slip along the normal", "[surface]") {
     const IAxialBending<double> surface(i_200<double>, BendingAxis::strong);
     const Eigen::Vector2d predicted{0.5, surface.moment(0.5)};
     const auto box = turned_box(surface, predicted, masses);
-    const Eigen::Matrix2d inverse = box.basis.inverse();
+    const Eigen::Matrix2d inverse = numeric::inverse(box.basis);
     const Eigen::Matrix2d turned = inverse * masses * inverse.transpose();
     CHECK(std::abs(turned(0, 1)) < 1e-15 * turned(0, 0));
     // the trial was not quite where it was predicted, but within the window
     const Eigen::Vector2d trial =
         predicted + 0.02 * masses * surface.normal(predicted) + Eigen::Vector2d(-0.002, 0.003);
-    const Eigen::Vector2d slip = masses.inverse() * (trial - enforce(box, trial, masses));
+    const Eigen::Vector2d slip = numeric::inverse(masses) * (trial - enforce(box, trial, masses));
     const Eigen::Vector2d normal = surface.normal(predicted);
     CHECK(std::abs(slip[0] * normal[1] - slip[1] * normal[0]) < 1e-12 * slip.norm());
     CHECK(slip.dot(normal) > 0);

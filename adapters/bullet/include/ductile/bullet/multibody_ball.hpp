@@ -16,7 +16,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -25,6 +24,7 @@
 #include "ductile/joint/coupled_joint.hpp"
 #include "ductile/joint/rotation.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 
 namespace ductile::bullet {
@@ -97,7 +97,7 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
         tracker_.follow(orientation()); // somebody may have turned it between the ticks
         const auto rows = joint_.prepare({.position = tracker_.total,
                                           .velocity = tick.velocity,
-                                          .mass = tick.response.inverse()},
+                                          .mass = numeric::inverse(tick.response)},
                                          tick.dt);
         std::copy(rows.begin(), rows.end(), limits.begin());
     }

@@ -36,16 +36,18 @@
 
 #include <ode/ode.h>
 
-#include <Eigen/LU>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/vocabulary/angle.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile::ode {
 
@@ -172,7 +174,7 @@ class MotorAxis {
         const Vector3<double> whole =
             turns() ? Vector3<double>(to_core(feedback.t1) - arm.cross(linear)) : linear;
         if (motors_ == 1) return axes.col(0).dot(whole);
-        return gram(axes).partialPivLu().solve(axes.transpose() * whole)(number_);
+        return numeric::Lu<double, 3>(gram(axes)).solve(axes.transpose() * whole)[number_];
     }
 
     /// Of A minus B along the axis, as the bodies are now [m/s | rad/s].
@@ -206,7 +208,7 @@ class MotorAxis {
             case dJointTypeLMotor:
                 return axis_response(k, row, held.leftCols(0));
             default:
-                return k.ldlt().solve(row);
+                return numeric::solve_semidefinite(k, row);
         }
     }
 
@@ -264,7 +266,7 @@ class MotorAxis {
     }
     void require_independent_axes() const {
         constexpr double flat = 1e-6;
-        require(gram(axes()).determinant() > flat,
+        require(numeric::determinant(gram(axes())) > flat,
                 "joint: its axes must be independent, else the force of one cannot be told from "
                 "another");
     }

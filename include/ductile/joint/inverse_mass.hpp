@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// Two rigid bodies seen from the point that joins them: how their relative motion there answers to
+// an impulse, and the mass that one axis of the joint feels while others hold.
+//
+// With the relative twist at the joint, t = (v, ω) of body A minus that of body B, an impulse
+// pair λ = (P, L) acting on A at the joint and opposite on B changes t by K λ,
+//
+//   K = K_A + K_B,   K_X = [ 1/m - [r]ₓ I⁻¹ [r]ₓ    -[r]ₓ I⁻¹ ]
+//                          [ I⁻¹ [r]ₓ                 I⁻¹     ]
+//
+// An impulse that changes only the component along the unit axis e by Δu is λ = K⁻¹ e Δu, and the
+// effective mass is m = (eᵀ K⁻¹ e) for a joint whose other five axes are rigid. A body that cannot
+// move has zero inverse mass and inertia.
+//
+// Symbols
+//   r    joint minus centre of mass, world axes          [m], 3-vector
+//   I⁻¹  inverse inertia about the centre of mass, world [1/(kg m²)], 3×3
+//   e    axis: three linear, then three angular entries  [-], 6-vector
+//
+// Source: Featherstone (2008), Rigid Body Dynamics Algorithms, section 2.8 (inverse inertia of a
+// rigid body at a point); written out here.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <concepts>
+
+#include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/lu.hpp"
+#include "ductile/vocabulary/vector.hpp"
+
+namespace ductile {
+
+/// One body's part in a joint. Default: a body that cannot move.
+template <std::floating_point S>
+struct BodyAtJoint {
+    S inverse_mass = 0;                              ///< 1/m [1/kg]
+    Matrix3<S> inverse_inertia = Matrix3<S>::Zero(); ///< I⁻¹, world axes [1/(kg m²)]
+    Vector3<S> arm = Vector3<S>::Zero();             ///< r, world axes [m]
+};
+
+/// Impulse on body A at the joint, world axes; body B takes the opposite.
+template <std::floating_point S>
+struct JointImpulse {
+    Vector3<S> linear = Vector3<S>::Zero();  ///< P [N s]
+    Vector3<S> angular = Vector3<S>::Zero(); ///< L [N m s]
+};
+
+/// Change of a body's velocities by an impulse (P, L) at its joint.
+template <std::floating_point S>
+struct VelocityChange {
+    Vector3<S> linear;  ///< of the centre of mass [m/s]
+    Vector3<S> angular; ///< [rad/s]
+};
+
+template <std::floating_point S>
+[[nodiscard]] VelocityChange<S> velocity_change(const BodyAtJoint<S>& body,
+                                                const JointImpulse<S>& impulse) noexcept {
+    return {body.inverse_mass * impulse.linear,
+            body.inverse_inertia * (body.arm.cross(impulse.linear) + impulse.angular)};
+}
+
+/// K [1/kg and 1/(kg m²)]: what the pair's relative twist at the joint answers to an impulse.
+template <std::floating_point S>
+[[nodiscard]] Matrix6<S> inverse_mass_at_joint(const BodyAtJoint<S>& a,
+                                               const BodyAtJoint<S>& b) noexcept {
+    Matrix3<S> moving = Matrix3<S>::Identity() * (a.inverse_mass + b.inverse_mass);
+    Matrix3<S> turned = Matrix3<S>::Zero(); // [r]ₓ I⁻¹; its transpose is -I⁻¹ [r]ₓ
+    for (const BodyAtJoint<S>* body : {&a, &b}) {
+        Matrix3<S> own;
+        for (int i = 0; i < 3; ++i) own.col(i) = body->arm.cross(body->inverse_inertia.col(i));
+        turned += own;
+        // [r]ₓ ([r]ₓ I⁻¹)ᵀ = -[r]ₓ I⁻¹ [r]ₓ
+        for (int i = 0; i < 3; ++i) {
+            const Vector3<S> row = own.row(i);
+            moving.col(i) += body->arm.cross(row);
+        }
+    }
+    Matrix6<S> k;
+    k.template topLeftCorner<3, 3>() = moving;
+    k.template topRightCorner<3, 3>() = -turned;
+    k.template bottomLeftCorner<3, 3>() = -turned.transpose();
+    k.template bottomRightCorner<3, 3>() = a.inverse_inertia + b.inverse_inertia;
+    return k;
+}
+
+/// Inverse of a symmetric, positive definite 6×6 matrix such as K, by its 3×3 blocks; not finite
+/// where it has none.
+///
+///   [ P  Q  ]⁻¹   [  Z           -Z Q R⁻¹             ]
+///   [ Qᵀ R  ]   = [ -R⁻¹ Qᵀ Z    R⁻¹ + R⁻¹ Qᵀ Z Q R⁻¹ ],   Z = (P - Q R⁻¹ Qᵀ)⁻¹
+template <std::floating_point S>
+[[nodiscard]] Matrix6<S> inverse_by_blocks(const Matrix6<S>& k) noexcept {
+    const Matrix3<S> q = k.template topRightCorner<3, 3>();
+    const Matrix3<S> r = numeric::inverse(Matrix3<S>(k.template bottomRightCorner<3, 3>()));
+    const Matrix3<S> qr = q * r;
+    const Matrix3<S> z =
+        numeric::inverse(Matrix3<S>(k.template topLeftCorner<3, 3>() - qr * q.transpose()));
+    const Matrix3<S> zqr = z * qr;
+    Matrix6<S> result;
+    result.template topLeftCorner<3, 3>() = z;
+    result.template topRightCorner<3, 3>() = -zqr;
+    result.template bottomLeftCorner<3, 3>() = -zqr.transpose();
+    result.template bottomRightCorner<3, 3>() = r + qr.transpose() * zqr;
+    return result;
+}
+
+/// h: impulse that changes the velocity along the unit `axis` by one, changes none along the
+/// columns of `held` (unit, at right angles to `axis` and each other), and has no part along any
+/// other direction. Its share along the axis, e·h, is the mass m that the row feels [kg | kg m²].
+/// Zero where neither body can move.
+///
+///   h = B (Bᵀ K B)⁻¹ (0, ..., 0, 1)ᵀ,   B = (held, e);   with five axes held h = K⁻¹ e
+template <std::floating_point S, class Held>
+[[nodiscard]] Vector6<S> axis_response(const Matrix6<S>& k, const Vector6<S>& axis,
+                                       const Eigen::MatrixBase<Held>& held) noexcept {
+    const auto n = int(held.cols());
+    Matrix6<S> basis = Matrix6<S>::Zero(); // directions that are free ask for nothing
+    for (int i = 0; i < n; ++i) basis.col(i) = held.col(i);
+    basis.col(n) = axis;
+    const Matrix6<S> moved = k.lazyProduct(basis);
+    const Matrix6<S> projected = basis.transpose().lazyProduct(moved);
+    return basis * numeric::solve_semidefinite(projected, Vector6<S>(Vector6<S>::Unit(n)));
+}
+
+} // namespace ductile
