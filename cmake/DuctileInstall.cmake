@@ -53,6 +53,10 @@ if(PROJECT_IS_TOP_LEVEL)
   if(NOT DUCTILE_COMPILED)
     set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE all)
   endif()
-  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libductile-dev RENAME copyright)
+  # Debian wants the licence here; other installs have their own place for it
+  install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libductile-dev RENAME copyright
+          COMPONENT debian EXCLUDE_FROM_ALL)
+  set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR}" ductile ALL /
+                                   "${PROJECT_BINARY_DIR}" ductile debian /)
   include(CPack)
 endif()
