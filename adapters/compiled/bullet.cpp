@@ -2,3 +2,20 @@
 //
 // What of the adapter for Bullet is compiled once (DUCTILE_COMPILED), in either precision.
 #include <ductile/bullet/bullet.hpp>
+
+#include <ductile/bullet/energy_meter.ipp>
+#include <ductile/bullet/joint_constraint.ipp>
+#include <ductile/bullet/kept_mass.ipp>
+#include <ductile/bullet/plastic_constraint.ipp>
+#include <ductile/bullet/plastic_motor.ipp>
+#include <ductile/bullet/self_solved_rows.ipp>
+#include <ductile/bullet/world.ipp>
+
+namespace ductile::bullet {
+
+template class PlasticHinge<UsualAxisJoint>;
+template class PlasticSlider<UsualAxisJoint>;
+template class PlasticMotor<UsualAxisJoint>;
+template class PlasticJoint<UsualSixAxisJoint>;
+
+} // namespace ductile::bullet

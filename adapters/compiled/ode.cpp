@@ -2,3 +2,18 @@
 //
 // What of the adapter for ODE is compiled once (DUCTILE_COMPILED).
 #include <ductile/ode/ode.hpp>
+
+#include <ductile/ode/energy_meter.ipp>
+#include <ductile/ode/one_axis_constraint.ipp>
+#include <ductile/ode/plastic_hinge.ipp>
+#include <ductile/ode/plastic_joint.ipp>
+#include <ductile/ode/world.ipp>
+
+namespace ductile::ode {
+
+template class PlasticHinge<UsualAxisJoint>;
+template class PlasticSlider<UsualAxisJoint>;
+template class PlasticMotor<UsualAxisJoint>;
+template class PlasticJoint<UsualSixAxisJoint>;
+
+} // namespace ductile::ode

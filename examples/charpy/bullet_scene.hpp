@@ -81,16 +81,10 @@ class BulletScene {
         return wall.count();
     }
 
-    [[nodiscard]] ductile::SceneMotion<double> motion() {
-        ductile::SceneMotion<double> m;
-        m.thickness = s_.height;
-        m.plastic_rotation_rate = std::abs(rotation_rate());
-        const double gap = nose_tip().x() - front();
-        if (gap > 0) {
-            m.gap = gap;
-            m.closing_speed = std::max(nose_speed() + middle_speed(), 0.0);
-        }
-        return m;
+    [[nodiscard]] ductile::SceneMotion<double> motion() const {
+        return blow_motion(
+            s_, double(nose_tip().x()) - front(), nose_speed() + middle_speed(), parts_,
+            [](const btRigidBody* part) { return double(part->getAngularVelocity().y()); });
     }
 
     [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
@@ -436,16 +430,6 @@ class BulletScene {
     }
     [[nodiscard]] double middle_speed() const {
         return double(parts_[parts_.size() / 2]->getLinearVelocity().x());
-    }
-    /// Fastest relative turning of neighbouring parts [rad/s].
-    [[nodiscard]] double rotation_rate() const {
-        double fastest = 0;
-        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
-            const double rate = double(parts_[i + 1]->getAngularVelocity().y() -
-                                       parts_[i]->getAngularVelocity().y());
-            fastest = std::max(fastest, std::abs(rate));
-        }
-        return fastest;
     }
 
     Scenario s_;

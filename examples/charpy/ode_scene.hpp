@@ -82,15 +82,8 @@ class OdeScene {
     }
 
     [[nodiscard]] ductile::SceneMotion<double> motion() const {
-        ductile::SceneMotion<double> m;
-        m.thickness = s_.height;
-        m.plastic_rotation_rate = rotation_rate();
-        const double gap = nose_tip().x() - front();
-        if (gap > 0) {
-            m.gap = gap;
-            m.closing_speed = std::max(nose_speed() + middle_speed(), 0.0);
-        }
-        return m;
+        return blow_motion(s_, nose_tip().x() - front(), nose_speed() + middle_speed(), parts_,
+                           [](dBodyID part) { return ductile::ode::angular_velocity(part).y(); });
     }
 
     [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
@@ -374,16 +367,6 @@ class OdeScene {
     }
     [[nodiscard]] double middle_speed() const {
         return ductile::ode::linear_velocity(parts_[parts_.size() / 2]).x();
-    }
-    /// Fastest relative turning of neighbouring parts [rad/s].
-    [[nodiscard]] double rotation_rate() const {
-        double fastest = 0;
-        for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
-            const double rate = ductile::ode::angular_velocity(parts_[i + 1]).y() -
-                                ductile::ode::angular_velocity(parts_[i]).y();
-            fastest = std::max(fastest, std::abs(rate));
-        }
-        return fastest;
     }
 
     /// What ODE gives and takes back, also where the scene is refused. ODE counts its users:

@@ -5,13 +5,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ductile/fidelity/step_control.hpp"
-#include "ductile/energy.hpp"
+#include "ductile/world/ledger.hpp"
 #include "scenario.hpp"
 
 namespace charpy {
@@ -44,6 +46,27 @@ concept Simulation = requires(T simulation, const T constant, double dt) {
 /// at steps of 1 ms and more, and in proportion to the step below. A fixed share would turn the drift
 /// left by a long step into a kick in a short one.
 [[nodiscard]] inline double drift_correction(double dt) { return std::min(0.2, dt / 5e-3); }
+
+/// What steps follow: the gap between nose and specimen that closes, and the bending of the specimen.
+/// @param gap      from the nose's tip to the struck face at the middle [m]
+/// @param closing  of the two [m/s]
+/// @param parts    of the specimen in order; `spin(part)` about the axis of bending [rad/s]
+template <class Parts, class Spin>
+[[nodiscard]] ductile::SceneMotion<double> blow_motion(const Scenario& scenario, double gap,
+                                                       double closing, const Parts& parts,
+                                                       const Spin& spin) {
+    ductile::SceneMotion<double> motion;
+    motion.thickness = scenario.height;
+    for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+        motion.plastic_rotation_rate =
+            std::max(motion.plastic_rotation_rate, std::abs(spin(parts[i + 1]) - spin(parts[i])));
+    }
+    if (gap > 0) {
+        motion.gap = gap;
+        motion.closing_speed = std::max(closing, 0.0);
+    }
+    return motion;
+}
 
 /// The state once, for the history [s, J, J, J, J, J, m/s, rad].
 struct Sample {

@@ -49,6 +49,7 @@
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
 #include "ductile/law/law.hpp"
+#include "ductile/numeric/small_vector.hpp"
 #include "ductile/surface/grown.hpp"
 #include "ductile/surface/impedance.hpp"
 #include "ductile/surface/row_box.hpp"
@@ -174,7 +175,7 @@ class CoupledJoint {
                StepEnd<Scalar, Vector>{.start = start_,
                                        .velocity = reaction.velocity,
                                        .force = taken.force,
-                                       .start_speed = start_.cwiseAbs().maxCoeff(),
+                                       .start_speed = numeric::largest(start_),
                                        .absolute_residual = parameters_.absolute_residual,
                                        .allowed_residual = allowed_residual(reaction.velocity),
                                        .error = taken.error,
@@ -213,7 +214,9 @@ class CoupledJoint {
     [[nodiscard]] Impedance<Scalar, dimension> impedance_of(const Matrix& mass,
                                                             Scalar dt) const noexcept {
         if (all_rigid_) return {mass, dt};
-        return {mass, dt, (parameters_.stiffness * dt * dt).cwiseInverse()};
+        Vector compliance;
+        for (int i = 0; i < dimension; ++i) compliance[i] = 1 / (parameters_.stiffness[i] * dt * dt);
+        return {mass, dt, compliance};
     }
 
     void bound(const Motion& motion, Scalar dt) noexcept {
@@ -231,10 +234,10 @@ class CoupledJoint {
         if (use > 1 + on_surface<Scalar>) predicted = now.project(predicted, impedance.shape());
         const bool flows = use >= 1 - bound_tolerance;
         const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
-        const Scalar power = std::abs(predicted.dot(start_));
+        const Scalar power = std::abs(numeric::dot(predicted, start_));
         grown_ = flows ? growth(power * rate / 2) : now.by; // at the midpoint of the travel ahead
 
-        const Scalar before = std::abs(predicted.dot(state_.start_velocity));
+        const Scalar before = std::abs(numeric::dot(predicted, state_.start_velocity));
         left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
         share_ = unspent_share(left_, power, before, state_.flowing, rate);
         cap_ = criterion_.force_cap(state_.criterion, 0) / first_strength_;
@@ -244,8 +247,8 @@ class CoupledJoint {
         const auto box = box_along(reached, Vector(predicted * (grown_ / now.by)));
         lower_ = box.lower * share_;
         upper_ = box.upper * share_;
-        tolerance_ = bound_tolerance * std::max(upper_.cwiseAbs().maxCoeff(),
-                                                lower_.cwiseAbs().maxCoeff());
+        tolerance_ =
+            bound_tolerance * std::max(numeric::largest(upper_), numeric::largest(lower_));
     }
 
     [[nodiscard]] RowLimits<Scalar> row(int i, Scalar mass, Scalar dt) noexcept {
@@ -282,7 +285,7 @@ class CoupledJoint {
     }
 
     [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
-        const Scalar speed = std::max(start_.cwiseAbs().maxCoeff(), velocity.cwiseAbs().maxCoeff());
+        const Scalar speed = std::max(numeric::largest(start_), numeric::largest(velocity));
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
     }
 
@@ -302,8 +305,13 @@ class CoupledJoint {
     /// [J]: more than round-off where the box was made around the wrong force.
     [[nodiscard]] Scalar off_normal_work(const Vector& force, const Vector& travel, Scalar work) const noexcept {
         if (!(work > 0)) return 0;
-        const Vector associated = -work / surface_.value(force) * surface_.normal(force);
-        return force.cwiseProduct(travel - associated).cwiseAbs().sum() / 2;
+        const Vector normal = surface_.normal(force);
+        const Scalar length = work / surface_.value(force);
+        Scalar sum = 0;
+        for (int i = 0; i < dimension; ++i) {
+            sum += std::abs(force[i] * (travel[i] + length * normal[i]));
+        }
+        return sum / 2;
     }
 
     /// True where the forces reached the cap, which need not be where a row reached its bound.
@@ -366,8 +374,8 @@ class CoupledJoint {
         taken.force = taken.at_bound.select(taken.force / share, taken.force);
         // equivalent speeds: power by strength, as the travel is work by strength
         const Scalar strength = first_strength_ * grown_;
-        const Scalar start = -taken.force.dot(start_) / strength;
-        const Scalar end = -taken.force.dot(reaction.velocity) / strength;
+        const Scalar start = -numeric::dot(taken.force, start_) / strength;
+        const Scalar end = -numeric::dot(taken.force, reaction.velocity) / strength;
         const Scalar held = (start + end) / 2 * dt - taken.flow / (strength * share);
         state_.time -= dt - time_to_run(std::max(held, Scalar(0)) + travel, start, end, share, dt);
     }

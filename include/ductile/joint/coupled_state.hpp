@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "ductile/joint/joint_totals.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/row.hpp"
 
@@ -32,45 +33,23 @@ struct CoupledReaction {
     Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
 };
 
-/// What one committed step did; the work taken is
-///   plastic_work + elastic + other_work + release + lost [J].
+/// What one committed step did.
 template <std::floating_point S, int N>
-struct CoupledStep {
-    Outcome outcome = Outcome::elastic;
-    bool first_yield = false; ///< the joint began to yield in this step
-    bool fracture = false;    ///< it broke in this step: fracture() of the joint reports how
-    S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
-    S elastic = 0;      ///< change of what is stored [J]
-    S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
-    S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
-    S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
-    S residual = 0;     ///< largest violation of a row's complementarity, >= 0 [m/s | rad/s]
-    S step_error = 0;   ///< share of the plastic travel that steps may have misplaced (step_error.hpp)
-    bool coarse = false; ///< the flow that ended in this step had steps too long for it
+struct CoupledStep : Step<S> {
     Eigen::Matrix<S, N, 1> direction = Eigen::Matrix<S, N, 1>::Zero(); ///< flow [m | rad]
 };
 
-/// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
+/// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it. Its
+/// travel is the equivalent one [m | rad of the law].
 template <std::floating_point S, int N, class CriterionState>
-struct CoupledState {
+struct CoupledState : JointTotals<S> {
     Eigen::Matrix<S, N, 1> plastic_offset = Eigen::Matrix<S, N, 1>::Zero(); ///< q_p [m | rad]
     /// of the last step; once broken, just before the break [N | N m]
     Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero();
     Eigen::Matrix<S, N, 1> start_velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u of the last step
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero();       ///< u' of the last step
-    S plastic_travel = 0; ///< p, equivalent, never decreases [m | rad of the law]
-    S plastic_work = 0;   ///< D, never decreases [J]
-    S stored = 0;         ///< elastic energy [J]
-    S other_work = 0;     ///< [J]
-    S lost = 0;           ///< [J]
-    S residual_max = 0;   ///< [m/s | rad/s]
-    S misplaced = 0;      ///< equivalent travel that the steps may have misplaced, summed
-    S dt = 0;             ///< of the last step [s]
-    double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     CriterionState criterion{};
     int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact
-    bool flowing = false; ///< a row ended the last step at its bound
-    bool broken = false;
 
     bool operator==(const CoupledState&) const = default;
 };

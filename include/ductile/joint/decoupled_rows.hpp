@@ -28,9 +28,10 @@
 #include <concepts>
 #include <cstddef>
 
+#include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_pose.hpp"
 #include "ductile/joint/link_types.hpp"
-#include "ductile/joint/pair.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 
@@ -85,11 +86,11 @@ template <std::floating_point S>
     return rows;
 }
 
-/// J' of the rows of `order`, of which the first `Rigid` are rigid. `k`: K in the order of
+/// J' of the rows of `order`, of which the first `rigid` are rigid. `k`: K in the order of
 /// JointAxis; `least`: smallest inverse mass that a row may be left with.
-template <int Rigid, std::floating_point S>
+template <std::floating_point S>
 [[nodiscard]] CombinedRows<S> decoupled_rows(const Matrix6<S>& k,
-                                             const std::array<std::size_t, 6>& order,
+                                             const std::array<std::size_t, 6>& order, int rigid,
                                              S least) noexcept {
     std::array<std::array<S, 6>, 6> left{}; // what is left of K once the rows before are at rest
     for (std::size_t i = 0; i < 6; ++i) {
@@ -98,7 +99,7 @@ template <int Rigid, std::floating_point S>
         }
     }
     CombinedRows<S> rows = single_rows<S>(order);
-    for (std::size_t j = 0; j < std::size_t(Rigid); ++j) {
+    for (std::size_t j = 0; j < std::size_t(rigid); ++j) {
         if (!(left[j][j] > least)) return single_rows<S>(order);
         for (std::size_t i = j + 1; i < 6; ++i) {
             if (left[i][j] == 0) continue;
@@ -108,7 +109,7 @@ template <int Rigid, std::floating_point S>
             for (std::size_t m = j + 1; m <= i; ++m) left[i][m] -= share * left[m][j];
         }
     }
-    for (std::size_t i = std::size_t(Rigid); i < 6; ++i) {
+    for (std::size_t i = std::size_t(rigid); i < 6; ++i) {
         if (!(left[i][i] > least)) return single_rows<S>(order);
     }
     return rows;

@@ -1,32 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// What a plastic axis remembers between steps, what one step of it did, and its numerical parameters.
+// What a plastic axis remembers between steps, and its numerical parameters.
 #pragma once
 
 #include <concepts>
 #include <limits>
 
+#include "ductile/joint/joint_totals.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
-
-/// What one committed step did. Plain value. The work that the row took from the bodies is
-///   plastic_work + elastic + other_work + release + lost [J].
-template <std::floating_point S>
-struct Step {
-    Outcome outcome = Outcome::elastic;
-    bool first_yield = false; ///< the joint began to yield in this step
-    bool fracture = false;    ///< it broke in this step: fracture() of the joint reports how
-    S plastic_work = 0; ///< dissipated by flow, >= 0 [J]
-    S elastic = 0;      ///< change of what is stored, elastic and by a back force [J]
-    S other_work = 0;   ///< solver residual, drift removal, numerical damping; either sign [J]
-    S release = 0;      ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
-    S lost = 0;         ///< stored energy that a break set free inside the part, >= 0 [J]
-    S residual = 0;     ///< violation of the row's complementarity, >= 0 [m/s | rad/s]
-    S step_error = 0;   ///< share of the plastic travel that steps may have misplaced (step_error.hpp)
-    bool coarse = false; ///< the flow that ended in this step had steps too long for it
-};
 
 /// What the engine's step did to a row.
 template <std::floating_point S>
@@ -43,24 +27,13 @@ struct RowTaken {
 
 /// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
 template <std::floating_point S, class LawState, class CriterionState>
-struct OneAxisState {
+struct OneAxisState : JointTotals<S> {
     S plastic_offset = 0; ///< q_p, geometric rest position [m | rad]
-    S plastic_travel = 0; ///< p, work-conjugate, never decreases [m | rad]
-    S plastic_work = 0;   ///< D, never decreases [J]
-    S stored = 0;         ///< elastic energy, and what a back force holds [J]
-    S other_work = 0;     ///< sum of Step::other_work, either sign [J]
-    S lost = 0;           ///< stored energy that the break set free [J]
     S start_velocity = 0; ///< u of the last step [m/s | rad/s]
     S velocity = 0;       ///< u' of the last step [m/s | rad/s]
-    S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
-    S misplaced = 0;      ///< travel that the steps' length may have misplaced, summed [m | rad]
-    S dt = 0;             ///< of the last step [s]
     S force = 0;          ///< of the last step; once broken, just before the break [N | N m]
-    double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     LawState law{};
     CriterionState criterion{};
-    bool flowing = false; ///< the last step ended at a bound
-    bool broken = false;
 
     bool operator==(const OneAxisState&) const = default;
 };

@@ -71,7 +71,13 @@ class Lu {
     /// A⁻¹; not finite where A is singular.
     [[nodiscard]] Matrix inverse() const noexcept {
         Matrix result;
-        for (int j = 0; j < N; ++j) result.col(j) = solve(Vector::Unit(j));
+        Vector unit = Vector::Zero();
+        for (int j = 0; j < N; ++j) {
+            unit[j] = 1;
+            const Vector column = solve(unit);
+            for (int i = 0; i < N; ++i) result(i, j) = column[i];
+            unit[j] = 0;
+        }
         return result;
     }
 

@@ -23,12 +23,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
+#include <algorithm>
 #include <concepts>
 #include <limits>
 #include <string>
 
 #include "ductile/numeric/cholesky.hpp"
+#include "ductile/numeric/small_vector.hpp"
 #include "ductile/surface/surface.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -62,19 +63,20 @@ class Ellipsoid {
     [[nodiscard]] const Vector& capacity() const noexcept { return capacity_; } ///< c [N | N m]
 
     [[nodiscard]] S value(const Vector& force) const noexcept {
-        return norm(force.cwiseQuotient(capacity_));
+        return numeric::length(shares(force));
     }
 
     [[nodiscard]] Vector normal(const Vector& force) const noexcept {
-        const Vector use = force.cwiseQuotient(capacity_);
-        const S value = norm(use);
+        Vector result = shares(force);
+        const S value = numeric::length(result);
         if (!(value > 0)) return Vector::Zero();
-        return (use / value).cwiseQuotient(capacity_);
+        for (int i = 0; i < N; ++i) result[i] = result[i] / value / capacity_[i];
+        return result;
     }
 
     [[nodiscard]] Vector support(const Vector& flow) const noexcept {
         const Vector work = capacity_.cwiseProduct(flow);
-        const S dissipated = norm(work);
+        const S dissipated = numeric::length(work);
         if (!(dissipated > 0)) return Vector::Zero();
         return capacity_.cwiseProduct(work / dissipated);
     }
@@ -82,7 +84,7 @@ class Ellipsoid {
     /// D (1 - w wᵀ) D / |D e| with the unit vector w = D e/|D e|.
     [[nodiscard]] Matrix support_slope(const Vector& flow) const noexcept {
         const Vector work = capacity_.cwiseProduct(flow);
-        const S dissipated = norm(work);
+        const S dissipated = numeric::length(work);
         if (!(dissipated > 0)) return Matrix::Zero();
         const Vector w = work / dissipated;
         const Matrix tangent = (Matrix::Identity() - w * w.transpose()) / dissipated;
@@ -91,55 +93,81 @@ class Ellipsoid {
 
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
         if (!(value(force) > 1 + on_surface<S>)) return force; // to the bit
-        const Vector d = capacity_.cwiseInverse();
-        const Matrix k = d.asDiagonal() * stiffness * d.asDiagonal();
-        return capacity_.cwiseProduct(
-            closest_on_sphere(d.cwiseProduct(force), Matrix(k / (k.trace() / S(N)))));
+        Matrix k;
+        S trace = 0;
+        for (int j = 0; j < N; ++j) {
+            for (int i = 0; i < N; ++i) k(i, j) = stiffness(i, j) / (capacity_[i] * capacity_[j]);
+            trace += k(j, j);
+        }
+        const S scale = S(N) / trace;
+        for (int j = 0; j < N; ++j) {
+            for (int i = 0; i < N; ++i) k(i, j) *= scale;
+        }
+        Vector on = closest_on_sphere(shares(force), k);
+        for (int i = 0; i < N; ++i) on[i] *= capacity_[i];
+        return on;
     }
 
     [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept {
-        const Vector squares = point.cwiseQuotient(capacity_).cwiseAbs2();
-        const Vector others = squares.sum() - squares.array();
-        const Vector reach = capacity_.array() * (1 - others.array()).max(S(0)).sqrt();
-        return {-reach, reach};
+        const Vector x = shares(point);
+        const S square = numeric::dot(x, x);
+        Vector left;
+        for (int i = 0; i < N; ++i) left[i] = std::max(1 - (square - x[i] * x[i]), S(0));
+        const Vector root = left.cwiseSqrt();
+        Chords<Vector> chords;
+        for (int i = 0; i < N; ++i) {
+            chords.upper[i] = capacity_[i] * root[i];
+            chords.lower[i] = -chords.upper[i];
+        }
+        return chords;
     }
 
   private:
-    /// |x|, whatever its size: Eigen's stableNorm costs several times as much where that is usual.
-    static S norm(const Vector& x) noexcept {
-        constexpr S least = std::numeric_limits<S>::min() / std::numeric_limits<S>::epsilon();
-        const S square = x.squaredNorm();
-        return square > least && square < 1 / least ? std::sqrt(square) : x.stableNorm();
+    /// D⁻¹ f.
+    [[nodiscard]] Vector shares(const Vector& force) const noexcept {
+        Vector x;
+        for (int i = 0; i < N; ++i) x[i] = force[i] / capacity_[i];
+        return x;
     }
 
     /// `trial` outside the unit sphere. Cost: a Cholesky factorisation for each of 1 to 5 steps.
-    static Vector closest_on_sphere(const Vector& trial, const Matrix& stiffness) noexcept {
-        constexpr int max_steps = 60;
-        Vector x = trial;
-        Vector slope = -(stiffness * x); // dx/dμ
-        S mu = 0;
-        for (int step = 0; step < max_steps; ++step) {
-            const S size = norm(x);
-            const S shrinks = -(x / size).dot(slope / size);
-            const S ahead = (size - 1) / shrinks;
-            // what a straight step leaves out is below |slope| ahead²/μ
-            const S left_out = norm(slope) * ahead * ahead;
-            if (!(left_out > std::numeric_limits<S>::epsilon() * mu)) {
-                x += slope * ahead;
-                break;
-            }
-            mu += ahead;
-            Matrix system = mu * stiffness;
-            for (int i = 0; i < N; ++i) system(i, i) += 1;
-            const numeric::Cholesky<S, N> factors(system);
-            x = factors.solve(trial);
-            slope = -factors.solve(Vector(stiffness * x));
-        }
-        return x / norm(x);
-    }
+    static Vector closest_on_sphere(const Vector& trial, const Matrix& stiffness) noexcept;
 
     Vector capacity_;
 };
+
+template <std::floating_point S, int N>
+auto Ellipsoid<S, N>::closest_on_sphere(const Vector& trial, const Matrix& stiffness) noexcept
+    -> Vector {
+    constexpr int max_steps = 60;
+    Vector x = trial;
+    Vector slope = numeric::times(stiffness, x); // -dx/dμ
+    S mu = 0;
+    for (int step = 0; step < max_steps; ++step) {
+        const S size = numeric::length(x);
+        S shrinks = 0; // divided one by one: the squares of x may be out of range
+        for (int i = 0; i < N; ++i) shrinks += (x[i] / size) * (slope[i] / size);
+        const S ahead = (size - 1) / shrinks;
+        // what a straight step leaves out is below |slope| ahead²/μ
+        const S left_out = numeric::length(slope) * ahead * ahead;
+        if (!(left_out > std::numeric_limits<S>::epsilon() * mu)) {
+            for (int i = 0; i < N; ++i) x[i] -= slope[i] * ahead;
+            break;
+        }
+        mu += ahead;
+        Matrix system;
+        for (int j = 0; j < N; ++j) {
+            for (int i = 0; i < N; ++i) system(i, j) = mu * stiffness(i, j);
+            system(j, j) += 1;
+        }
+        const numeric::Cholesky<S, N> factors(system);
+        x = factors.solve(trial);
+        slope = factors.solve(numeric::times(stiffness, x));
+    }
+    const S size = numeric::length(x);
+    for (int i = 0; i < N; ++i) x[i] /= size;
+    return x;
+}
 
 static_assert(ChordedSurface<Ellipsoid<double, 2>> && ChordedSurface<Ellipsoid<float, 6>>);
 

@@ -18,6 +18,7 @@
 #include <concepts>
 
 #include "ductile/numeric/lu.hpp"
+#include "ductile/numeric/small_vector.hpp"
 
 namespace ductile {
 
@@ -37,22 +38,33 @@ class Impedance {
     /// Rows of which some are elastic.
     Impedance(const Matrix& mass, S dt, const Vector& compliance) noexcept
         : mass_(mass), dt_(dt), rigid_(false) {
-        Matrix soft = compliance.asDiagonal() * mass;
-        for (int i = 0; i < N; ++i) soft(i, i) += 1;
+        Matrix soft;
+        for (int j = 0; j < N; ++j) {
+            for (int i = 0; i < N; ++i) soft(i, j) = compliance[i] * mass(i, j);
+            soft(j, j) += 1;
+        }
         factors_ = numeric::Lu<S, N>(soft);
     }
     Impedance(Matrix&&, S, const Vector&) = delete;
 
     /// Z v [N | N m] for a velocity v [m/s | rad/s].
     [[nodiscard]] Vector operator*(const Vector& velocity) const noexcept {
-        if (rigid_) return mass_ * velocity / dt_;
-        return mass_ * factors_.solve(velocity) / dt_;
+        Vector force = numeric::times(mass_, rigid_ ? velocity : factors_.solve(velocity));
+        for (int i = 0; i < N; ++i) force[i] /= dt_;
+        return force;
     }
 
     /// Z dt, all that a projection needs [kg | kg m²].
     [[nodiscard]] Matrix shape() const noexcept {
         if (rigid_) return mass_;
-        return mass_ * factors_.inverse();
+        const Matrix inverse = factors_.inverse();
+        Matrix result = Matrix::Zero();
+        for (int j = 0; j < N; ++j) {
+            for (int k = 0; k < N; ++k) {
+                for (int i = 0; i < N; ++i) result(i, j) += mass_(i, k) * inverse(k, j);
+            }
+        }
+        return result;
     }
 
   private:

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// What a joint of any kind and engine says of the step just done, and what a world makes of it.
+// What a joint of any kind and engine says of the step just done.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <optional>
-#include <string>
-#include <string_view>
 
 #include "ductile/fracture/event.hpp"
+#include "ductile/joint/joint_totals.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -35,33 +32,18 @@ struct JointReport {
 /// Report of a joint of the core after a step of it.
 /// @param outcome         of all rows, rigid ones included
 /// @param rigid_residual  worst of the rigid rows [m/s | rad/s]
-template <class Joint, class Step>
-[[nodiscard]] JointReport<typename Joint::Scalar> joint_report(
-    const Joint& joint, const Step& last, Outcome outcome,
-    typename Joint::Scalar rigid_residual) noexcept {
-    return {.outcome = outcome,
+template <std::floating_point S>
+[[nodiscard]] JointReport<S> joint_report(const JointTotals<S>& totals, const Step<S>& last,
+                                          const std::optional<FractureEvent<S>>& fracture,
+                                          Outcome outcome, S rigid_residual) noexcept {
+    return {.outcome = totals.broken ? Outcome::broken : outcome,
             .first_yield = last.first_yield,
             .coarse = last.coarse,
             .residual = std::max(last.residual, rigid_residual),
-            .plastic_travel = joint.state().plastic_travel,
-            .absorbed_energy = joint.state().plastic_work,
+            .plastic_travel = totals.plastic_travel,
+            .absorbed_energy = totals.plastic_work,
             .step_error = last.step_error,
-            .fracture = joint.fracture()};
-}
-
-/// Report of the core's Link after a step of it.
-/// @param velocities  of its six rows now; axes that are not plastic do not count [m/s | rad/s]
-template <class Link, class Velocities>
-[[nodiscard]] auto link_report(const Link& link, const Velocities& velocities) noexcept {
-    auto report =
-        joint_report(link.joint(), link.last(), link.broken() ? Outcome::broken : link.outcome(),
-                     link.rigid_residual());
-    if (link.broken()) return report;
-    for (const auto axis : link.axes()) {
-        auto& rate = turns(axis) ? report.rotation_rate : report.elongation_rate;
-        rate = std::max(rate, std::abs(velocities[std::ptrdiff_t(index(axis))]));
-    }
-    return report;
+            .fracture = fracture};
 }
 
 /// Report of a joint that the engine left out of the step: it did nothing. A broken one stays so,
@@ -75,36 +57,5 @@ template <std::floating_point S>
     last.outcome = Outcome::elastic;
     return last;
 }
-
-enum class EventKind {
-    yielded,    ///< flowed for the first time
-    broke,      ///< see JointEvent::fracture
-    unreliable, ///< the solver left it unsolved; told once per joint
-    coarse,     ///< the step was too long for what it did; told once per joint
-};
-
-[[nodiscard]] constexpr std::string_view to_string(EventKind kind) noexcept {
-    switch (kind) {
-        case EventKind::yielded:
-            return "yielded";
-        case EventKind::broke:
-            return "broke";
-        case EventKind::unreliable:
-            return "unreliable";
-        case EventKind::coarse:
-            return "coarse";
-    }
-    return "unknown";
-}
-
-/// Plain value.
-template <std::floating_point S>
-struct JointEvent {
-    EventKind kind = EventKind::yielded;
-    std::size_t joint = 0; ///< number that the watch gave it
-    std::string name;      ///< of the joint
-    double time = 0;       ///< at the end of the step, for a break within it [s]
-    JointReport<S> report;
-};
 
 } // namespace ductile

@@ -18,9 +18,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ductile/energy.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/leapfrog.hpp"
+#include "ductile/world/ledger.hpp"
 #include "ductile/world/supervisor.hpp"
 
 namespace ductile {

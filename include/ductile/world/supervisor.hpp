@@ -24,7 +24,7 @@
 #include "ductile/fidelity/step_control.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/effort.hpp"
-#include "ductile/world/joint_report.hpp"
+#include "ductile/world/joint_event.hpp"
 #include "ductile/world/watch.hpp"
 
 namespace ductile {
@@ -46,9 +46,10 @@ inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n
 /// What a world says of a joint that a step was first too long for.
 [[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
     std::ostringstream line;
-    line << "ductile: joint \"" << event.name << "\" moved too much in the step that ended at t = "
-         << event.time << " s: its plastic travel may be off by "
-         << 100 * event.report.step_error << " %; take shorter steps, or World::advance";
+    line << "ductile: joint \"" << event.name
+         << "\" moved too much in the step that ended at t = " << event.time
+         << " s: its plastic travel may be off by " << 100 * event.report.step_error
+         << " %; take shorter steps, or World::advance";
     return line.str();
 }
 
@@ -131,8 +132,8 @@ class Supervisor {
     /// Of the last step whose motion was told.
     [[nodiscard]] bool may_miss_contact() const noexcept { return may_miss_contact_; }
 
-    /// Asks all joints after a part of a step that ended at `time` [s]; suspect(joint) is called for
-    /// each that was left unsolved.
+    /// Asks all joints after a part of a step that ended at `time` [s]; suspect(joint) is called
+    /// for each that was left unsolved.
     template <class Suspect>
     void look(double time, Suspect&& suspect) {
         time_ = time;

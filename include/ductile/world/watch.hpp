@@ -6,8 +6,8 @@
 //   const auto post = watch.add("lamp post");
 //   every step:  watch.open(time);  watch.see(post, report);  ...  watch.events()
 //
-// A joint that is told as unreliable or too coarsely stepped once is not told again, but counted. A joint that is broken
-// when first seen (restored from a saved state) is not told as broken.
+// A joint that is told as unreliable or too coarsely stepped once is not told again, but counted. A
+// joint that is broken when first seen (restored from a saved state) is not told as broken.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/world/joint_report.hpp"
+#include "ductile/world/joint_event.hpp"
 
 namespace ductile {
 

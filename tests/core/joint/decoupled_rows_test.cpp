@@ -69,7 +69,7 @@ TEST_CASE("decoupled rows do not push each other, and bounds hold as before",
         pose.look(body(mass_a), body(mass_b));
         const Matrix6<double> k =
             inverse_mass_along_b(pose, pose.orientation(), pose.displacement(), mass_a, mass_b);
-        const Matrix6<double> rows = matrix(decoupled_rows<rigid>(k, order, 1e-15));
+        const Matrix6<double> rows = matrix(decoupled_rows(k, order, rigid, 1e-15));
         Matrix6<double> pushed = rows * k * rows.transpose();
         for (int i = 0; i < 6; ++i) {
             for (int j = 0; j < 6; ++j) {
@@ -89,11 +89,11 @@ TEST_CASE("rows that no body can follow stay as they are", "[joint][decoupled]")
     const Order order{3, 4, 0, 1, 2, 5};
     Matrix6<double> single = Matrix6<double>::Zero();
     for (int i = 0; i < 6; ++i) single(i, Eigen::Index(order[std::size_t(i)])) = 1;
-    CHECK(matrix(decoupled_rows<5>(Matrix6<double>(Matrix6<double>::Zero()), order, 1e-15)) ==
+    CHECK(matrix(decoupled_rows(Matrix6<double>(Matrix6<double>::Zero()), order, 5, 1e-15)) ==
           single);
 
     // a force that turns the body only about an axis that is held already
     Matrix6<double> k = Matrix6<double>::Identity();
     k(0, 0) = k(3, 0) = k(0, 3) = 1; // left of row 0 after row 3: nothing
-    CHECK(matrix(decoupled_rows<5>(k, order, 1e-15)) == single);
+    CHECK(matrix(decoupled_rows(k, order, 5, 1e-15)) == single);
 }

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ductile/joint/decoupled_rows.hpp"
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/row_sweep.hpp"
 
 using namespace ductile;
@@ -72,7 +72,7 @@ TEST_CASE("decoupled rows are solved by a single sweep", "[joint][sweep]") {
         const Velocities start = velocities();
         V6 target;
         target << vector(), vector();
-        const auto rows = decoupled_rows<5>(inverse_mass_at_joint(a, b), order, 1e-15);
+        const auto rows = decoupled_rows(inverse_mass_at_joint(a, b), order, 5, 1e-15);
         Sweep sweep;
         sweep.open(swept(a), swept(b));
         for (const CombinedRow<double>& row : rows) {

@@ -3,13 +3,9 @@
 // The front door of the Bullet adapter. Link ductile::bullet (float) or ductile::bullet_float64.
 #pragma once
 
-#include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/draw.hpp"
-#include "ductile/bullet/energy.hpp"
-#include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/joint_constraint.hpp"
-#include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/multibody_ball.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/multibody_energy.hpp"
@@ -20,10 +16,8 @@
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
 #include "ductile/bullet/plastic_slider.hpp"
-#include "ductile/bullet/reaction.hpp"
 #include "ductile/bullet/shifted_lcp.hpp"
 #include "ductile/bullet/soft_mlcp_solver.hpp"
-#include "ductile/bullet/soft_rows.hpp"
 #include "ductile/bullet/soft_solvers.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/ductile.hpp"

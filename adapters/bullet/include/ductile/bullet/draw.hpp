@@ -18,7 +18,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/joint_view.hpp"
 
 namespace ductile::bullet {
 
@@ -49,11 +49,6 @@ inline void draw(const JointView& view, btIDebugDraw& drawer, btScalar size) {
                        view.frame_b.getBasis().getColumn((i + 1) % 3), size, size,
                        std::min(turned, btScalar(0)), std::max(turned, btScalar(0)), colour, true);
     }
-}
-
-/// At the constraint's own size of drawing (setDbgDrawSize).
-inline void draw(PlasticConstraint& constraint, btIDebugDraw& drawer) {
-    draw(constraint.view(), drawer, constraint.getDbgDrawSize());
 }
 
 } // namespace ductile::bullet

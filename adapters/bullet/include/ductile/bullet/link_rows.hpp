@@ -27,13 +27,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/kept_mass.hpp"
+#include "ductile/joint/any_link.hpp"
 #include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/isolated_pair.hpp"
 #include "ductile/joint/joint_axis.hpp"
-#include "ductile/joint/link.hpp"
 #include "ductile/joint/row_sweep.hpp"
 
 namespace ductile::bullet {
@@ -114,9 +115,8 @@ inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRi
 
 /// Bullet's order of rows, by axis: turning ones first, as their combination with the others is the
 /// sparsest; those of the joint, `plastic`, last.
-template <std::size_t N>
-[[nodiscard]] std::array<std::size_t, 6> rigid_rotations_first(
-    const std::array<JointAxis, N>& plastic) {
+[[nodiscard]] inline std::array<std::size_t, 6> rigid_rotations_first(
+    std::span<const JointAxis> plastic) {
     std::array<std::size_t, 6> order{};
     std::size_t row = 0;
     for (const bool turning : {true, false}) {
@@ -154,8 +154,7 @@ void write_limits(btTypedConstraint::btConstraintInfo2& info, int row,
 }
 
 /// True where no row of the link's last `prepare` is soft or given.
-template <class Joint>
-[[nodiscard]] bool all_hard(const Link<Joint>& link) noexcept {
+[[nodiscard]] inline bool all_hard(const AnyLink<double>& link) noexcept {
     for (const JointAxis axis : link.axes()) {
         const RowLimits<double>& limits = link.limits()[index(axis)];
         if (limits.compliance > 0 || !(limits.lower < limits.upper)) return false;
@@ -165,10 +164,9 @@ template <class Joint>
 
 /// Hard rows of the link's last `prepare`, combined as `combined` says; that of axis `order[i]` is
 /// row i. `dt`: for which its forces act [s].
-template <class Joint>
-void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Joint>& link,
-                     const std::array<std::size_t, 6>& order,
-                     const CombinedRows<double>& combined, double dt) noexcept {
+inline void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const AnyLink<double>& link,
+                            const std::array<std::size_t, 6>& order,
+                            const CombinedRows<double>& combined, double dt) noexcept {
     const LinkPose<double>& pose = link.pose();
     const auto& rows = link.limits();
     const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
@@ -188,7 +186,7 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
         at += info.rowskip;
     }
     // Bullet leaves a row without bounds
-    for (int row = 6 - Link<Joint>::dimension; row < 6; ++row) {
+    for (int row = 6 - int(link.axes().size()); row < 6; ++row) {
         const RowLimits<double>& limits = rows[order[std::size_t(row)]];
         info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
         info.m_upperLimit[row * info.rowskip] = as_impulse(limits.upper, dt);
@@ -196,12 +194,12 @@ void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const Link<Join
 }
 
 /// The rows of the link's last `prepare`, not pushing each other as `decoupled` says, for the
-/// constraint to solve by itself; that of axis `order[i]` is row i. `dt`: for which they act [s].
-template <class Joint>
-void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
-              const std::array<std::size_t, 6>& order, const DecoupledLink<Joint>& decoupled,
-              double dt) noexcept {
-    constexpr int dimension = Link<Joint>::dimension;
+/// constraint to solve by itself (null: all are the joint's); that of axis `order[i]` is row i.
+/// `dt`: for which they act [s].
+inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
+                     const std::array<std::size_t, 6>& order, const DecoupledLink* decoupled,
+                     double dt) noexcept {
+    const auto dimension = int(link.axes().size());
     const Matrix3<double>& axes = link.pose().axes();
     const auto& rows = link.limits();
     const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
@@ -211,31 +209,30 @@ void add_rows(RowSweep<double>& sweep, const Link<Joint>& link,
         RowLimits<double> limits = rows[order[i]];
         limits.lower *= dt;
         limits.upper *= dt;
-        if constexpr (dimension == 6) {
+        if (decoupled == nullptr) {
             const Vector3<double> direction = axes.col(Eigen::Index(order[i] % 3));
             order[i] < 3 ? sweep.add(direction, none, limits) : sweep.add(none, direction, limits);
         } else {
-            const CombinedRow<double>& row = decoupled.rows()[i];
+            const CombinedRow<double>& row = decoupled->rows()[i];
             limits.bias = row.force.dot(moving) + row.moment.dot(turning);
             sweep.add(axes * row.force, axes * row.moment, limits);
         }
     }
-    if constexpr (dimension > 1) sweep.join_last(dimension);
+    if (dimension > 1) sweep.join_last(dimension);
 }
 /// Forces along the axes of the link from the impulses of such rows [N | N m].
-template <class Joint>
-[[nodiscard]] Vector6<double> forces_of_impulses(const std::array<std::size_t, 6>& order,
-                                                 const DecoupledLink<Joint>& decoupled,
-                                                 const RowSweep<double>::Impulses& impulses,
-                                                 double dt) noexcept {
+[[nodiscard]] inline Vector6<double> forces_of_impulses(const std::array<std::size_t, 6>& order,
+                                                        const DecoupledLink* decoupled,
+                                                        const RowSweep<double>::Impulses& impulses,
+                                                        double dt) noexcept {
     Vector6<double> forces = Vector6<double>::Zero();
     for (std::size_t i = 0; i < 6; ++i) {
         const double force = impulses[Eigen::Index(i)] / dt;
-        if constexpr (Link<Joint>::dimension == 6) {
+        if (decoupled == nullptr) {
             forces[Eigen::Index(order[i])] = force;
         } else {
-            forces.head<3>() += force * decoupled.rows()[i].force;
-            forces.tail<3>() += force * decoupled.rows()[i].moment;
+            forces.head<3>() += force * decoupled->rows()[i].force;
+            forces.tail<3>() += force * decoupled->rows()[i].moment;
         }
     }
     return forces;
@@ -243,10 +240,9 @@ template <class Joint>
 
 /// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver
 /// honours C. `dt`: for which the forces act [s].
-template <class Joint>
-void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
-                const btRigidBody& b, const Link<Joint>& link,
-                const std::array<std::size_t, 6>& order, bool exact, double dt) noexcept {
+inline void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
+                       const btRigidBody& b, const AnyLink<double>& link,
+                       const std::array<std::size_t, 6>& order, bool exact, double dt) noexcept {
     const double tick = 1 / double(info.fps);
     Vector6<double> alone = Vector6<double>::Zero();
     bool solved_alone = false;

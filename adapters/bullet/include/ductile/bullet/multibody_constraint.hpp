@@ -43,7 +43,6 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -54,6 +53,7 @@
 #include <vector>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/world/joint_report.hpp"
@@ -148,7 +148,8 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     template <class Joint, class JointStep>
     [[nodiscard]] JointReport<double> report_of(const Joint& joint, const JointStep& last,
                                                 Outcome outcome) const noexcept {
-        auto now = joint_report(joint, last, broken() ? Outcome::broken : outcome, 0.0);
+        auto now =
+            joint_report<double>(joint.state(), last, joint.fracture(), outcome, 0.0);
         if (!broken()) now.rotation_rate = velocity().cwiseAbs().maxCoeff();
         return asleep() ? idle_report(now) : now;
     }
@@ -308,7 +309,7 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     /// impulse · (u + u')/2.
     void apply_release() {
         const Values along = release_direction_.normalized();
-        const Values held = response_.inverse() * along; // zero for rows that are not there
+        const Values held = numeric::inverse(response_) * along; // zero for rows that are not there
         const double mass = along.dot(held);
         const double momentum = held.dot(velocity());
         const double root = std::sqrt(momentum * momentum + 2 * mass * release_.energy);

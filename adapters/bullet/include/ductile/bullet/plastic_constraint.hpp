@@ -1,62 +1,81 @@
 // SPDX-License-Identifier: MIT
 //
 // A plastic constraint of any kind, as a world, an energy account, a debug drawer or a solver sees
-// it.
+// it, and its life in a world.
+//
+// Committing. The constraint books each internal tick by itself: at the tick's end where it was
+// added by `add_to` (which registers an action), otherwise when Bullet opens the next tick or when
+// somebody asks it for a result, whichever comes first. Nothing has to be called by hand. A tick in
+// which the bodies slept, or the constraint was disabled, was not solved and is not booked.
+//   Only with `add_to` may bodies be moved by hand (not only given velocities) between a tick and
+//   what comes first.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
-#include <LinearMath/btTransform.h>
 
+#include "ductile/bullet/joint_view.hpp"
+#include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/bullet/soft_rows.hpp"
-#include "ductile/joint/pair.hpp"
-#include "ductile/vocabulary/row.hpp"
-#include "ductile/world/joint_report.hpp"
+#include "ductile/world/joint_queries.hpp"
 #include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
-/// How a joint stands after the last tick: what there is to draw.
-struct JointView {
-    btTransform frame_a; ///< of the joint in A, world
-    btTransform frame_b; ///< of the joint in B, world
-    Outcome outcome = Outcome::elastic;
-    double utilisation = 0;                                   ///< 0: no load, 1: it flows [-]
-    Vector6<double> plastic_offset = Vector6<double>::Zero(); ///< order of JointAxis [m | rad]
-};
-
-/// Everything but the law. A query settles the last tick first where that is still open; hence no
-/// query is const.
-class PlasticConstraint : public btTypedConstraint, public SoftRows {
+/// Everything but the joint.
+class PlasticConstraint : public btTypedConstraint, public SoftRows, public SelfSolvedRows {
   public:
-    using btTypedConstraint::btTypedConstraint;
+    PlasticConstraint(const PlasticConstraint&) = delete;
+    PlasticConstraint& operator=(const PlasticConstraint&) = delete;
+    ~PlasticConstraint() override = default;
 
-    [[nodiscard]] virtual double absorbed_energy() = 0; ///< D [J]
-    /// Elastic energy, and what a back force holds [J].
-    [[nodiscard]] virtual double stored_energy() = 0;
-    /// Of the break, if there was one.
-    [[nodiscard]] virtual const BreakRelease<double>& release() = 0;
-    [[nodiscard]] virtual JointView view() = 0;
-    /// Of the last tick; where that was none of the constraint's, because its bodies slept or it is
-    /// disabled, an idle one. Speeds are those of now.
-    [[nodiscard]] virtual JointReport<double> report() = 0;
+    /// Adds the constraint and its booking at the end of each tick to a world.
+    void add_to(btDynamicsWorld& world) { enter(world, parts_bodies_); }
+    void remove_from(btDynamicsWorld& world);
+
+    [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
+    [[nodiscard]] virtual JointView view() const = 0;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     /// True from add_to to remove_from.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
 
-  protected:
-    /// False where the last tick left the constraint out.
-    [[nodiscard]] bool acts() const {
-        const auto awake = [](const btRigidBody& body) {
-            return !body.isStaticOrKinematicObject() && body.isActive();
-        };
-        return isEnabled() && (awake(m_rbA) || awake(m_rbB));
+    /// Bullet's own: sequential impulse calls it in each sweep.
+    void solveConstraintObsolete(btSolverBody& a, btSolverBody& b, btScalar) override {
+        if (is_open()) sweep(a, b);
     }
+
+  protected:
+    /// `parts_bodies`: they do not collide with each other while the constraint is in a world.
+    PlasticConstraint(btRigidBody& a, btRigidBody& b, bool parts_bodies);
+    void enter(btDynamicsWorld& world, bool disable_collisions_between_bodies);
+    /// False where the last tick left the constraint out.
+    [[nodiscard]] bool is_awake() const;
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
     ForceShare force_share_;
+
+  private:
+    /// Books the open tick at its end, with the bodies as they are.
+    virtual void end_tick() = 0;
+
+    struct EndOfTick final : btActionInterface {
+        explicit EndOfTick(PlasticConstraint& owner) : owner_(owner) {}
+        void updateAction(btCollisionWorld*, btScalar) override { owner_.end_tick(); }
+        void debugDraw(btIDebugDraw* drawer) override;
+        PlasticConstraint& owner_;
+    };
+    EndOfTick end_of_tick_{*this};
+    bool parts_bodies_;
 };
 
+/// At the constraint's own size of drawing (setDbgDrawSize); see draw.hpp.
+void draw(PlasticConstraint& constraint, btIDebugDraw& drawer);
+
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/plastic_constraint.ipp"
+#endif

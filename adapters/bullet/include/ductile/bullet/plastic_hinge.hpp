@@ -24,8 +24,8 @@
 namespace ductile::bullet {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticHinge final : public JointConstraint<Joint> {
-    using Base = JointConstraint<Joint>;
+class PlasticHinge final : public JointConstraintOf<Joint> {
+    using Base = JointConstraintOf<Joint>;
 
   public:
     static constexpr JointAxis axis = JointAxis::torsion; ///< z of the frames
@@ -34,7 +34,7 @@ class PlasticHinge final : public JointConstraint<Joint> {
     /// pivot, z along the hinge. Where the bodies are now is the hinge's rest position.
     PlasticHinge(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                  const btTransform& frame_in_b, Joint joint)
-        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Reads::plastic_row) {}
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Feedback::plastic_row) {}
 
     /// Hinge between a body and the static world.
     PlasticHinge(btRigidBody& a, const btTransform& frame_in_a, Joint joint)
@@ -42,15 +42,19 @@ class PlasticHinge final : public JointConstraint<Joint> {
                        a.getCenterOfMassTransform() * frame_in_a, std::move(joint)) {}
 
     /// Angle of A relative to B about the axis, not wrapped [rad].
-    [[nodiscard]] double rotation() { return Base::settled().position(axis); }
+    [[nodiscard]] double rotation() const { return Base::position(axis); }
     /// Velocity of that after the last tick's solve [rad/s].
-    [[nodiscard]] double velocity() { return Base::joint().state().velocity; }
+    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
     /// Geometric rest angle q_p [rad].
-    [[nodiscard]] double plastic_offset() { return Base::joint().state().plastic_offset; }
+    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
     /// Accumulated plastic rotation p, work-conjugate [rad].
-    [[nodiscard]] double plastic_rotation() { return Base::plastic_travel(); }
+    [[nodiscard]] double plastic_rotation() const { return Base::plastic_travel(); }
     /// Moment about the axis in the last tick, positive where it turns A about +axis [N m].
-    [[nodiscard]] double moment() { return Base::reaction_along(axis); }
+    [[nodiscard]] double moment() const { return Base::force(axis); }
 };
+
+#ifdef DUCTILE_COMPILED
+extern template class PlasticHinge<UsualAxisJoint>;
+#endif
 
 } // namespace ductile::bullet

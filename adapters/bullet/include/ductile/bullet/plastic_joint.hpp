@@ -26,8 +26,8 @@ namespace ductile::bullet {
 
 /// `Joint`: CoupledJoint of one to six axes, or OneAxisJoint.
 template <class Joint>
-class PlasticJoint final : public JointConstraint<Joint> {
-    using Base = JointConstraint<Joint>;
+class PlasticJoint final : public JointConstraintOf<Joint> {
+    using Base = JointConstraintOf<Joint>;
 
   public:
     using Axes = typename Base::Axes;
@@ -37,11 +37,11 @@ class PlasticJoint final : public JointConstraint<Joint> {
     /// @throws std::invalid_argument where an axis is given twice.
     PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                  const btTransform& frame_in_b, Joint joint, const Axes& axes)
-        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), axes, Reads::all_rows) {}
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), axes, Feedback::all_rows) {}
 
     /// All six axes, in the order of JointAxis.
     PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
-                 const btTransform& frame_in_b, Joint joint) requires(Base::dimension == 6)
+                 const btTransform& frame_in_b, Joint joint) requires(ruled_axes<Joint> == 6)
         : PlasticJoint(a, b, frame_in_a, frame_in_b, std::move(joint), all_joint_axes) {}
 
     /// To the static world.
@@ -49,18 +49,12 @@ class PlasticJoint final : public JointConstraint<Joint> {
         : PlasticJoint(a, btTypedConstraint::getFixedBody(), frame_in_a,
                        a.getCenterOfMassTransform() * frame_in_a, std::move(joint), axes) {}
     PlasticJoint(btRigidBody& a, const btTransform& frame_in_a,
-                 Joint joint) requires(Base::dimension == 6)
+                 Joint joint) requires(ruled_axes<Joint> == 6)
         : PlasticJoint(a, frame_in_a, std::move(joint), all_joint_axes) {}
-
-    /// Reaction on A along, or about, +axis of frame B in the last tick, rigid axes too; zero
-    /// once broken [N | N m].
-    [[nodiscard]] double force(JointAxis axis) { return Base::reaction_along(axis); }
-    /// Of A in frame B; angles go on over many turns. Of a rigid axis what it is off by [m | rad].
-    [[nodiscard]] double position(JointAxis axis) { return Base::settled().position(axis); }
-    /// Geometric rest position q_p; zero for a rigid axis [m | rad].
-    [[nodiscard]] double plastic_offset(JointAxis axis) {
-        return Base::settled().plastic_offset(axis);
-    }
 };
+
+#ifdef DUCTILE_COMPILED
+extern template class PlasticJoint<UsualSixAxisJoint>;
+#endif
 
 } // namespace ductile::bullet

@@ -16,8 +16,8 @@
 namespace ductile::bullet {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticSlider final : public JointConstraint<Joint> {
-    using Base = JointConstraint<Joint>;
+class PlasticSlider final : public JointConstraintOf<Joint> {
+    using Base = JointConstraintOf<Joint>;
 
   public:
     static constexpr JointAxis axis = JointAxis::axial; ///< z of the frames
@@ -26,7 +26,7 @@ class PlasticSlider final : public JointConstraint<Joint> {
     /// Where the bodies are now is the bar's rest position.
     PlasticSlider(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                   const btTransform& frame_in_b, Joint joint)
-        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Reads::plastic_row) {}
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Feedback::plastic_row) {}
 
     /// Bar between a body and the static world.
     PlasticSlider(btRigidBody& a, const btTransform& frame_in_a, Joint joint)
@@ -34,15 +34,19 @@ class PlasticSlider final : public JointConstraint<Joint> {
                         a.getCenterOfMassTransform() * frame_in_a, std::move(joint)) {}
 
     /// Change of length: A's displacement along the axis relative to B [m].
-    [[nodiscard]] double elongation() { return Base::settled().position(axis); }
+    [[nodiscard]] double elongation() const { return Base::position(axis); }
     /// Velocity of that after the last tick's solve [m/s].
-    [[nodiscard]] double velocity() { return Base::joint().state().velocity; }
+    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
     /// Geometric rest elongation q_p [m].
-    [[nodiscard]] double plastic_offset() { return Base::joint().state().plastic_offset; }
+    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
     /// Accumulated plastic elongation p, work-conjugate [m].
-    [[nodiscard]] double plastic_elongation() { return Base::plastic_travel(); }
+    [[nodiscard]] double plastic_elongation() const { return Base::plastic_travel(); }
     /// Force along the axis in the last tick, positive where it pushes A along +axis [N].
-    [[nodiscard]] double force() { return Base::reaction_along(axis); }
+    [[nodiscard]] double force() const { return Base::force(axis); }
 };
+
+#ifdef DUCTILE_COMPILED
+extern template class PlasticSlider<UsualAxisJoint>;
+#endif
 
 } // namespace ductile::bullet

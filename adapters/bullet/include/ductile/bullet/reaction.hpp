@@ -20,8 +20,8 @@
 #include <limits>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/joint/any_link.hpp"
 #include "ductile/joint/joint_axis.hpp"
-#include "ductile/joint/link.hpp"
 #include "ductile/joint/link_types.hpp"
 
 namespace ductile::bullet {
@@ -48,10 +48,10 @@ struct ReactionArm {
 
 /// Forces and moments of the link's rows, which acted for the share `share` of the tick, on A
 /// [N | N m].
-template <class Joint>
-[[nodiscard]] Vector6<double> forces_of_rows(const btJointFeedback& feedback,
-                                             const ReactionArm& from, const Link<Joint>& link,
-                                             double share) noexcept {
+[[nodiscard]] inline Vector6<double> forces_of_rows(const btJointFeedback& feedback,
+                                                    const ReactionArm& from,
+                                                    const AnyLink<double>& link,
+                                                    double share) noexcept {
     const Vector3<double> force = from.from_b
                                       ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
                                       : to_core(feedback.m_appliedForceBodyA);
@@ -66,7 +66,8 @@ template <class Joint>
         const LinkRow<double> row = link.row(axis);
         double value = row.direction.dot(row.turns ? moment : force) / share;
         const double round_off_of_value =
-            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) / share;
+            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) /
+            share;
         for (const double bound : {row.limits.lower, row.limits.upper}) {
             if (std::abs(value - bound) <= round_off_of_value) value = bound;
         }

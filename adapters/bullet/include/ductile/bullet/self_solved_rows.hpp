@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Rows that a constraint solves by itself. Bullet's sequential impulse and NNCG call each constraint
-// once in every sweep (solveConstraintObsolete) with its two bodies: enough for a constraint to take
-// up its rows there (joint/row_sweep.hpp), instead of handing them to Bullet. Then
+// Rows that a constraint solves by itself. Bullet's sequential impulse and NNCG call each
+// constraint once in every sweep (solveConstraintObsolete) with its two bodies: enough for a
+// constraint to take up its rows there (joint/row_sweep.hpp), instead of handing them to Bullet.
+// Then
 //   - compliance is exact whatever its size, also in Bullet's stock solver;
 //   - all reactions are exact, without joint feedback;
 //   - the rows cost a third of Bullet's, and no sweep is made that changes nothing.
@@ -19,10 +20,8 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <limits>
 #include <memory>
 
-#include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/soft_rows.hpp"
 #include "ductile/bullet/sweep_group.hpp"
 #include "ductile/joint/row_sweep.hpp"
@@ -38,14 +37,7 @@ class SelfSolvedRows {
     ~SelfSolvedRows() = default;
 
     /// The constraint is about to be added to `world`.
-    void join(btDynamicsWorld& world) {
-        if (!solves_in_one_thread(world)) return;
-        for (int i = world.getNumConstraints() - 1; i >= 0 && of_world_ == nullptr; --i) {
-            const auto* other = dynamic_cast<const SelfSolvedRows*>(world.getConstraint(i));
-            if (other != nullptr) of_world_ = other->of_world_;
-        }
-        if (of_world_ == nullptr) of_world_ = std::make_shared<SweepGroup>(world.getSolverInfo());
-    }
+    void join(btDynamicsWorld& world);
     void leave() noexcept {
         close();
         group_ = nullptr;
@@ -53,102 +45,39 @@ class SelfSolvedRows {
     }
     /// Of the solver that asks this constraint, which is in `world` or not yet (null), for its
     /// rows, where it calls in each sweep; else null.
-    [[nodiscard]] SweepGroup* sweeps_of_solver(const SoftRows& asked,
-                                               btDynamicsWorld* world) const {
-        if (world == nullptr) return nullptr;
-        if (asked.compliance_is_exact()) return asked.sweeps();
-        return of_world_ != nullptr && calls_in_each_sweep(*world->getConstraintSolver())
-                   ? of_world_.get()
-                   : nullptr;
-    }
+    [[nodiscard]] SweepGroup* sweeps_of_solver(const SoftRows& asked, btDynamicsWorld* world) const;
 
     /// Before the first sweep of a solve: the rows, none yet. `arm_a`, `arm_b`: of RowSweep.
     RowSweep<double>& open(SweepGroup& group, const btRigidBody& a, const btRigidBody& b,
-                           const Vector3<double>& arm_a, const Vector3<double>& arm_b) {
-        place_ = group.take(group_ == &group ? place_ : SweepGroup::Place{});
-        group_ = &group;
-        impulses_.setZero();
-        sweep_ = -1;
-        open_ = true;
-        RowSweep<double>& rows = group.rows(place_);
-        rows.open(swept_body(a, arm_a), swept_body(b, arm_b));
-        return rows;
-    }
+                           const Vector3<double>& arm_a, const Vector3<double>& arm_b);
     void close() noexcept { open_ = false; }
     /// True from open to close: the last solve was the constraint's own.
     [[nodiscard]] bool is_open() const noexcept { return open_; }
 
     /// In each sweep.
-    void sweep(btSolverBody& a, btSolverBody& b) {
-        const bool first = ++sweep_ == 0;
-        RowSweep<double>& rows = group_->rows(place_);
-        const SweptVelocities<double> already{to_core(a.internalGetDeltaLinearVelocity()),
-                                              to_core(a.internalGetDeltaAngularVelocity()),
-                                              to_core(b.internalGetDeltaLinearVelocity()),
-                                              to_core(b.internalGetDeltaAngularVelocity())};
-        const SweptVelocities<double> now{
-            already.linear_a + to_core(a.m_linearVelocity) + to_core(a.m_externalForceImpulse),
-            already.angular_a + to_core(a.m_angularVelocity) + to_core(a.m_externalTorqueImpulse),
-            already.linear_b + to_core(b.m_linearVelocity) + to_core(b.m_externalForceImpulse),
-            already.angular_b + to_core(b.m_angularVelocity) + to_core(b.m_externalTorqueImpulse)};
-        double asked = 0;
-        Impulses impulses = impulses_;
-        const SweptVelocities<double> more = rows.sweep(now, impulses, asked);
-        // what the bodies' velocities, and those that they are the sum of, cannot tell
-        constexpr double digit = 2 * double(std::numeric_limits<btScalar>::epsilon());
-        const bool is_round_off =
-            asked > 0 &&
-            more.squared_norm() <= digit * digit * (now.squared_norm() + already.squared_norm());
-        // is left once the rows were taken up: so that what else is solved in the same sweeps, and
-        // how often, makes no difference; but a row that may give hardly anything gives it
-        if (asked > 0 && (first || !is_round_off)) {
-            impulses_ = impulses;
-            a.internalGetDeltaLinearVelocity() += to_bullet(more.linear_a);
-            a.internalGetDeltaAngularVelocity() += to_bullet(more.angular_a);
-            b.internalGetDeltaLinearVelocity() += to_bullet(more.linear_b);
-            b.internalGetDeltaAngularVelocity() += to_bullet(more.angular_b);
-        }
-        group_->called(sweep_, is_round_off ? 0 : asked);
-    }
+    void sweep(btSolverBody& a, btSolverBody& b);
 
     /// Of the rows in the last solve, in the order in which they were added [N s | N m s].
     [[nodiscard]] const Impulses& impulses() const noexcept { return impulses_; }
 
   private:
-    /// As the solver moves it. A body's angular factor keeps impulses and velocities from the axes
-    /// about which it may not turn.
-    static SweptBody<double> swept_body(const btRigidBody& body, const Vector3<double>& arm) {
-        if (body.isStaticObject() || (body.getInvMass() == 0 && !body.isKinematicObject())) {
-            return {.arm = arm};
-        }
-        SweptBody<double> swept{to_core(body.getInvMass() * body.getLinearFactor()),
-                                to_core(body.getInvInertiaTensorWorld()), arm};
-        if (body.getAngularFactor() != btVector3(1, 1, 1)) {
-            const Vector3<double> f = to_core(body.getAngularFactor());
-            swept.inverse_inertia = f.asDiagonal() * swept.inverse_inertia * f.asDiagonal();
-        }
-        return swept;
-    }
-
     /// What the sweeps share of Bullet's own solver in the world that was joined; null: nothing may
     /// be shared there.
     std::shared_ptr<SweepGroup> of_world_;
-    SweepGroup* group_ = nullptr;          ///< of the open solve
-    SweepGroup::Place place_;              ///< in the group
+    SweepGroup* group_ = nullptr; ///< of the open solve
+    SweepGroup::Place place_;     ///< in the group
     Impulses impulses_ = Impulses::Zero();
     int sweep_ = -1; ///< the last; -1: none yet
     bool open_ = false;
 };
 
 /// A wrench on A at the joint, acting for a tick, as Bullet's joint feedback; world axes.
-inline void write_feedback(btJointFeedback& feedback, const btRigidBody& a, const btRigidBody& b,
-                           const Vector3<double>& arm_a, const Vector3<double>& arm_b,
-                           const Vector3<double>& force, const Vector3<double>& moment) {
-    feedback.m_appliedForceBodyA = to_bullet(force) * a.getLinearFactor();
-    feedback.m_appliedForceBodyB = to_bullet(-force) * b.getLinearFactor();
-    feedback.m_appliedTorqueBodyA = to_bullet(arm_a.cross(force) + moment) * a.getAngularFactor();
-    feedback.m_appliedTorqueBodyB =
-        to_bullet(-(arm_b.cross(force) + moment)) * b.getAngularFactor();
-}
+void write_feedback(btJointFeedback& feedback, const btRigidBody& a, const btRigidBody& b,
+                    const Vector3<double>& arm_a, const Vector3<double>& arm_b,
+                    const Vector3<double>& force, const Vector3<double>& moment);
 
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/self_solved_rows.ipp"
+#endif

@@ -5,9 +5,9 @@
 
 #include <ode/ode.h>
 
-#include <Eigen/LU>
-
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/inverse_mass.hpp"
+#include "ductile/joint/link_types.hpp"
+#include "ductile/numeric/lu.hpp"
 
 namespace ductile::ode {
 
@@ -49,7 +49,7 @@ namespace ductile::ode {
                                                   const Vector3<double>& point) noexcept {
     if (body == nullptr || dBodyIsKinematic(body)) return {};
     return {.inverse_mass = 1 / mass(body),
-            .inverse_inertia = inertia(body).inverse(),
+            .inverse_inertia = numeric::inverse(inertia(body)),
             .arm = point - to_core(dBodyGetPosition(body))};
 }
 
@@ -68,6 +68,37 @@ struct AttachedBodies {
     const dBodyID second = dJointGetBody(joint, 1);
     if (first == nullptr && second != nullptr) return {second, nullptr, true};
     return {first, second, false};
+}
+
+[[nodiscard]] inline bool can_move(dBodyID body) noexcept {
+    return body != nullptr && dBodyIsKinematic(body) == 0;
+}
+
+/// Place and velocities of a body as a link sees it, without its mass; null: the static world.
+[[nodiscard]] inline BodyState<double> body_motion(dBodyID body) noexcept {
+    if (body == nullptr) return {};
+    return {.position = to_core(dBodyGetPosition(body)),
+            .orientation = matrix_to_core(dBodyGetRotation(body)),
+            .velocity = linear_velocity(body),
+            .spin = angular_velocity(body)};
+}
+
+/// The body as a link sees it. A kinematic body moves but cannot be moved.
+[[nodiscard]] inline BodyState<double> body_state(dBodyID body) noexcept {
+    BodyState<double> result = body_motion(body);
+    if (!can_move(body)) return result;
+    dMass m;
+    dBodyGetMass(body, &m);
+    result.inverse_mass = 1 / double(m.mass);
+    const Matrix3<double> turned = result.orientation * numeric::inverse(matrix_to_core(m.I));
+    result.inverse_inertia = turned * result.orientation.transpose();
+    return result;
+}
+
+/// For the coming step; the torque about the centre of mass, world axes.
+inline void add_force(dBodyID body, const Vector3<double>& force, const Vector3<double>& torque) {
+    dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
+    dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
 }
 
 inline void apply(dBodyID body, const VelocityChange<double>& change) noexcept {

@@ -16,8 +16,8 @@
 namespace ductile::ode {
 
 /// To be called for each step, with what is applied for it; `bodies`: all that move.
-inline void share_forces(std::span<const dBodyID> bodies, std::span<SteppedConstraint* const> constraints,
-                 const ForceShare& how) {
+inline void share_forces(std::span<const dBodyID> bodies,
+                         std::span<SteppedConstraint* const> constraints, const ForceShare& how) {
     for (SteppedConstraint* constraint : constraints) constraint->set_force_share(how);
     if (how.value == 1) return;
     for (dBodyID body : bodies) {
@@ -32,8 +32,7 @@ inline void share_forces(std::span<const dBodyID> bodies, std::span<SteppedConst
         }
         force *= how.value - 1;
         const Vector3<double> torque = (how.value - 1) * to_core(dBodyGetTorque(body));
-        dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
-        dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
+        add_force(body, force, torque);
     }
 }
 

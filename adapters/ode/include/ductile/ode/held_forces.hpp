@@ -24,10 +24,7 @@ class HeldForces {
         }
     }
     void apply() const {
-        for (const auto& [body, f, t] : held_) {
-            dBodyAddForce(body, dReal(f.x()), dReal(f.y()), dReal(f.z()));
-            dBodyAddTorque(body, dReal(t.x()), dReal(t.y()), dReal(t.z()));
-        }
+        for (const auto& [body, force, torque] : held_) add_force(body, force, torque);
     }
 
   private:

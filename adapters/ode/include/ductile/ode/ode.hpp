@@ -4,7 +4,7 @@
 #pragma once
 
 #include "ductile/ductile.hpp"
-#include "ductile/ode/energy.hpp"
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/motor_axis.hpp"
@@ -16,6 +16,5 @@
 #include "ductile/ode/plastic_slider.hpp"
 #include "ductile/ode/point_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
-#include "ductile/ode/symmetric_row.hpp"
 #include "ductile/ode/thread_pool.hpp"
 #include "ductile/ode/world.hpp"

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "ductile/joint/pair.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
-#include "ductile/world/joint_report.hpp"
+#include "ductile/vocabulary/vector.hpp"
+#include "ductile/world/joint_queries.hpp"
 
 namespace ductile::ode {
 
@@ -23,17 +23,10 @@ struct OutsideForce {
 
 class PlasticConstraint : public SteppedConstraint {
   public:
-    [[nodiscard]] virtual double absorbed_energy() const = 0; ///< D [J]
-    /// Elastic energy, and what a back force holds [J].
-    [[nodiscard]] virtual double stored_energy() const = 0;
-    /// Of the break, if there was one.
-    [[nodiscard]] virtual const BreakRelease<double>& release() const = 0;
+    [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
     /// Of the last step.
     [[nodiscard]] virtual const OutsideForce& outside_force() const = 0;
     [[nodiscard]] virtual dJointID id() const = 0;
-    /// Of the last step; where the constraint did not act in it, an idle one. Speeds are those of
-    /// now.
-    [[nodiscard]] virtual JointReport<double> report() const = 0;
 };
 
 /// What happens to ODE's joint when its plastic row breaks.

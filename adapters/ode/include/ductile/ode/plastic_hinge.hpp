@@ -18,7 +18,6 @@
 
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
-#include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
 
 namespace ductile::ode {
@@ -29,49 +28,45 @@ struct HingeFrame {
     Vector3<double> axis = Vector3<double>::UnitZ();  ///< direction, any length > 0
 };
 
-template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticHinge final : public OneAxisConstraint<Joint> {
-    using Base = OneAxisConstraint<Joint>;
+/// All but the joint's type.
+class HingeConstraint : public OneAxisConstraint {
+  public:
+    /// Angle of A relative to B about the axis, not wrapped [rad].
+    [[nodiscard]] double rotation() const { return position(); }
+    /// Accumulated plastic rotation p, work-conjugate [rad].
+    [[nodiscard]] double plastic_rotation() const { return plastic_travel(); }
+    /// Moment about the axis in the last step, positive where it turns A about +axis [N m].
+    [[nodiscard]] double moment() const { return reaction(); }
 
+  protected:
+    HingeConstraint(AxisJoint& joint, dWorldID world, dBodyID a, dBodyID b,
+                    const HingeFrame& frame);
+    ~HingeConstraint() override = default;
+
+  private:
+    static dJointID make(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame);
+    /// ODE pulls the axes together as it does the pin.
+    [[nodiscard]] Vector6<double> rigid_target(double dt) const override;
+
+    Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
+};
+
+template <class Joint = OneAxisJoint<Perfect<double>>>
+class PlasticHinge final : public AxisConstraint<Joint, HingeConstraint> {
   public:
     /// `b` null: hinge between body `a` and the static world. Where the bodies are now is the
     /// hinge's rest position.
     /// @throws std::invalid_argument where `a` is null.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
-        : Base(hinge_axis(make(world, a, b, frame)), std::move(joint), AtBreak::disable_joint,
-               true) {
-        axis_in_b_ = this->row().axis();
-        if (b != nullptr) axis_in_b_ = matrix_to_core(dBodyGetRotation(b)).transpose() * axis_in_b_;
-    }
-
-    /// Angle of A relative to B about the axis, not wrapped [rad].
-    [[nodiscard]] double rotation() const { return Base::position(); }
-    /// Accumulated plastic rotation p, work-conjugate [rad].
-    [[nodiscard]] double plastic_rotation() const { return Base::plastic_travel(); }
-    /// Moment about the axis in the last step, positive where it turns A about +axis [N m].
-    [[nodiscard]] double moment() const { return Base::reaction(); }
-
-  private:
-    static dJointID make(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame) {
-        require_body("PlasticHinge", a);
-        const dJointID id = dJointCreateHinge(world, nullptr);
-        const auto& [anchor, axis] = frame;
-        dJointAttach(id, a, b);
-        dJointSetHingeAnchor(id, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
-        dJointSetHingeAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
-        return id;
-    }
-    /// ODE pulls the axes together as it does the pin.
-    [[nodiscard]] Vector6<double> rigid_target(double dt) const override {
-        const dBodyID b = this->row().bodies().b;
-        Vector6<double> target = Base::rigid_target(dt);
-        const Vector3<double> axis_b =
-            b != nullptr ? matrix_to_core(dBodyGetRotation(b)) * axis_in_b_ : axis_in_b_;
-        target.template tail<3>() = this->erp() / dt * this->pose().axis().cross(axis_b);
-        return target;
-    }
-
-    Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
+        : AxisConstraint<Joint, HingeConstraint>(std::move(joint), world, a, b, frame) {}
 };
 
+#ifdef DUCTILE_COMPILED
+extern template class PlasticHinge<UsualAxisJoint>;
+#endif
+
 } // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/plastic_hinge.ipp"
+#endif

@@ -29,13 +29,13 @@
 namespace ductile::ode {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticMotor final : public OneAxisConstraint<Joint> {
-    using Base = OneAxisConstraint<Joint>;
+class PlasticMotor final : public AxisConstraint<Joint, OneAxisConstraint> {
+    using Base = AxisConstraint<Joint, OneAxisConstraint>;
 
   public:
     /// @throws std::invalid_argument where a stop is set on the axis.
     PlasticMotor(const MotorAxis& axis, Joint joint, AtBreak at_break = AtBreak::disable_joint)
-        : Base(axis, std::move(joint), at_break, false),
+        : Base(std::move(joint), axis, at_break, false),
           velocity_(axis.get(dParamVel)),
           strength_(axis.get(dParamFMax)),
           cfm_(axis.get(dParamCFM)) {}
@@ -51,5 +51,9 @@ class PlasticMotor final : public OneAxisConstraint<Joint> {
     double strength_;
     double cfm_;
 };
+
+#ifdef DUCTILE_COMPILED
+extern template class PlasticMotor<UsualAxisJoint>;
+#endif
 
 } // namespace ductile::ode

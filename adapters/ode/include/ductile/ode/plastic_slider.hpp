@@ -17,15 +17,15 @@
 namespace ductile::ode {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticSlider final : public OneAxisConstraint<Joint> {
-    using Base = OneAxisConstraint<Joint>;
+class PlasticSlider final : public AxisConstraint<Joint, OneAxisConstraint> {
+    using Base = AxisConstraint<Joint, OneAxisConstraint>;
 
   public:
     /// Bar along `axis` (world, any length > 0). `b` null: between body `a` and the static world.
     /// Where the bodies are now is the bar's rest position.
     /// @throws std::invalid_argument where `a` is null.
     PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis, Joint joint)
-        : Base(slider_axis(make(world, a, b, axis)), std::move(joint), AtBreak::disable_joint,
+        : Base(std::move(joint), slider_axis(make(world, a, b, axis)), AtBreak::disable_joint,
                true) {}
 
     /// Change of length: A's displacement along the axis relative to B [m].
@@ -44,5 +44,9 @@ class PlasticSlider final : public OneAxisConstraint<Joint> {
         return id;
     }
 };
+
+#ifdef DUCTILE_COMPILED
+extern template class PlasticSlider<UsualAxisJoint>;
+#endif
 
 } // namespace ductile::ode

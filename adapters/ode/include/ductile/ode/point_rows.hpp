@@ -33,7 +33,7 @@
 #include "ductile/joint/pair.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
-#include "ductile/ode/symmetric_row.hpp"
+#include "ductile/vocabulary/symmetric_row.hpp"
 
 namespace ductile::ode {
 

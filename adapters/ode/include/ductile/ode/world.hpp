@@ -30,16 +30,13 @@
 
 #include <ode/ode.h>
 
-#include <algorithm>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "ductile/ode/energy.hpp"
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/held_forces.hpp"
-#include "ductile/ode/force_share.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/world/stepped_world.hpp"
@@ -60,92 +57,36 @@ struct WorldParameters {
 class World final : public SteppedWorld {
   public:
     /// @throws std::invalid_argument where the world is null or a parameter is out of range.
-    World(dWorldID world, WorldParameters parameters)
-        : SteppedWorld(parameters.effort, std::move(parameters.warn)),
-          world_(require_world(world)),
-          solver_(parameters.solver) {
-        if (parameters.ledger) meter_.emplace(world_);
-        if (parameters.leapfrog) start_leapfrog();
-    }
+    World(dWorldID world, WorldParameters parameters);
     /// Steps, collects events, and says nothing by itself; no ledger.
-    explicit World(dWorldID world, Solver solver = Solver::direct)
-        : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
+    explicit World(dWorldID world, Solver solver = Solver::direct);
 
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
     /// Steps a joint and looks after it. An empty `name`: "joint" and its number.
     /// @throws std::invalid_argument where it is here already.
-    void add(PlasticConstraint& joint, std::string name = {}) {
-        supervisor().add(&joint, std::move(name), [&joint] { return joint.report(); });
-        constraints_.push_back(&joint);
-        plastic_.push_back(&joint);
-        bodies_known_ = false;
-        joint.set_force_share({});
-        if (meter_) meter_->add(joint);
-    }
+    void add(PlasticConstraint& joint, std::string name = {});
     /// What is not here is left alone.
-    void remove(PlasticConstraint& joint) {
-        supervisor().remove(&joint);
-        std::erase(constraints_, &joint);
-        std::erase(plastic_, &joint);
-        joint.set_force_share({});
-        if (meter_) meter_->remove(joint);
-    }
+    void remove(PlasticConstraint& joint);
     /// Steps what is no plastic joint.
     void add(SteppedConstraint& constraint) { constraints_.push_back(&constraint); }
-    void remove(SteppedConstraint& constraint) {
-        std::erase(constraints_, &constraint);
-        constraint.set_force_share({});
-    }
+    void remove(SteppedConstraint& constraint);
 
     /// Tells of a dynamic body: ODE does not say which a world has.
     /// @throws std::invalid_argument where it is null or here already.
-    void add(dBodyID body) {
-        if (body == nullptr) throw std::invalid_argument("World.add.body = null: must be a body");
-        if (std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end()) {
-            throw std::invalid_argument("World.add.body: must not be in the world already");
-        }
-        bodies_.push_back(body);
-        if (meter_) meter_->add(body);
-    }
+    void add(dBodyID body);
     /// To be called before the body is destroyed.
-    void remove(dBodyID body) {
-        std::erase(bodies_, body);
-        bodies_known_ = false;
-        if (meter_) meter_->remove(body);
-    }
+    void remove(dBodyID body);
     /// Names a contact joint of the coming step, for the ledger.
     void add_contact(dJointID joint, const dContactGeom& geometry) {
         if (meter_) contacts_.emplace_back(joint, geometry);
     }
 
   private:
-    static dWorldID require_world(dWorldID world) {
-        if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
-        return world;
-    }
-
     // ---- what SteppedWorld asks of ODE
 
-    void require_possible(double) override {
-        for (const SteppedConstraint* constraint : constraints_) constraint->check();
-        if (leapfrogs() && !bodies_known_) require_bodies();
-    }
-    void do_part(double dt, const ForceShare& how, const Effort& effort) override {
-        if (meter_) {
-            for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
-            meter_->before_step();
-        }
-        if (leapfrogs()) share_forces(bodies_, constraints_, how);
-        for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
-        if (effort.direct || solver_ == Solver::direct) {
-            dWorldStep(world_, dReal(dt));
-        } else {
-            dWorldQuickStep(world_, dReal(dt));
-        }
-        for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
-        if (meter_) meter_->after_step(dt, how.value);
-    }
+    void require_possible(double dt) override;
+    void do_part(double dt, const ForceShare& how, const Effort& effort) override;
     void hold_forces() override { forces_.hold(bodies_); }
     void apply_held_forces() override { forces_.apply(); }
     [[nodiscard]] int iterations() const override {
@@ -160,20 +101,7 @@ class World final : public SteppedWorld {
     }
 
     /// Gravity on a body that is not known would not leapfrog.
-    void require_bodies() {
-        std::vector<dBodyID> known = bodies_;
-        std::sort(known.begin(), known.end());
-        for (const PlasticConstraint* joint : plastic_) {
-            for (const int side : {0, 1}) {
-                const dBodyID body = dJointGetBody(joint->id(), side);
-                if (body == nullptr || dBodyIsKinematic(body)) continue;
-                if (std::binary_search(known.begin(), known.end(), body)) continue;
-                throw std::invalid_argument(
-                    "World.leapfrog = true: the bodies of every joint must have been added");
-            }
-        }
-        bodies_known_ = true;
-    }
+    void require_bodies();
 
     dWorldID world_;
     Solver solver_;
@@ -182,8 +110,12 @@ class World final : public SteppedWorld {
     std::vector<SteppedConstraint*> constraints_;
     std::vector<const PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
-    bool bodies_known_ = false; ///< all those of joints
+    bool bodies_known_ = false;                               ///< all those of joints
     std::vector<std::pair<dJointID, dContactGeom>> contacts_; ///< of the coming step
 };
 
 } // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/world.ipp"
+#endif

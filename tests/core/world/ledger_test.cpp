@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
 
-#include "ductile/energy.hpp"
+#include "ductile/world/ledger.hpp"
 
 using namespace ductile;
 

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of energy_meter.hpp.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+
+#include <cmath>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/energy_meter.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/numeric/lu.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE EnergyMeter::EnergyMeter(btDiscreteDynamicsWorld& world) : world_(world) { open(); }
+
+DUCTILE_INLINE EnergyMeter::~EnergyMeter() {
+    for (int i = 0; i < world_.getNumConstraints(); ++i) forget(*world_.getConstraint(i));
+}
+
+DUCTILE_INLINE void EnergyMeter::forget(btTypedConstraint& constraint) {
+    const auto lent = lent_.find(&constraint);
+    if (lent == lent_.end()) return;
+    if (constraint.getJointFeedback() == lent->second.get()) constraint.setJointFeedback(nullptr);
+    lent_.erase(lent);
+}
+
+DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
+    const auto& objects = world_.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        const btRigidBody* body = btRigidBody::upcast(objects[i]);
+        if (body == nullptr || body->isStaticOrKinematicObject()) continue;
+        const Matrix3<double> axes = to_core(body->getCenterOfMassTransform().getBasis());
+        const Matrix3<double> scaled = axes * to_core(body->getLocalInertia()).asDiagonal();
+        MeteredBody& entry = bodies.emplace_back();
+        entry.body = body;
+        entry.position = to_core(body->getCenterOfMassPosition());
+        entry.velocity = to_core(body->getLinearVelocity());
+        entry.spin = to_core(body->getAngularVelocity());
+        entry.mass = double(body->getMass());
+        entry.inertia = scaled * axes.transpose();
+        entry.weight = entry.mass * to_core(body->getGravity());
+        entry.force = to_core(body->getTotalForce());
+        entry.torque = to_core(body->getTotalTorque());
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
+    std::vector<MeteredPlasticJoint>& joints) const {
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        const auto* plastic = dynamic_cast<const PlasticConstraint*>(world_.getConstraint(i));
+        if (plastic == nullptr) continue;
+        joints.push_back(
+            {&plastic->queries(), &plastic->getRigidBodyA(), &plastic->getRigidBodyB()});
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::watch_step() {
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world_.getConstraint(i);
+        if (constraint.getJointFeedback() == nullptr) {
+            auto& lent = lent_[&constraint];
+            if (lent == nullptr) lent = std::make_unique<btJointFeedback>();
+            constraint.setJointFeedback(lent.get());
+        }
+        btJointFeedback& feedback = *constraint.getJointFeedback();
+        feedback.m_appliedForceBodyA.setZero();
+        feedback.m_appliedTorqueBodyA.setZero();
+        feedback.m_appliedForceBodyB.setZero();
+        feedback.m_appliedTorqueBodyB.setZero();
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        const btTypedConstraint& constraint = *world_.getConstraint(i);
+        const btJointFeedback* feedback = constraint.getJointFeedback();
+        if (feedback == nullptr) continue;
+        const auto* plastic = dynamic_cast<const PlasticConstraint*>(&constraint);
+        joints.push_back(
+            {&constraint, &constraint.getRigidBodyA(), &constraint.getRigidBodyB(),
+             to_core(feedback->m_appliedForceBodyA), to_core(feedback->m_appliedTorqueBodyA),
+             to_core(feedback->m_appliedForceBodyB), to_core(feedback->m_appliedTorqueBodyB),
+             plastic != nullptr ? &plastic->queries() : nullptr});
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_contacts(double /*dt*/,
+                                               std::vector<MeteredContact>& contacts) const {
+    const bool two_directions =
+        (world_.getSolverInfo().m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) != 0;
+    btDispatcher& dispatcher = *world_.getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        for (int j = 0; j < manifold.getNumContacts(); ++j) {
+            const btManifoldPoint& point = manifold.getContactPoint(j);
+            btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1;
+            if (two_directions) {
+                lateral += point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+            }
+            contacts.push_back(
+                {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
+                 to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
+                 double(point.m_appliedImpulse) * to_core(point.m_normalWorldOnB),
+                 to_core(lateral)});
+        }
+    }
+}
+
+/// By the implicit rule in body axes: one Newton step on I(ω' - ω) + dt ω' × Iω' = 0, as Bullet
+/// takes it.
+DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody& body,
+                                                               double dt) const {
+    const int flags = static_cast<const btRigidBody*>(body.body)->getFlags();
+    if ((flags & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) == 0) return Vector3<double>::Zero();
+    const auto cross = [](const Vector3<double>& v) {
+        Matrix3<double> m;
+        m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+        return m;
+    };
+    const Vector3<double> momentum = body.inertia * body.spin;
+    const Matrix3<double> turned = cross(body.spin) * body.inertia;
+    const Matrix3<double> jacobian = body.inertia + dt * (turned - cross(momentum));
+    const Vector3<double> wanted = dt * body.spin.cross(momentum);
+    const Vector3<double> change = numeric::Lu<double, 3>(jacobian).solve(wanted);
+    return -(body.inertia * change);
+}
+
+DUCTILE_INLINE void EnergyMeter::damp(MeteredBody& body, double dt) const {
+    const auto& of = *static_cast<const btRigidBody*>(body.body);
+    body.velocity *= std::pow(1 - double(of.getLinearDamping()), dt);
+    body.spin *= std::pow(1 - double(of.getAngularDamping()), dt);
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of joint_constraint.hpp.
+#pragma once
+
+#include "ductile/bullet/joint_constraint.hpp"
+#include "ductile/bullet/link_rows.hpp"
+#include "ductile/bullet/reaction.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+struct JointConstraint::Reading {
+    btJointFeedback feedback; ///< for who has none of his own
+    ReactionArm arm;
+};
+
+DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBody& a,
+                                                btRigidBody& b, Feedback feedback)
+    : PlasticConstraint(a, b, true),
+      LinkQueries(link),
+      feedback_(feedback),
+      order_(rigid_rotations_first(link.axes())) {
+    if (link_.axes().size() < 6) {
+        decoupled_ = std::make_unique<DecoupledLink>(order_, int(link_.axes().size()));
+    }
+    link_.start(body_motion(m_rbA), body_motion(m_rbB));
+}
+
+DUCTILE_INLINE JointConstraint::~JointConstraint() = default;
+
+DUCTILE_INLINE JointView JointConstraint::view() const {
+    JointView view{.frame_a = m_rbA.getCenterOfMassTransform() * to_bullet(link_.frame_in_a()),
+                   .frame_b = m_rbB.getCenterOfMassTransform() * to_bullet(link_.frame_in_b()),
+                   .outcome = outcome(),
+                   .utilisation = utilisation()};
+    for (const JointAxis axis : all_joint_axes) {
+        view.plastic_offset[Eigen::Index(index(axis))] = link_.plastic_offset(axis);
+    }
+    return view;
+}
+
+DUCTILE_INLINE Vector6<double> JointConstraint::velocities() const {
+    return link_.velocities(body_motion(m_rbA), body_motion(m_rbB));
+}
+
+DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
+    open_ = Open::nothing;
+    release_ = {};
+    link_.look(body_motion(m_rbA), body_motion(m_rbB));
+    if (link_.broken() != was_broken) setEnabled(was_broken);
+}
+
+// ---- Bullet's side
+
+DUCTILE_INLINE void JointConstraint::buildJacobian() {
+    settle_late(true);
+    if (feedback_ == Feedback::all_rows && m_jointFeedback == nullptr &&
+        sweeps_of_solver(*this, world_) == nullptr) {
+        m_jointFeedback = &reading().feedback;
+    }
+}
+
+DUCTILE_INLINE void JointConstraint::getInfo1(btConstraintInfo1* info) {
+    *info = {.m_numConstraintRows = 0, .nub = 0};
+    close();
+    if (link_.broken() && open_ != Open::hand_back) return;
+    SweepGroup* sweeps = open_ == Open::hand_back ? nullptr : sweeps_of_solver(*this, world_);
+    if (sweeps == nullptr) {
+        info->m_numConstraintRows = 6;
+        return;
+    }
+    const btContactSolverInfo& solver_info = world_->getSolverInfo();
+    prepare(double(solver_info.m_timeStep), double(solver_info.m_erp));
+    if (decoupled_) decoupled_->look(link_, order_, m_rbA, m_rbB);
+    add_rows(open(*sweeps, m_rbA, m_rbB, link_.pose().arm_a(), link_.pose().arm_b()), link_, order_,
+             decoupled_.get(), dt_);
+}
+
+DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
+    if (open_ == Open::hand_back) {
+        write_impulse(*info, m_rbA, m_rbB, link_.point(), handed_);
+        return;
+    }
+    prepare(1 / double(info->fps), double(info->erp));
+    if (feedback_ == Feedback::all_rows) reading().arm = reaction_arm(m_rbA, m_rbB, link_.point());
+    if (decoupled_ && all_hard(link_)) {
+        decoupled_->look(link_, order_, m_rbA, m_rbB);
+        write_hard_rows(*info, link_, order_, decoupled_->rows(), dt_);
+        return;
+    }
+    write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
+}
+
+DUCTILE_INLINE void JointConstraint::setParam(int num, btScalar value, int /*axis*/) {
+    if (num == BT_CONSTRAINT_ERP || num == BT_CONSTRAINT_STOP_ERP) {
+        rigid_erp_ = value < 0 ? btScalar(-1)
+                               : check::between("JointConstraint.erp", value, btScalar(0),
+                                                btScalar(1), "", true);
+    } else if (num == BT_CONSTRAINT_CFM || num == BT_CONSTRAINT_STOP_CFM) {
+        check::fail("JointConstraint.cfm", value, "",
+                    "left alone: compliance follows from the joint's stiffness");
+    }
+}
+
+DUCTILE_INLINE btScalar JointConstraint::getParam(int num, int /*axis*/) const {
+    return num == BT_CONSTRAINT_ERP || num == BT_CONSTRAINT_STOP_ERP ? rigid_erp_ : btScalar(0);
+}
+
+// ---- a tick
+
+DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
+    dt_ = force_share_.value * tick;
+    tick_share_ = force_share_.value;
+    if (!one_axis()) mass_at_rest_.tell(link_, m_rbA, m_rbB);
+    const bool masses = link_.reads_mass();
+    link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
+                  masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
+                  (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, force_share_.midway);
+    open_ = Open::tick;
+}
+
+DUCTILE_INLINE void JointConstraint::end_tick() {
+    if (open_ != Open::nothing) settle(body_motion(m_rbA), body_motion(m_rbB), false);
+}
+
+DUCTILE_INLINE void JointConstraint::settle_late(bool in_solver) {
+    if (open_ == Open::nothing) return;
+    settle(body_motion_of_last_tick(m_rbA), body_motion_of_last_tick(m_rbB), in_solver);
+}
+
+DUCTILE_INLINE void JointConstraint::settle() const {
+    // a question: what it books has happened already, and only the books change
+    if (open_ != Open::nothing) const_cast<JointConstraint*>(this)->settle_late(false);
+}
+
+DUCTILE_INLINE void JointConstraint::settle(const BodyState<double>& a, const BodyState<double>& b,
+                                            bool in_solver) {
+    const Open was = std::exchange(open_, Open::nothing);
+    if (was == Open::hand_back) setEnabled(false);
+    if (was != Open::tick) return;
+    if (link_.commit_rows(a, b, reaction(), dt_).outcome != Outcome::broken) return;
+    const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
+    release_ = link_.release(now_a, now_b);
+    if (in_solver && release_.energy > 0) {
+        handed_ = link_.release_impulse(now_a, now_b);
+        open_ = Open::hand_back;
+        return;
+    }
+    setEnabled(false);
+    if (release_.energy > 0) {
+        apply(m_rbA, release_.a);
+        apply(m_rbB, release_.b);
+    }
+}
+
+// ---- what the solver did
+
+DUCTILE_INLINE Vector6<double> JointConstraint::reaction() {
+    if (is_open()) return reaction_of_own_rows();
+    Vector6<double> forces = Vector6<double>::Zero();
+    if (feedback_ == Feedback::all_rows && m_jointFeedback != nullptr) {
+        forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_share_);
+    }
+    if (one_axis()) {
+        forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
+    }
+    return forces;
+}
+
+DUCTILE_INLINE Vector6<double> JointConstraint::reaction_of_own_rows() {
+    const double last = impulses()[5];
+    internalSetAppliedImpulse(btScalar(last));
+    if (one_axis() && feedback_ == Feedback::plastic_row && m_jointFeedback == nullptr) {
+        Vector6<double> forces = Vector6<double>::Zero();
+        forces[Eigen::Index(order_.back())] = last / dt_;
+        return forces;
+    }
+    const Vector6<double> forces = forces_of_impulses(order_, decoupled_.get(), impulses(), dt_);
+    if (m_jointFeedback != nullptr) {
+        const LinkPose<double>& pose = link_.pose();
+        const Vector3<double> force = pose.axes() * forces.head<3>();
+        const Vector3<double> moment = pose.axes() * forces.tail<3>();
+        write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
+                       force * tick_share_, moment * tick_share_);
+    }
+    return forces;
+}
+
+DUCTILE_INLINE JointConstraint::Reading& JointConstraint::reading() {
+    if (reading_ == nullptr) reading_ = std::make_unique<Reading>();
+    return *reading_;
+}
+
+} // namespace ductile::bullet

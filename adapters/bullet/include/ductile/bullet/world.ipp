@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of world.hpp.
+#pragma once
+
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/bullet/force_share.hpp"
+#include "ductile/bullet/suspect_solver.hpp"
+#include "ductile/bullet/world.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+/// As Bullet's solvers know the joint.
+DUCTILE_INLINE const void* address(const PlasticConstraint& joint) {
+    return static_cast<const btTypedConstraint*>(&joint);
+}
+DUCTILE_INLINE const void* address(const MultiBodyPlasticConstraint& joint) { return &joint; }
+
+/// Bullet's own flag is not public.
+struct Ownership : btDiscreteDynamicsWorld {
+    static bool of(btDiscreteDynamicsWorld& world) {
+        return world.*(&Ownership::m_ownsConstraintSolver);
+    }
+};
+
+/// `enter()` puts the joint into Bullet's world.
+template <class Joint, class Report, class Enter>
+void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Report& report,
+                const Enter& enter) {
+    supervisor.add(address(joint), std::move(name), report);
+    if (joint.in_world()) return;
+    try {
+        enter();
+    } catch (...) {
+        supervisor.remove(address(joint));
+        throw;
+    }
+}
+
+} // namespace detail
+
+DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
+    : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
+    if (parameters.effort.action == OnUnconverged::direct_solver) {
+        require_exchangeable_solver();
+        suspect_solver_ = std::make_unique<SuspectSolver>(*world_.getConstraintSolver());
+        world_.setConstraintSolver(suspect_solver_.get());
+    }
+    if (parameters.ledger) meter_.emplace(world_);
+    if (parameters.leapfrog) {
+        require_leapfrog();
+        start_leapfrog();
+    }
+}
+
+DUCTILE_INLINE World::~World() {
+    if (leapfrogs()) share_forces(world_, {});
+    if (suspect_solver_ != nullptr && world_.getConstraintSolver() == suspect_solver_.get()) {
+        world_.setConstraintSolver(&suspect_solver_->usual());
+    }
+}
+
+DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
+    detail::look_after(
+        supervisor(), joint, std::move(name), [&joint] { return joint.queries().report(); },
+        [&] { joint.add_to(world_); });
+    told_ = -1;
+}
+DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
+    detail::look_after(
+        supervisor(), joint, std::move(name), [&joint] { return joint.report(); },
+        [&] { joint.add_to(world_of_multibodies()); });
+}
+
+DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
+    const void* address = detail::address(joint);
+    if (!supervisor().knows(address)) return;
+    supervisor().remove(address);
+    if (suspect_solver_ != nullptr) suspect_solver_->trust(address);
+    if (meter_) meter_->forget(joint);
+    joint.set_force_share({});
+    if (joint.in_world()) joint.remove_from(world_);
+}
+DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
+    const void* address = detail::address(joint);
+    if (!supervisor().knows(address)) return;
+    supervisor().remove(address);
+    if (joint.in_world()) joint.remove_from(world_of_multibodies());
+}
+
+DUCTILE_INLINE void World::require_exchangeable_solver() const {
+    if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
+        throw std::invalid_argument(
+            "World.effort.action = direct_solver: must not be asked of a "
+            "btMultiBodyDynamicsWorld: give it a MultiBodyMlcpSolver");
+    }
+    if (detail::Ownership::of(world_)) {
+        throw std::invalid_argument(
+            "World.effort.action = direct_solver: must not be asked of a world that made its "
+            "solver itself, as that one would be lost");
+    }
+}
+
+DUCTILE_INLINE void World::require_leapfrog() const {
+    if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
+        throw std::invalid_argument(
+            "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
+    }
+}
+
+DUCTILE_INLINE bool World::holds_multibodies() const noexcept {
+    const auto* world = dynamic_cast<const btMultiBodyDynamicsWorld*>(&world_);
+    return world != nullptr && world->getNumMultibodies() > 0;
+}
+
+DUCTILE_INLINE btMultiBodyDynamicsWorld& World::world_of_multibodies() const {
+    auto* world = dynamic_cast<btMultiBodyDynamicsWorld*>(&world_);
+    if (world == nullptr) {
+        throw std::invalid_argument(
+            "World.world: must be a btMultiBodyDynamicsWorld for the joint of a multibody");
+    }
+    return *world;
+}
+
+// ---- what SteppedWorld asks of Bullet
+
+DUCTILE_INLINE void World::require_possible(double dt) {
+    if (!(dt > double(SIMD_EPSILON))) {
+        check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
+    }
+}
+DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& /*effort*/) {
+    const bool keeps_ledger = meter_ && !holds_multibodies();
+    if (keeps_ledger) meter_->before_step();
+    const bool told = how.value == 1 && told_ == world_.getNumConstraints();
+    if (leapfrogs() && !told) share_forces(world_, how);
+    told_ = how.value == 1 ? world_.getNumConstraints() : -1;
+    world_.stepSimulation(btScalar(dt), 0);
+    if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.value);
+}
+DUCTILE_INLINE int World::iterations() const { return world_.getSolverInfo().m_numIterations; }
+DUCTILE_INLINE void World::set_iterations(int iterations) {
+    world_.getSolverInfo().m_numIterations = iterations;
+}
+DUCTILE_INLINE void World::suspect(const void* joint) {
+    if (suspect_solver_ != nullptr) suspect_solver_->suspect(joint);
+}
+DUCTILE_INLINE void World::finish(const Effort& effort) {
+    if (!effort.direct && suspect_solver_ != nullptr) suspect_solver_->trust_all();
+}
+DUCTILE_INLINE const Ledger<double>* World::kept_ledger() const noexcept {
+    return meter_ && !holds_multibodies() ? &meter_->ledger() : nullptr;
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+//
+// The core's energy ledger of an ODE world (world/energy_meter.hpp): which bodies, joints and
+// contacts there are. Joints are booked by their feedback and by what a plastic constraint applies
+// beside it. ODE's damping and its limit of angular speed are not booked: where a scene uses them
+// they stay unexplained.
+//
+//   EnergyMeter meter(world_id);
+//   meter.add(body);                                  // every dynamic body, once
+//   ... collide: meter.add_contact(joint, geometry);  // every contact joint of this step
+//   meter.before_step();
+//   stepper.step(dt);
+//   meter.after_step(dt);
+//
+// The meter turns on joint feedback for joints that have none (the user's own is only read).
+//
+// Not thread-safe.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <deque>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/world/energy_meter.hpp"
+
+namespace ductile::ode {
+
+class EnergyMeter final : public ductile::EnergyMeter {
+  public:
+    explicit EnergyMeter(dWorldID world) : world_(world) {}
+
+    /// Watches a dynamic body.
+    void add(dBodyID body) { bodies_.push_back(body); }
+    /// To be called before the body is destroyed: what it holds leaves the ledger as supplied
+    /// (negative).
+    void remove(dBodyID body) { std::erase(bodies_, body); }
+    /// Watches a plastic constraint, so that its share of the joints' work is booked as plastic.
+    void add(const PlasticConstraint& constraint) { plastic_.push_back(&constraint); }
+    /// To be called before the constraint is destroyed; what it stores leaves as with a body.
+    void remove(const PlasticConstraint& constraint) { std::erase(plastic_, &constraint); }
+    /// Names a contact joint of the coming step, so that its work is booked as contact and
+    /// friction.
+    void add_contact(dJointID joint, const dContactGeom& geometry) { contacts_[joint] = geometry; }
+    /// Energy that all rows of a joint took from the bodies since the meter was made [J].
+    [[nodiscard]] double taken_by(dJointID joint) const { return taken_by_address(joint); }
+
+  private:
+    /// A joint's feedback in this step.
+    struct WatchedJoint {
+        dJointID id;
+        const dJointFeedback* feedback;
+        bool lent;
+    };
+
+    void list_bodies(std::vector<MeteredBody>& bodies) const override;
+    void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
+    void watch_step() override;
+    void list_joints(std::vector<MeteredJoint>& joints) const override;
+    void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
+    void end_watch() override;
+    [[nodiscard]] Vector3<double> gyroscopic_impulse(const MeteredBody& body,
+                                                     double dt) const override;
+    void take_feedback_back();
+
+    dWorldID world_;
+    std::vector<dBodyID> bodies_;
+    std::vector<const PlasticConstraint*> plastic_;
+    std::unordered_map<dJointID, dContactGeom> contacts_;
+    std::vector<WatchedJoint> watched_; ///< each joint of the watched bodies, once
+    std::unordered_set<dJointID> seen_;
+    std::deque<dJointFeedback> feedback_; ///< to be lent
+};
+
+} // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/energy_meter.ipp"
+#endif

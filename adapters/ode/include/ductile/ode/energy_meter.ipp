@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of energy_meter.hpp.
+#pragma once
+
+#include "ductile/numeric/lu.hpp"
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/energy_meter.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
+    dVector3 gravity;
+    dWorldGetGravity(world_, gravity);
+    for (const dBodyID body : bodies_) {
+        MeteredBody& entry = bodies.emplace_back();
+        entry.body = body;
+        entry.position = to_core(dBodyGetPosition(body));
+        entry.velocity = linear_velocity(body);
+        entry.spin = angular_velocity(body);
+        entry.mass = mass(body);
+        entry.inertia = inertia(body);
+        if (dBodyGetGravityMode(body) != 0) entry.weight = entry.mass * to_core(gravity);
+        entry.force = to_core(dBodyGetForce(body));
+        entry.torque = to_core(dBodyGetTorque(body));
+        entry.asleep = dBodyIsEnabled(body) == 0;
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
+    std::vector<MeteredPlasticJoint>& joints) const {
+    for (const PlasticConstraint* constraint : plastic_) {
+        const auto [a, b, reversed] = attached_bodies(constraint->id());
+        joints.push_back({&constraint->queries(), a, b});
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::watch_step() {
+    take_feedback_back(); // of a step that was never made
+    feedback_.clear();
+    seen_.clear();
+    for (const dBodyID body : bodies_) {
+        for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+            const dJointID id = dBodyGetJoint(body, i);
+            if (dJointIsEnabled(id) == 0 || !seen_.insert(id).second) continue;
+            const bool lend = dJointGetFeedback(id) == nullptr;
+            if (lend) dJointSetFeedback(id, &feedback_.emplace_back());
+            watched_.push_back({id, dJointGetFeedback(id), lend});
+        }
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
+    for (const auto& [id, feedback, lent] : watched_) {
+        if (contacts_.count(id) > 0) continue;
+        const auto [a, b, reversed] = attached_bodies(id);
+        joints.push_back({id, a, b, to_core(feedback->f1), to_core(feedback->t1),
+                          to_core(feedback->f2), to_core(feedback->t2), nullptr});
+    }
+    for (const PlasticConstraint* constraint : plastic_) {
+        if (seen_.count(constraint->id()) == 0) continue;
+        const auto [a, b, reversed] = attached_bodies(constraint->id());
+        const OutsideForce& outside = constraint->outside_force();
+        joints.push_back({constraint->id(), a, b, outside.force, outside.torque_a, -outside.force,
+                          outside.torque_b, &constraint->queries()});
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
+                                               std::vector<MeteredContact>& contacts) const {
+    for (const auto& [id, feedback, lent] : watched_) {
+        const auto contact = contacts_.find(id);
+        if (contact == contacts_.end()) continue;
+        const auto [a, b, reversed] = attached_bodies(id);
+        const Vector3<double> point = to_core(contact->second.pos);
+        const Vector3<double> normal = to_core(contact->second.normal);
+        const Vector3<double> impulse = dt * to_core(feedback->f1);
+        const Vector3<double> pressed = normal.dot(impulse) * normal;
+        contacts.push_back({a, b, point, point, pressed, impulse - pressed});
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::end_watch() {
+    take_feedback_back();
+    contacts_.clear();
+}
+
+DUCTILE_INLINE void EnergyMeter::take_feedback_back() {
+    for (const auto& [id, feedback, lent] : watched_) {
+        if (lent) dJointSetFeedback(id, nullptr);
+    }
+    watched_.clear();
+}
+
+/// By ODE's implicit rule (Lacoursière 2006): (I (I - dt [L]ₓ)⁻¹ - 1) L with L = I ω.
+DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody& body,
+                                                               double dt) const {
+    const auto* id = static_cast<const dxBody*>(body.body);
+    if (dBodyGetGyroscopicMode(const_cast<dBodyID>(id)) == 0) return Vector3<double>::Zero();
+    const Vector3<double> momentum = body.inertia * body.spin;
+    Matrix3<double> cross;
+    cross << 0, -momentum.z(), momentum.y(), momentum.z(), 0, -momentum.x(), -momentum.y(),
+        momentum.x(), 0;
+    const Matrix3<double> tilde = body.inertia - dt * cross;
+    const Vector3<double> turned = numeric::Lu<double, 3>(tilde).solve(momentum);
+    return body.inertia * turned - momentum;
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of one_axis_constraint.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/symmetric_row.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+inline constexpr const char* stop_refused =
+    "OneAxisConstraint.row: the axis has a stop (dParamLoStop or dParamHiStop is "
+    "finite): ODE applies a motor at its stop as an outside force, so no row can be "
+    "plastic there; set both to infinity";
+
+} // namespace detail
+
+DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const MotorAxis& row,
+                                                    AtBreak at_break, bool owned)
+    : AxisQueries(joint), row_(row), at_break_(at_break), owned_(owned) {
+    if (has_stop(row_)) throw std::invalid_argument(detail::stop_refused);
+    position_ = row_.measure(0);
+    joint_.set_plastic_offset(position_);
+}
+
+DUCTILE_INLINE OneAxisConstraint::~OneAxisConstraint() {
+    if (dJointGetFeedback(row_.joint()) == &feedback_) dJointSetFeedback(row_.joint(), nullptr);
+    if (owned_) dJointDestroy(row_.joint());
+}
+
+DUCTILE_INLINE void OneAxisConstraint::restored(double position) {
+    position_ = position;
+    restored_ = true;
+    if (joint_.broken()) part(); // broken is broken, also when it was saved
+}
+
+DUCTILE_INLINE void OneAxisConstraint::add_speeds(JointReport<double>& report) const {
+    if (!row_.attached() || dJointIsEnabled(id()) == 0) return;
+    const double velocity = is_where_left() ? pose_.velocity(row_) : row_.velocity();
+    (row_.turns() ? report.rotation_rate : report.elongation_rate) = std::abs(velocity);
+}
+
+// ---- life
+
+DUCTILE_INLINE bool OneAxisConstraint::has_stop(const MotorAxis& row) {
+    return std::isfinite(row.get(dParamLoStop)) || std::isfinite(row.get(dParamHiStop));
+}
+
+DUCTILE_INLINE void OneAxisConstraint::check() const {
+    if (joint_.broken() || !row_.attached() || !has_stop(row_)) return;
+    throw std::logic_error(detail::stop_refused);
+}
+
+DUCTILE_INLINE bool OneAxisConstraint::may_act() const {
+    const auto& [a, b, reversed] = row_.bodies();
+    return !detached_ && dJointIsEnabled(id()) != 0 && (can_move(a) || can_move(b));
+}
+
+DUCTILE_INLINE bool OneAxisConstraint::solved() const {
+    const auto& [a, b, reversed] = row_.bodies();
+    return dBodyIsEnabled(a) != 0 || (b != nullptr && dBodyIsEnabled(b) != 0);
+}
+
+DUCTILE_INLINE void OneAxisConstraint::suspend() {
+    joint_.pause();
+    rigid_residual_ = 0;
+    rigid_unsolved_ = false;
+}
+
+DUCTILE_INLINE void OneAxisConstraint::follow_teleport() {
+    const double now = row_.measure(position_);
+    if (now != position_ && !restored_) {
+        joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
+    }
+    position_ = now;
+    restored_ = false;
+}
+
+DUCTILE_INLINE void OneAxisConstraint::part() {
+    row_.set(dParamFMax, 0);
+    if (at_break_ == AtBreak::disable_joint) dJointDisable(id());
+}
+
+// ---- a step
+
+DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
+    acting_ = false;
+    outside_ = {};
+    detached_ = !row_.attached();
+    if (joint_.broken()) {
+        force_ = 0;
+        if (!detached_) part();
+        return;
+    }
+    if (!may_act()) {
+        suspend();
+        force_ = 0;
+        return;
+    }
+    acting_ = true;
+    if (restored_ || !is_where_left()) {
+        pose_.look(row_);
+        follow_teleport();
+    }
+    Motion<double> motion{position_, pose_.velocity(row_), 0, force_share_.midway};
+    if (!joint_.rigid()) motion.mass = mass();
+    set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
+    rigid_target_ = rigid_target(dt);
+}
+
+DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
+    if (!acting_) return;
+    if (!solved()) {
+        take_back();
+        suspend();
+        return;
+    }
+    const Vector6<double> twist = pose_.twist(row_);
+    const double velocity = pose_.along(row_, twist);
+    certify_rigid_rows(twist);
+    force_ = row_force();
+    position_ = row_.measured()
+                    ? row_.measure(position_ + velocity * dt)
+                    : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
+    const Step<double>& step =
+        joint_.commit({force_, velocity, position_}, force_share_.value * dt);
+    pose_.look(row_);
+    joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
+    if (step.outcome == Outcome::broken) {
+        part();
+        if (step.release > 0) hand_back(step.release);
+    }
+}
+
+// ---- the row
+
+DUCTILE_INLINE double OneAxisConstraint::erp() const {
+    return double(dWorldGetERP(dBodyGetWorld(row_.bodies().a)));
+}
+
+DUCTILE_INLINE Vector6<double> OneAxisConstraint::rigid_target(double dt) const {
+    Vector6<double> target = Vector6<double>::Constant(std::numeric_limits<double>::quiet_NaN());
+    target.head<3>() = erp() / dt * row_.pin_error(pose_.point());
+    return target;
+}
+
+DUCTILE_INLINE Vector6<double> OneAxisConstraint::direction() const {
+    Vector6<double> result = Vector6<double>::Zero();
+    result.segment<3>(row_.turns() ? 3 : 0) = pose_.axis();
+    return result;
+}
+
+DUCTILE_INLINE double OneAxisConstraint::mass() const {
+    const Vector6<double> response = row_.response(at_joint(row_.bodies().a, pose_.point()),
+                                                   at_joint(row_.bodies().b, pose_.point()));
+    const double result = direction().dot(response);
+    return std::isfinite(result) ? result : 0;
+}
+
+DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits, double dt) {
+    const SymmetricRow row = symmetric_row(limits, dt, force_share_.value);
+    centre_ = row.centre;
+    strength_ = row.strength;
+    row_.set(dParamCFM, row.cfm);
+    row_.set(dParamVel, row.velocity);
+    row_.set(dParamFMax, strength_);
+    if (dJointGetFeedback(id()) == nullptr) dJointSetFeedback(id(), &feedback_);
+    feedback_ = {}; // ODE leaves it alone where the joint has no row in this step
+    if (centre_ != 0) apply_centre();
+}
+
+DUCTILE_INLINE void OneAxisConstraint::apply_centre() {
+    if (row_.turns()) {
+        outside_.torque_a = centre_ * pose_.axis();
+        outside_.torque_b = -outside_.torque_a;
+    } else {
+        outside_.force = centre_ * pose_.axis();
+        outside_.torque_a = pose_.arm_a().cross(outside_.force);
+        outside_.torque_b = -pose_.arm_b().cross(outside_.force);
+    }
+    add_outside(1);
+}
+
+DUCTILE_INLINE void OneAxisConstraint::take_back() {
+    if (centre_ != 0) add_outside(-1);
+    outside_ = {};
+}
+
+DUCTILE_INLINE void OneAxisConstraint::add_outside(double sign) {
+    const auto& [a, b, reversed] = row_.bodies();
+    add_force(a, sign * outside_.force, sign * outside_.torque_a);
+    if (b != nullptr) add_force(b, -sign * outside_.force, sign * outside_.torque_b);
+}
+
+DUCTILE_INLINE void OneAxisConstraint::certify_rigid_rows(const Vector6<double>& twist) {
+    Vector6<double> off = twist - rigid_target_;
+    const int plastic = row_.turns() ? 3 : 0;
+    const Vector3<double> part = off.segment<3>(plastic);
+    off.segment<3>(plastic) = part - pose_.axis() * pose_.axis().dot(part);
+    if (rigid_target_.head<3>().hasNaN()) off.head<3>().setZero();
+    if (rigid_target_.tail<3>().hasNaN()) off.tail<3>().setZero();
+    rigid_residual_ = off.cwiseAbs().maxCoeff();
+
+    const double linear = off.head<3>().norm(), angular = off.tail<3>().norm();
+    rigid_unsolved_ = false;
+    if (std::max(linear, angular) <= joint_.allowed_residual(0)) return;
+    const dBodyID a = row_.bodies().a;
+    const Vector3<double> w = angular_velocity(a);
+    const Vector3<double> v = linear_velocity(a) + w.cross(pose_.arm_a());
+    rigid_unsolved_ =
+        linear > joint_.allowed_residual(v.norm()) || angular > joint_.allowed_residual(w.norm());
+}
+
+DUCTILE_INLINE double OneAxisConstraint::row_force() const {
+    const dJointFeedback* feedback = dJointGetFeedback(id());
+    if (!(strength_ > 0) || feedback == nullptr) return centre_ / force_share_.value;
+    return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / force_share_.value;
+}
+
+DUCTILE_INLINE void OneAxisConstraint::hand_back(double energy) {
+    const auto a = at_joint(row_.bodies().a, pose_.point());
+    const auto b = at_joint(row_.bodies().b, pose_.point());
+    release_ = break_release(
+        a, b, release_impulse(row_.response(a, b), direction(), pose_.twist(row_), energy), energy);
+    if (a.inverse_mass > 0) apply(row_.bodies().a, release_.a);
+    if (b.inverse_mass > 0) apply(row_.bodies().b, release_.b);
+}
+
+} // namespace ductile::ode

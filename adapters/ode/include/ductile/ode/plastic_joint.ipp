@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of plastic_joint.hpp.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+#include "ductile/numeric/lu.hpp"
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/plastic_joint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/symmetric_row.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// Share of its own effect by which a row yields [-]. Ties between repeated rows are then
+/// solved to some 1e-4 of the force, and single rows are off by this share.
+inline constexpr double softness = 1e-12;
+
+/// Velocity of the row that a unit impulse of its own gives to one body [1/kg | 1/(kg m²)].
+DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<double>& arm,
+                               const LinkRow<double>& row) {
+    const Vector3<double> turn =
+        row.turns ? row.direction : Vector3<double>(arm.cross(row.direction));
+    const Vector3<double> answer = body.inverse_inertia * turn;
+    return (row.turns ? 0 : body.inverse_mass) + turn.dot(answer);
+}
+
+} // namespace detail
+
+DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
+                                              dBodyID b)
+    : LinkQueries(link), a_(a), b_(b), forces_(world), id_(dJointCreateAMotor(world, nullptr)) {
+    dJointAttach(id_, a_, b_);
+    dJointSetAMotorNumAxes(id_, 3);
+    dJointSetFeedback(id_, &moments_);
+    link_.start(body_motion(a_), body_motion(b_));
+}
+
+DUCTILE_INLINE dBodyID LinkConstraint::require_bodies(dBodyID a, dBodyID b) {
+    require_body("PlasticJoint", a);
+    if (a == b) throw std::invalid_argument("PlasticJoint.b: must not be body a itself");
+    return a;
+}
+
+DUCTILE_INLINE const JointFrame<double>& LinkConstraint::require_frame(const char* name,
+                                                                       const Frame& frame) {
+    constexpr double round_off = 1e-9;
+    const std::string field = std::string("PlasticJoint.") + name;
+    if (!frame.origin.allFinite()) {
+        throw std::invalid_argument(field + ".origin: must be finite [m]");
+    }
+    const Matrix3<double> products = frame.axes.transpose() * frame.axes;
+    if (!(products.isIdentity(round_off) && numeric::determinant(frame.axes) > 0)) {
+        throw std::invalid_argument(field +
+                                    ".axes: must be three orthonormal columns, right-handed");
+    }
+    return frame;
+}
+
+DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const Frame& world) {
+    const BodyState<double> at = body_motion(body);
+    const Matrix3<double> to_body = at.orientation.transpose();
+    const Vector3<double> from_centre = world.origin - at.position;
+    return {.origin = to_body * from_centre, .axes = to_body * world.axes};
+}
+
+DUCTILE_INLINE void LinkConstraint::restored(bool) {
+    put_back_ = true;
+    silent_ = link_.broken();
+    silent_ ? dJointDisable(id_) : dJointEnable(id_);
+}
+
+// ---- life
+
+DUCTILE_INLINE bool LinkConstraint::detached() const {
+    return dJointGetBody(id_, 0) != a_ || dJointGetBody(id_, 1) != b_;
+}
+DUCTILE_INLINE bool LinkConstraint::may_act() const {
+    return !detached() && dJointIsEnabled(id_) != 0 && (can_move(a_) || can_move(b_));
+}
+DUCTILE_INLINE bool LinkConstraint::solved() const {
+    return dBodyIsEnabled(a_) != 0 || (b_ != nullptr && dBodyIsEnabled(b_) != 0);
+}
+DUCTILE_INLINE Vector6<double> LinkConstraint::velocities() const {
+    if (detached() || dJointIsEnabled(id_) == 0) return Vector6<double>::Zero();
+    return link_.velocities(body_motion(a_), body_motion(b_));
+}
+
+// ---- a step
+
+DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
+    acting_ = false;
+    outside_ = {};
+    if (link_.broken() || !may_act()) {
+        if (!link_.broken()) link_.pause();
+        silent_ = true;
+        return;
+    }
+    acting_ = true;
+    const BodyState<double> a = body_state(a_), b = body_state(b_);
+    if (!put_back_) link_.teleport(a, b);
+    put_back_ = false;
+    const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
+    link_.prepare(a, b, force_share_.value * dt, rate, force_share_.midway);
+    arm_a_ = link_.point() - a.position;
+    arm_b_ = link_.point() - b.position;
+    centre_ = {};
+    std::array<PointRow, 3> force_rows, moment_rows;
+    bool out_of_scale = false; // a moment's row
+    for (const JointAxis axis : all_joint_axes) {
+        const LinkRow<double> row = link_.row(axis);
+        SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
+        const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
+        symmetric.cfm += detail::softness * dt * moved;
+        (row.turns ? centre_.moment : centre_.force) += symmetric.centre * row.direction;
+        const double scale = row_scale(moved + symmetric.cfm / dt);
+        out_of_scale = out_of_scale || (row.turns && scale != 1);
+        (row.turns ? moment_rows : force_rows)[index(axis) % 3] = {row.direction, symmetric, scale};
+    }
+    forces_.make(a_, b_, link_.point(), force_rows);
+    for (int i = 0; i < 3; ++i) set_motor(i, moment_rows[std::size_t(i)], !out_of_scale);
+    if (out_of_scale) forces_.make_moments(a_, b_, moment_rows);
+    moments_ = {}; // ODE leaves it alone where the motor has no row
+    add_centre(1);
+}
+
+DUCTILE_INLINE void LinkConstraint::commit(double dt) {
+    if (!acting_) return;
+    if (!solved()) {
+        // ODE keeps what was applied for the step
+        add_centre(-1);
+        forces_.clear();
+        link_.pause();
+        return;
+    }
+    silent_ = false;
+    outside_ = forces_.collect();
+    outside_.force += centre_.force;
+    outside_.torque_a += arm_a_.cross(centre_.force) + centre_.moment;
+    outside_.torque_b -= arm_b_.cross(centre_.force) + centre_.moment;
+    const Vector3<double> torque = outside_.torque_a + to_core(moments_.t1);
+    const Vector3<double> moment = torque - arm_a_.cross(outside_.force);
+    link_.commit(body_motion(a_), body_motion(b_),
+                 JointWrench<double>{.force = outside_.force / force_share_.value,
+                                     .moment = moment / force_share_.value},
+                 force_share_.value * dt);
+    if (link_.broken()) let_go();
+}
+
+DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment, bool on) {
+    constexpr int in_world = 0;
+    const Vector3<double>& axis = moment.direction;
+    dJointSetAMotorAxis(id_, number, in_world, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+    const int group = dParamGroup * number;
+    dJointSetAMotorParam(id_, dParamFMax + group, dReal(on ? moment.row.strength : 0));
+    dJointSetAMotorParam(id_, dParamVel + group, dReal(moment.row.velocity));
+    dJointSetAMotorParam(id_, dParamCFM + group, dReal(moment.row.cfm));
+}
+
+DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {
+    const Vector3<double> force = sign * centre_.force, moment = sign * centre_.moment;
+    add_force(a_, force, arm_a_.cross(force) + moment);
+    if (b_ != nullptr) add_force(b_, -force, -arm_b_.cross(force) - moment);
+}
+
+DUCTILE_INLINE void LinkConstraint::let_go() {
+    dJointDisable(id_);
+    release_ = link_.release(body_state(a_), body_state(b_));
+    if (can_move(a_)) apply(a_, release_.a);
+    if (can_move(b_)) apply(b_, release_.b);
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of world.hpp.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "ductile/ode/force_share.hpp"
+#include "ductile/ode/world.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
+    : SteppedWorld(parameters.effort, std::move(parameters.warn)),
+      world_(world),
+      solver_(parameters.solver) {
+    if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
+    if (parameters.ledger) meter_.emplace(world_);
+    if (parameters.leapfrog) start_leapfrog();
+}
+DUCTILE_INLINE World::World(dWorldID world, Solver solver)
+    : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
+
+DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
+    supervisor().add(&joint, std::move(name), [&joint] { return joint.queries().report(); });
+    constraints_.push_back(&joint);
+    plastic_.push_back(&joint);
+    bodies_known_ = false;
+    joint.set_force_share({});
+    if (meter_) meter_->add(joint);
+}
+DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
+    supervisor().remove(&joint);
+    std::erase(constraints_, &joint);
+    std::erase(plastic_, &joint);
+    joint.set_force_share({});
+    if (meter_) meter_->remove(joint);
+}
+DUCTILE_INLINE void World::remove(SteppedConstraint& constraint) {
+    std::erase(constraints_, &constraint);
+    constraint.set_force_share({});
+}
+
+DUCTILE_INLINE void World::add(dBodyID body) {
+    if (body == nullptr) throw std::invalid_argument("World.add.body = null: must be a body");
+    if (std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end()) {
+        throw std::invalid_argument("World.add.body: must not be in the world already");
+    }
+    bodies_.push_back(body);
+    if (meter_) meter_->add(body);
+}
+DUCTILE_INLINE void World::remove(dBodyID body) {
+    std::erase(bodies_, body);
+    bodies_known_ = false;
+    if (meter_) meter_->remove(body);
+}
+
+// ---- what SteppedWorld asks of ODE
+
+DUCTILE_INLINE void World::require_possible(double) {
+    for (const SteppedConstraint* constraint : constraints_) constraint->check();
+    if (leapfrogs() && !bodies_known_) require_bodies();
+}
+DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& effort) {
+    if (meter_) {
+        for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
+        meter_->before_step();
+    }
+    if (leapfrogs()) share_forces(bodies_, constraints_, how);
+    for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
+    if (effort.direct || solver_ == Solver::direct) {
+        dWorldStep(world_, dReal(dt));
+    } else {
+        dWorldQuickStep(world_, dReal(dt));
+    }
+    for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
+    if (meter_) meter_->after_step(dt, how.value);
+}
+
+DUCTILE_INLINE void World::require_bodies() {
+    std::vector<dBodyID> known = bodies_;
+    std::sort(known.begin(), known.end());
+    for (const PlasticConstraint* joint : plastic_) {
+        for (const int side : {0, 1}) {
+            const dBodyID body = dJointGetBody(joint->id(), side);
+            if (!can_move(body) || std::binary_search(known.begin(), known.end(), body)) continue;
+            throw std::invalid_argument(
+                "World.leapfrog = true: the bodies of every joint must have been added");
+        }
+    }
+    bodies_known_ = true;
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: MIT
+//
+// A plastic joint between two bodies of an engine, as six rows: the part of an adapter that knows
+// no engine. Some rows are ruled by a plastic joint of the core (OneAxisJoint, CoupledJoint), the
+// others hold rigidly. Here is all that does not depend on the joint's type, so that an adapter is
+// compiled once whatever its laws; link.hpp adds the joint.
+//
+//   before the solve   prepare(a, b, dt, rate)  -> limits of the six rows
+//   after the solve    commit(a, b, wrench, dt) -> the joint's step
+//
+// Frames. Each body carries a frame, z along the member. The joint is the origin of frame A; the
+// rows run along the axes of frame B. With x_A, x_B the origins and A, B the axes of the frames,
+//
+//   d = Bᵀ(x_A - x_B),       ḋ = Bᵀ(v_A - v_B), both velocities at the joint
+//   R = BᵀA,                 Ṙ = [Bᵀ(ω_A - ω_B)]ₓ R
+//
+// so that a force row at the joint acts on both bodies in one point and its velocity is exactly the
+// rate of d; the rate of rotation is that of the left increments of R.
+//
+// Finite rotation. The rest orientation R_p is a rotation, not three angles: the elastic part is
+// e = log(R R_pᵀ), and plastic flow Δ turns it on, R_p <- exp(Δ) R_p. The joint is shown the
+// position q_p + e. A hinge may turn many times, as long as it turns less than π in one step.
+//
+// Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
+// does not, `outcome` is unreliable although the plastic rows may look solved.
+//
+// Symbols
+//   d, R   displacement and orientation of frame A in frame B   [m], [-]
+//   e      elastic part of the rotation, axes of frame B        [rad]
+//   K      inverse mass at the joint, 6×6, axes of frame B      [1/kg ... 1/(kg m²)]
+//   M      mass of the plastic rows while the rigid ones hold, (K⁻¹)_pp
+//
+// Source: left-trivialised increments as in Solà et al. (2018), arXiv:1812.01537, eq. (25)-(28);
+// the account is that of the joints.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "ductile/fracture/event.hpp"
+#include "ductile/joint/break_release.hpp"
+#include "ductile/joint/joint_axis.hpp"
+#include "ductile/joint/joint_totals.hpp"
+#include "ductile/joint/link_pose.hpp"
+#include "ductile/joint/link_types.hpp"
+#include "ductile/joint/rotation.hpp"
+#include "ductile/vocabulary/row.hpp"
+
+namespace ductile {
+
+/// Not thread-safe. After construction nothing allocates or throws; O(1).
+template <std::floating_point S>
+class AnyLink {
+  public:
+    using Limits = std::array<RowLimits<S>, 6>; ///< in the order of JointAxis
+
+    /// The plastic axes start unstrained where the bodies are now.
+    void start(const BodyState<S>& a, const BodyState<S>& b) noexcept;
+
+    /// The bodies were put elsewhere by the user since the last look, which is no deformation: the
+    /// plastic axes keep their strain, and their rest position moves with the bodies.
+    void teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept;
+    /// Only looks where the bodies are now.
+    void look(const BodyState<S>& a, const BodyState<S>& b) noexcept { pose_.look(a, b); }
+
+    // ---- around the solve
+
+    /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
+    /// out of what it is shown.
+    [[nodiscard]] bool reads_mass() const noexcept {
+        return axes().size() == 1 ? !all_rigid() : mass_at_ != pose_.rest_changes();
+    }
+    /// True where M only serves to predict forces: that of the rest position will do there for as
+    /// long as the joint does not flow.
+    [[nodiscard]] bool takes_mass_at_rest() const noexcept {
+        return axes().size() > 1 && all_rigid() && !totals().flowing;
+    }
+    /// K at the rest position (inverse_mass_along_b): used until that changes.
+    void set_inverse_mass_at_rest(const Matrix6<S>& k) noexcept {
+        take_mass(k);
+        mass_at_ = pose_.rest_changes();
+    }
+
+    /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
+    /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all.
+    const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
+                          bool midway = false) noexcept;
+
+    /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
+    /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it.
+    const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
+                          const JointWrench<S>& wrench, S dt) noexcept;
+    /// The same with the forces of the rows, in the order of JointAxis [N | N m].
+    const Step<S>& commit_rows(const BodyState<S>& a, const BodyState<S>& b,
+                               const Vector6<S>& forces, S dt) noexcept;
+
+    /// What the bodies must be given back after a break, as they are now; see break_release. Zero
+    /// energy: nothing.
+    [[nodiscard]] BreakRelease<S> release(const BodyState<S>& a,
+                                          const BodyState<S>& b) const noexcept;
+    /// The same as an impulse on A at the joint, for engines that take it as six given forces.
+    [[nodiscard]] JointImpulse<S> release_impulse(const BodyState<S>& a,
+                                                  const BodyState<S>& b) const noexcept;
+
+    /// The engine left the link out of a step; what the bodies did meanwhile is not to be taken for
+    /// what the last booked step did.
+    void pause() noexcept {
+        pause_joint();
+        rigid_residual_ = 0;
+        rigid_unsolved_ = false;
+    }
+
+    // ---- what it says
+
+    /// Which axis of the link each row of the joint is.
+    [[nodiscard]] virtual std::span<const JointAxis> axes() const noexcept = 0;
+    [[nodiscard]] virtual const JointTotals<S>& totals() const noexcept = 0;
+    [[nodiscard]] virtual const Step<S>& last() const noexcept = 0; ///< the step last booked
+    /// How the joint broke; nothing while it is intact.
+    [[nodiscard]] virtual std::optional<FractureEvent<S>> fracture() const noexcept = 0;
+    /// Share of the strength that the last step's forces use: 1 where it flows, 0 where broken [-].
+    [[nodiscard]] virtual S utilisation() const noexcept = 0;
+
+    [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
+    [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }
+    /// Of the last prepare.
+    [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
+    [[nodiscard]] LinkRow<S> row(JointAxis axis) const noexcept {
+        return {pose_.axes().col(Eigen::Index(index(axis) % 3)), turns(axis), limits_[index(axis)]};
+    }
+    [[nodiscard]] bool broken() const noexcept { return totals().broken; }
+    [[nodiscard]] bool is_plastic(JointAxis axis) const noexcept { return plastic_[index(axis)]; }
+
+    /// Where the joint was when last looked at.
+    [[nodiscard]] const LinkPose<S>& pose() const noexcept { return pose_; }
+    [[nodiscard]] const Vector3<S>& point() const noexcept { return pose_.point(); }
+    [[nodiscard]] const Matrix3<S>& axes_in_world() const noexcept { return pose_.axes(); }
+
+    /// Velocities of the six rows if the bodies moved as these do, at the joint and along the axes
+    /// of the last look [m/s | rad/s].
+    [[nodiscard]] Vector6<S> velocities(const BodyState<S>& a,
+                                        const BodyState<S>& b) const noexcept {
+        return pose_.twist(a, b);
+    }
+    /// Position of A in frame B: d, and rotation angles that go on over many turns; of a rigid axis
+    /// what it is off by [m | rad].
+    [[nodiscard]] S position(JointAxis axis) const noexcept {
+        const auto i = Eigen::Index(index(axis));
+        return strain()[i] + offset()[i];
+    }
+    /// q_p; zero for a rigid axis [m | rad].
+    [[nodiscard]] S plastic_offset(JointAxis axis) const noexcept {
+        return offset()[Eigen::Index(index(axis))];
+    }
+    /// Reaction on A along +axis of frame B in the last step, whether rigid or plastic [N | N m].
+    [[nodiscard]] S force(JointAxis axis) const noexcept {
+        return force_[Eigen::Index(index(axis))];
+    }
+    /// Forces and moments of the last step in the order of JointAxis [N | N m].
+    [[nodiscard]] const Vector6<S>& forces() const noexcept { return force_; }
+    /// Largest violation of the rigid rows in the last step [m/s | rad/s].
+    [[nodiscard]] S rigid_residual() const noexcept { return rigid_residual_; }
+    /// That of the joint, and unreliable where a rigid row was left unsolved.
+    [[nodiscard]] Outcome outcome() const noexcept {
+        return rigid_unsolved_ && last().outcome != Outcome::broken ? Outcome::unreliable
+                                                                    : last().outcome;
+    }
+
+  protected:
+    AnyLink(const JointFrame<S>& in_a, const JointFrame<S>& in_b) : pose_(in_a, in_b) {}
+    AnyLink(const AnyLink&) = default;
+    AnyLink(AnyLink&&) = default;
+    AnyLink& operator=(const AnyLink&) = default;
+    AnyLink& operator=(AnyLink&&) = default;
+    ~AnyLink() = default;
+
+    /// What the joint's parameters allow a row to be off by.
+    struct Allowed {
+        S absolute_residual, relative_residual;
+    };
+    /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
+    [[nodiscard]] Vector6<S> strain() const noexcept;
+    /// Turns the rest orientation by what flowed about the plastic axes [rad].
+    void turn_rest(const Vector3<S>& flow) noexcept;
+
+    LinkPose<S> pose_;
+    std::array<bool, 6> plastic_{};
+    Limits limits_{};                       ///< between prepare and commit
+    Vector6<S> force_ = Vector6<S>::Zero(); ///< of the last step, axes of frame B [N | N m]
+
+  private:
+    // ---- what the joint does; six-vectors in the order of JointAxis, zero for what is not its own
+
+    /// No plastic row is elastic below yield.
+    [[nodiscard]] virtual bool all_rigid() const noexcept = 0;
+    [[nodiscard]] virtual Allowed allowed() const noexcept = 0;
+    [[nodiscard]] virtual Vector6<S> offset() const noexcept = 0; ///< q_p
+    virtual void set_offset(const Vector6<S>& offset) noexcept = 0;
+    [[nodiscard]] virtual Vector6<S> flow() const noexcept = 0; ///< direction of the last flow
+    /// M of the joint's rows from K of all.
+    virtual void take_mass(const Matrix6<S>& k) noexcept = 0;
+    /// Writes the limits of the joint's own rows.
+    virtual void prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
+                               const BodyState<S>& b, S dt, bool midway) noexcept = 0;
+    /// Books force_ and `velocity` with the bodies where they are now.
+    virtual void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a,
+                              const BodyState<S>& b, S dt) noexcept = 0;
+    virtual void pause_joint() noexcept = 0;
+
+    void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
+    [[nodiscard]] Vector6<S> along_plastic_axes(Vector6<S> six) const noexcept {
+        for (std::size_t i = 0; i < 6; ++i) {
+            if (!plastic_[i]) six[Eigen::Index(i)] = 0;
+        }
+        return six;
+    }
+
+    /// LinkPose::rest_changes that M stays right for; the largest: that of the last prepare alone
+    unsigned mass_at_ = std::numeric_limits<unsigned>::max();
+    S rigid_residual_ = 0;
+    bool rigid_unsolved_ = false;
+};
+
+template <std::floating_point S>
+void AnyLink<S>::start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+    pose_.look(a, b);
+    pose_.set_rest(Matrix3<S>::Identity());
+    const Vector6<S> q = strain();
+    set_offset(q);
+    turn_rest(q.template tail<3>());
+}
+
+template <std::floating_point S>
+void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+    if (pose_.is_now(a, b)) return;
+    const Vector6<S> before = strain();
+    pose_.look(a, b);
+    const Vector6<S> moved = along_plastic_axes(strain() - before);
+    const Vector3<S> kept = pose_.elastic_rotation() - moved.template tail<3>();
+    set_offset(offset() + moved);
+    if (!moved.template tail<3>().isZero(0)) {
+        pose_.set_rest(turned_by<S>(-kept, pose_.orientation()));
+    }
+}
+
+template <std::floating_point S>
+const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
+                                                       S dt, S rate, bool midway) noexcept {
+    pose_.look(a, b);
+    const Vector6<S> error = strain();
+    const bool whole = !broken();
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
+        if (!whole) limits_[i] = {.lower = 0, .upper = 0};
+    }
+    if (reads_mass()) take_mass(inverse_mass_of_rows(a, b, pose_.point(), pose_.axes()));
+    prepare_joint(error, a, b, dt, midway);
+    return limits_;
+}
+
+template <std::floating_point S>
+const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
+                                  const JointWrench<S>& wrench, S dt) noexcept {
+    Vector6<S> forces;
+    forces.template head<3>() = pose_.axes().transpose() * wrench.force;
+    forces.template tail<3>() = pose_.axes().transpose() * wrench.moment;
+    return commit_rows(a, b, forces, dt);
+}
+
+template <std::floating_point S>
+const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>& b,
+                                       const Vector6<S>& forces, S dt) noexcept {
+    // velocities belong to the rows that were solved, positions to where the bodies are now
+    const Vector6<S> velocity = pose_.twist(a, b);
+    force_ = forces;
+    certify_rigid_rows(a, velocity);
+    pose_.look(a, b);
+    commit_joint(velocity, a, b, dt);
+    return last();
+}
+
+template <std::floating_point S>
+BreakRelease<S> AnyLink<S>::release(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
+    if (!(last().release > 0)) return {};
+    return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
+                         pose_.in_world(pose_.twist(a, b)), last().release);
+}
+
+template <std::floating_point S>
+JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
+                                            const BodyState<S>& b) const noexcept {
+    if (!(last().release > 0)) return {};
+    return ductile::release_impulse(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
+                                    pose_.in_world(pose_.twist(a, b)), last().release);
+}
+
+template <std::floating_point S>
+Vector6<S> AnyLink<S>::strain() const noexcept {
+    Vector6<S> result;
+    result.template head<3>() = pose_.displacement();
+    result.template tail<3>() = pose_.elastic_rotation();
+    const Vector6<S> rest = offset();
+    for (int i = 0; i < 3; ++i) result[i] -= rest[i];
+    return result;
+}
+
+template <std::floating_point S>
+void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept {
+    std::array<S, 2> worst{}; // of translations and rotations
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        if (plastic_[i]) continue;
+        const S residual = std::abs(velocity[Eigen::Index(i)] - limits_[i].bias);
+        worst[i / 3] = std::max(worst[i / 3], residual);
+    }
+    rigid_residual_ = std::max(worst[0], worst[1]);
+    const Allowed allow = allowed();
+    rigid_unsolved_ =
+        rigid_residual_ > allow.absolute_residual &&
+        (worst[0] > allow.absolute_residual + allow.relative_residual * pose_.speed_of_a(a) ||
+         worst[1] > allow.absolute_residual + allow.relative_residual * a.spin.norm());
+}
+
+template <std::floating_point S>
+void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
+    Vector3<S> turn = Vector3<S>::Zero();
+    for (int i = 0; i < 3; ++i) {
+        if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
+    }
+    pose_.set_rest(turn.isZero(0) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
+}
+
+} // namespace ductile

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// The few operations on vectors and matrices of fixed size that every joint does in every step,
+// as plain loops: Eigen's expressions do the same, but each one costs a compiler some dozens of
+// types. Sums are taken in the order of the entries.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <concepts>
+#include <limits>
+
+namespace ductile::numeric {
+
+/// Σ a_i b_i.
+template <std::floating_point S, int N>
+[[nodiscard]] S dot(const Eigen::Matrix<S, N, 1>& a, const Eigen::Matrix<S, N, 1>& b) noexcept {
+    S sum = 0;
+    for (int i = 0; i < N; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/// A x.
+template <std::floating_point S, int N>
+[[nodiscard]] Eigen::Matrix<S, N, 1> times(const Eigen::Matrix<S, N, N>& a,
+                                           const Eigen::Matrix<S, N, 1>& x) noexcept {
+    Eigen::Matrix<S, N, 1> result;
+    for (int i = 0; i < N; ++i) result[i] = a(i, 0) * x[0];
+    for (int j = 1; j < N; ++j) {
+        for (int i = 0; i < N; ++i) result[i] += a(i, j) * x[j];
+    }
+    return result;
+}
+
+/// max |x_i|.
+template <std::floating_point S, int N>
+[[nodiscard]] S largest(const Eigen::Matrix<S, N, 1>& x) noexcept {
+    S result = 0;
+    for (int i = 0; i < N; ++i) {
+        const S size = std::abs(x[i]);
+        if (size > result) result = size;
+    }
+    return result;
+}
+
+/// |x|, whatever its size: where the squares would leave the range of S they are scaled.
+template <std::floating_point S, int N>
+[[nodiscard]] S length(const Eigen::Matrix<S, N, 1>& x) noexcept {
+    constexpr S least = std::numeric_limits<S>::min() / std::numeric_limits<S>::epsilon();
+    const S square = dot(x, x);
+    if ((square > least && square < 1 / least) || square != square) return std::sqrt(square);
+    const S scale = largest(x);
+    if (!(scale > 0 && scale <= std::numeric_limits<S>::max())) return scale;
+    S sum = 0;
+    for (int i = 0; i < N; ++i) sum += (x[i] / scale) * (x[i] / scale);
+    return scale * std::sqrt(sum);
+}
+
+} // namespace ductile::numeric

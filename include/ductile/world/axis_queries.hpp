@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// The queries of a joint that rules one row of an engine's own joint, in any engine.
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "ductile/joint/axis_joint.hpp"
+#include "ductile/world/joint_queries.hpp"
+
+namespace ductile {
+
+class AxisQueries : public PairQueries {
+  public:
+    /// Geometric rest position q_p [m | rad].
+    [[nodiscard]] double plastic_offset() const {
+        (void)totals();
+        return joint_.plastic_offset();
+    }
+    /// Position of A relative to B, not wrapped [m | rad].
+    [[nodiscard]] double position() const {
+        (void)totals();
+        return position_;
+    }
+    /// Velocity of that after the last step's solve [m/s | rad/s].
+    [[nodiscard]] double velocity() const {
+        (void)totals();
+        return joint_.velocity();
+    }
+    /// Force of the row in the last step, positive where it pushes A along +axis, or turns it about
+    /// it; zero while the joint does not act, and once it is broken [N | N m].
+    [[nodiscard]] double reaction() const { return totals().broken ? 0 : force_; }
+
+  protected:
+    /// `joint` must outlive this.
+    explicit AxisQueries(AxisJoint& joint) : joint_(joint) {}
+    ~AxisQueries() = default;
+
+    AxisJoint& joint_;
+    double position_ = 0; ///< q
+    double force_ = 0;
+
+  private:
+    [[nodiscard]] const JointTotals<double>& state_totals() const final { return joint_.totals(); }
+    [[nodiscard]] const Step<double>& last_step() const final { return joint_.last(); }
+    [[nodiscard]] std::optional<FractureEvent<double>> fracture() const final {
+        return joint_.fracture();
+    }
+    [[nodiscard]] double last_utilisation() const final {
+        const double strength = joint_.strength(force_ > 0 ? -1 : 1);
+        return !joint_.broken() && strength > 0 ? std::abs(force_) / strength : 0;
+    }
+};
+
+} // namespace ductile

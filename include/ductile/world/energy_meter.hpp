@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+//
+// Keeps the ledger of a world of any engine, step by step. An adapter derives from it and says
+// which bodies, joints and contacts there are.
+//
+//   meter.before_step();   the engine's step of dt;   meter.after_step(dt);
+//
+// The update of an engine is v' = v + M⁻¹ Σ impulses, so each impulse's work is impulse × (u +
+// u')/2 at its point, and the sum is the change of kinetic energy to round-off. Booked:
+//   plastic      what every plastic joint says it absorbed
+//   joints       work of all joints, less the plastic part and what elastic ones store, which the
+//   world
+//                holds, and what a break gave back
+//   contact      normal impulses
+//   friction     tangential impulses
+//   integration  gravity's work against the change of potential energy; damping; gyroscopic torque
+//   and
+//                the turning of inertia tensors; motion that ends because the engine puts a body to
+//                sleep
+// What the engine does not tell stays unexplained.
+//
+// Cost: O(bodies + joints + contacts) per step. Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <unordered_map>
+#include <vector>
+
+#include "ductile/vocabulary/vector.hpp"
+#include "ductile/world/joint_queries.hpp"
+#include "ductile/world/ledger.hpp"
+
+namespace ductile {
+
+/// A body that can move, world axes. An address stands for a body, here and below; null, or one
+/// that is not metered: a body that takes part but holds no energy of this world.
+struct MeteredBody {
+    const void* body = nullptr;
+    Vector3<double> position{0, 0, 0};                 ///< of the centre of mass [m]
+    Vector3<double> velocity{0, 0, 0};                 ///< [m/s]
+    Vector3<double> spin{0, 0, 0};                     ///< [rad/s]
+    double mass = 0;                                   ///< [kg]
+    Matrix3<double> inertia = Matrix3<double>::Zero(); ///< about the centre of mass [kg m²]
+    Vector3<double> weight{0, 0, 0};                   ///< gravity's force on it [N]
+    Vector3<double> force{0, 0, 0};                    ///< applied for the step [N]
+    Vector3<double> torque{0, 0, 0};                   ///< [N m]
+    bool asleep = false; ///< the engine leaves it alone and keeps no velocity of it
+};
+
+/// A plastic joint and its bodies.
+struct MeteredPlasticJoint {
+    const PairQueries* joint = nullptr;
+    const void* a = nullptr;
+    const void* b = nullptr;
+};
+
+/// What all rows of a joint did in a step, about the centres of mass, world axes.
+struct MeteredJoint {
+    const void* joint = nullptr; ///< an address, as taken_by wants it
+    const void* a = nullptr;
+    const void* b = nullptr;
+    Vector3<double> force_a{0, 0, 0};  ///< [N]
+    Vector3<double> torque_a{0, 0, 0}; ///< [N m]
+    Vector3<double> force_b{0, 0, 0};
+    Vector3<double> torque_b{0, 0, 0};
+    const PairQueries* plastic = nullptr; ///< whose flow is a part of this; null: nobody's
+};
+
+/// One contact point of a step.
+struct MeteredContact {
+    const void* a = nullptr;
+    const void* b = nullptr;
+    Vector3<double> point_a{0, 0, 0}; ///< world [m]
+    Vector3<double> point_b{0, 0, 0};
+    Vector3<double> normal{0, 0, 0};     ///< impulse on A [N s]
+    Vector3<double> tangential{0, 0, 0}; ///< [N s]
+};
+
+class EnergyMeter {
+  public:
+    EnergyMeter(const EnergyMeter&) = delete;
+    EnergyMeter& operator=(const EnergyMeter&) = delete;
+
+    /// Starts a new account with what the world holds now.
+    void open();
+    [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
+    void before_step();
+    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
+    /// forces acted (force_share.hpp).
+    void after_step(double dt, double share = 1);
+    /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
+    [[nodiscard]] HeldEnergy<double> held() const;
+
+  protected:
+    EnergyMeter() = default;
+    ~EnergyMeter() = default;
+
+    /// Energy that all rows of a joint took from the bodies since the meter was made [J].
+    [[nodiscard]] double taken_by_address(const void* joint) const {
+        const auto entry = taken_.find(joint);
+        return entry != taken_.end() ? entry->second : 0;
+    }
+
+  private:
+    // ---- what an engine answers
+
+    virtual void list_bodies(std::vector<MeteredBody>& bodies) const = 0;
+    virtual void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const = 0;
+    /// The engine is about to step: from now on it has to keep what the next two ask for.
+    virtual void watch_step() = 0;
+    virtual void list_joints(std::vector<MeteredJoint>& joints) const = 0;
+    virtual void list_contacts(double dt, std::vector<MeteredContact>& contacts) const = 0;
+    /// The step is booked.
+    virtual void end_watch() {}
+    /// Angular impulse that the engine adds for ω × Iω in a step of `dt` [s], from the body as its
+    /// solver saw it [N m s].
+    [[nodiscard]] virtual Vector3<double> gyroscopic_impulse(const MeteredBody& body,
+                                                             double dt) const = 0;
+    /// Takes away what the engine damps before it solves; `dt` [s].
+    virtual void damp(MeteredBody& /*body*/, double /*dt*/) const {}
+
+    /// A body over one step, in the frame in which the solver saw it.
+    struct Course {
+        MeteredBody start;                       ///< after damping
+        double damped = 0;                       ///< [J]
+        Vector3<double> velocity_after{0, 0, 0}; ///< after the solve, before a break's release
+        Vector3<double> spin_after{0, 0, 0};
+        bool asleep_after = false;
+    };
+    /// A plastic joint's totals at the start of the step [J].
+    struct PlasticStart {
+        double absorbed, stored, released;
+    };
+
+    [[nodiscard]] Course* course_of(const void* body);
+    void take_back(const void* body, const VelocityChange<double>& change);
+    void undo_releases();
+    void book_body(const Course& course, const MeteredBody& now, double dt, double share);
+    [[nodiscard]] double work(const void* body, const Vector3<double>& force,
+                              const Vector3<double>& torque, double dt);
+    void book_joint(const MeteredJoint& joint, double dt);
+    void book_contact(const MeteredContact& contact);
+    /// Sum of the velocities before and after the step at a world point of the body [m/s].
+    [[nodiscard]] Vector3<double> velocity_sum(const void* body, const Vector3<double>& point);
+
+    Ledger<double> ledger_;
+    HeldEnergy<double> last_;
+    std::unordered_map<const void*, Course> courses_;
+    std::unordered_map<const PairQueries*, PlasticStart> plastic_start_;
+    std::unordered_map<const void*, double> taken_;
+    mutable std::vector<MeteredBody> bodies_; ///< room that is used again, as are the next
+    mutable std::vector<MeteredPlasticJoint> plastic_;
+    std::vector<MeteredJoint> joints_;
+    std::vector<MeteredContact> contacts_;
+};
+
+} // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/world/energy_meter.ipp"
+#endif

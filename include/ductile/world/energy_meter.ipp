@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of energy_meter.hpp.
+#pragma once
+
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/energy_meter.hpp"
+
+namespace ductile {
+
+namespace detail {
+
+/// Kinetic energy of a body with these velocities [J].
+DUCTILE_INLINE double kinetic_energy(const MeteredBody& body, const Vector3<double>& velocity,
+                                     const Vector3<double>& spin) {
+    const Vector3<double> momentum = body.inertia * spin;
+    return body.mass * velocity.dot(velocity) / 2 + spin.dot(momentum) / 2;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void EnergyMeter::open() {
+    ledger_.open(held());
+    last_ = ledger_.held();
+}
+
+DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
+    HeldEnergy<double> result;
+    plastic_.clear();
+    list_plastic_joints(plastic_);
+    // joints first: one that books its step now may give a break's energy back to its bodies
+    for (const auto& [joint, a, b] : plastic_) result.elastic += joint->stored_energy();
+    bodies_.clear();
+    list_bodies(bodies_);
+    for (const MeteredBody& body : bodies_) {
+        result.kinetic += detail::kinetic_energy(body, body.velocity, body.spin);
+        result.potential -= body.weight.dot(body.position);
+    }
+    return result;
+}
+
+DUCTILE_INLINE void EnergyMeter::before_step() {
+    // what somebody changed between the steps came from outside
+    ledger_.supply(held().total() - last_.total());
+    courses_.clear();
+    for (const MeteredBody& body : bodies_) courses_.emplace(body.body, Course{.start = body});
+    plastic_start_.clear();
+    for (const auto& [joint, a, b] : plastic_) {
+        plastic_start_[joint] = {joint->absorbed_energy(), joint->stored_energy(),
+                                 joint->release().energy};
+    }
+    watch_step();
+}
+
+DUCTILE_INLINE void EnergyMeter::after_step(double dt, double share) {
+    const HeldEnergy<double> now = held();
+    for (const MeteredBody& body : bodies_) {
+        Course* course = course_of(body.body);
+        if (course == nullptr) continue;
+        MeteredBody& start = course->start;
+        const double before = detail::kinetic_energy(start, start.velocity, start.spin);
+        damp(start, dt);
+        course->damped = before - detail::kinetic_energy(start, start.velocity, start.spin);
+        course->velocity_after = body.velocity;
+        course->spin_after = body.spin;
+        course->asleep_after = body.asleep;
+    }
+    undo_releases();
+    for (const MeteredBody& body : bodies_) {
+        const Course* course = course_of(body.body);
+        if (course != nullptr) book_body(*course, body, dt, share);
+    }
+    joints_.clear();
+    list_joints(joints_);
+    for (const MeteredJoint& joint : joints_) book_joint(joint, dt);
+    contacts_.clear();
+    list_contacts(dt, contacts_);
+    for (const MeteredContact& contact : contacts_) book_contact(contact);
+    end_watch();
+    last_ = now;
+    ledger_.update(last_);
+}
+
+DUCTILE_INLINE EnergyMeter::Course* EnergyMeter::course_of(const void* body) {
+    const auto found = courses_.find(body);
+    return found != courses_.end() ? &found->second : nullptr;
+}
+
+DUCTILE_INLINE void EnergyMeter::take_back(const void* body, const VelocityChange<double>& change) {
+    if (Course* course = course_of(body)) {
+        course->velocity_after -= change.linear;
+        course->spin_after -= change.angular;
+    }
+}
+
+/// A break's release acted after the solve; the rows' work wants the velocities before it.
+DUCTILE_INLINE void EnergyMeter::undo_releases() {
+    for (const auto& [joint, a, b] : plastic_) {
+        const auto start = plastic_start_.find(joint);
+        const BreakRelease<double>& release = joint->release();
+        if (start == plastic_start_.end() || release.energy == start->second.released) continue;
+        take_back(a, release.a);
+        take_back(b, release.b);
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBody& now, double dt,
+                                           double share) {
+    const MeteredBody& start = course.start;
+    if (course.asleep_after) {
+        if (!start.asleep) {
+            ledger_.book(Account::integration,
+                         detail::kinetic_energy(start, start.velocity, start.spin));
+        }
+        return;
+    }
+    const Vector3<double> velocities = start.velocity + course.velocity_after;
+    const Vector3<double> spins = start.spin + course.spin_after;
+    ledger_.supply(share * dt * (start.force.dot(velocities) + start.torque.dot(spins)) / 2);
+
+    const Vector3<double> moved = now.position - start.position;
+    const double potential = now.weight.dot(moved) - share * dt * now.weight.dot(velocities) / 2;
+    const Vector3<double>& w = course.spin_after;
+    const Vector3<double> momentum_then = start.inertia * w, momentum_now = now.inertia * w;
+    const double turning = (w.dot(momentum_then) - w.dot(momentum_now)) / 2;
+    const double gyroscopic = -gyroscopic_impulse(start, dt).dot(spins) / 2;
+    ledger_.book(Account::integration, course.damped + potential + turning + gyroscopic);
+}
+
+/// Work that a force and a torque about the centre of mass do on a body over the step [J].
+DUCTILE_INLINE double EnergyMeter::work(const void* body, const Vector3<double>& force,
+                                        const Vector3<double>& torque, double dt) {
+    const Course* course = course_of(body);
+    // an engine leaves what it told of a sleeping body's joint as it was
+    if (course == nullptr || course->asleep_after) return 0;
+    const Vector3<double> velocities = course->start.velocity + course->velocity_after;
+    const Vector3<double> spins = course->start.spin + course->spin_after;
+    return dt / 2 * (force.dot(velocities) + torque.dot(spins));
+}
+
+DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt) {
+    const double taken = -work(joint.a, joint.force_a, joint.torque_a, dt) -
+                         work(joint.b, joint.force_b, joint.torque_b, dt);
+    double named = 0;
+    const auto start = plastic_start_.find(joint.plastic);
+    if (start != plastic_start_.end()) {
+        const PlasticStart& before = start->second;
+        const double flow = joint.plastic->absorbed_energy() - before.absorbed;
+        ledger_.book(Account::plastic, flow);
+        // what a break released was taken by the row and given back after the solve; what was
+        // stored then is set free inside the part
+        named = flow + joint.plastic->stored_energy() - before.stored +
+                joint.plastic->release().energy - before.released;
+    }
+    ledger_.book(Account::joints, taken - named);
+    taken_[joint.joint] += taken;
+}
+
+DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {
+    const Vector3<double> sum =
+        velocity_sum(contact.a, contact.point_a) - velocity_sum(contact.b, contact.point_b);
+    ledger_.book(Account::contact, -contact.normal.dot(sum) / 2);
+    ledger_.book(Account::friction, -contact.tangential.dot(sum) / 2);
+}
+
+DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,
+                                                         const Vector3<double>& point) {
+    const Course* course = course_of(body);
+    if (course == nullptr) return Vector3<double>::Zero();
+    const Vector3<double> arm = point - course->start.position;
+    const Vector3<double> spins = course->start.spin + course->spin_after;
+    const Vector3<double> velocities = course->start.velocity + course->velocity_after;
+    return velocities + spins.cross(arm);
+}
+
+} // namespace ductile

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+//
+// What a world tells of its joints: that one yielded, broke, or cannot be relied on.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "ductile/world/joint_report.hpp"
+
+namespace ductile {
+
+enum class EventKind {
+    yielded,    ///< flowed for the first time
+    broke,      ///< see JointEvent::fracture
+    unreliable, ///< the solver left it unsolved; told once per joint
+    coarse,     ///< the step was too long for what it did; told once per joint
+};
+
+[[nodiscard]] constexpr std::string_view to_string(EventKind kind) noexcept {
+    switch (kind) {
+        case EventKind::yielded:
+            return "yielded";
+        case EventKind::broke:
+            return "broke";
+        case EventKind::unreliable:
+            return "unreliable";
+        case EventKind::coarse:
+            return "coarse";
+    }
+    return "unknown";
+}
+
+/// Plain value.
+template <std::floating_point S>
+struct JointEvent {
+    EventKind kind = EventKind::yielded;
+    std::size_t joint = 0; ///< number that the watch gave it
+    std::string name;      ///< of the joint
+    double time = 0;       ///< at the end of the step, for a break within it [s]
+    JointReport<S> report;
+};
+
+} // namespace ductile
