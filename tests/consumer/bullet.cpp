@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <BulletDynamics/Dynamics/btRigidBody.h>
+//
+// Includes little, as it is built by every way; bullet_hinge.cpp has all of the adapter.
 #include <cstdio>
-#include <ductile/bullet/bullet.hpp>
 #include <ductile/bullet/precision_check.hpp>
+#include <ductile/law/perfect.hpp>
 
 int main() {
     ductile::bullet::require_matching_precision();

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
+//
+// Includes little, as it is built by every way; examples/first has all of the adapter.
+#include <ode/ode.h>
+
 #include <cstdio>
-#include <ductile/ode/ode.hpp>
+#include <ductile/law/perfect.hpp>
 #include <ductile/ode/precision_check.hpp>
 
 int main() {

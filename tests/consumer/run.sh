@@ -43,7 +43,7 @@ consume() {
     local program=$1
     shift
     rm -rf project
-    cmake -S "$here" -B project -DPROGRAM="$program" "$@" && cmake --build project && ./project/consumer
+    cmake -S "$here" -B project -DPROGRAM="$program" "$@" && cmake --build project -j 2 && ./project/consumer
 }
 # compile PROGRAM FLAGS...: compiles and runs
 compile() {
@@ -115,20 +115,14 @@ has bullet_float64 && step "include path, bullet_float64" "$holds" \
     compile "$here/bullet.cpp" -DBT_USE_DOUBLE_PRECISION $bullet $(bullet_libraries -float64)
 has ode && step "include path, ode" "$holds" compile "$here/ode.cpp" $ode -lode
 
-# ---- engines that pkg-config does not know; the smallest program that needs the engine's library ----------
-cat >bullet_precision.cpp <<'END'
-#include <cstdio>
-#include <ductile/bullet/precision_check.hpp>
-int main() { ductile::bullet::require_matching_precision(); std::puts("matches"); }
-END
-sed 's/bullet/ode/' bullet_precision.cpp >ode_precision.cpp
+# ---- engines that pkg-config does not know --------------------------------------------------------------
 for adapter in bullet bullet_float64; do
     has $adapter && PKG_CONFIG_LIBDIR=/nonexistent PKG_CONFIG_PATH='' \
-        step "Bullet's CMake package, $adapter" '^matches$' \
-        find_component $adapter "$work/bullet_precision.cpp"
+        step "Bullet's CMake package, $adapter" "$holds" \
+        find_component $adapter "$here/bullet.cpp"
 done
-has bullet && step "a target of one's own" '^matches$' \
-    find_component bullet "$work/bullet_precision.cpp" -DDUCTILE_BULLET_TARGET=own_bullet \
+has bullet && step "a target of one's own" "$holds" \
+    find_component bullet "$here/bullet.cpp" -DDUCTILE_BULLET_TARGET=own_bullet \
     -DOWN_BULLET="BulletDynamics;BulletCollision;LinearMath" -DOWN_BULLET_INCLUDE=/usr/include/bullet
 step "an optional component that is none" "$holds" find_component "" "$here/core.cpp" -DOPTIONAL=havok
 
@@ -151,22 +145,22 @@ for flag in -ffast-math -ffinite-math-only; do
 done
 if has bullet && has bullet_float64; then
     step "single precision with the macro of double" 'ductile::bullet with BT_USE_DOUBLE_PRECISION' \
-        refused compile bullet_precision.cpp -DBT_USE_DOUBLE_PRECISION $(package ductile-bullet)
+        refused compile "$here/bullet.cpp" -DBT_USE_DOUBLE_PRECISION $(package ductile-bullet)
     step "compiled for single, linked with double" 'link_with_Bullet_built_for_single_precision' \
-        refused compile bullet_precision.cpp $bullet $(bullet_libraries -float64)
+        refused compile "$here/bullet.cpp" $bullet $(bullet_libraries -float64)
     step "compiled for double, linked with single" 'link_with_Bullet_built_for_double_precision' \
-        refused compile bullet_precision.cpp -DBT_USE_DOUBLE_PRECISION $bullet $(bullet_libraries "")
+        refused compile "$here/bullet.cpp" -DBT_USE_DOUBLE_PRECISION $bullet $(bullet_libraries "")
     step "linked with both, the wrong one first" \
         'ductile: compiled for Bullet in single precision, but the Bullet library in this' \
-        refused compile bullet_precision.cpp $bullet $(bullet_libraries -float64) $(bullet_libraries "")
+        refused compile "$here/bullet.cpp" $bullet $(bullet_libraries -float64) $(bullet_libraries "")
     archive=$prefix/lib/libductile-bullet-float64.a
     [ -e "$archive" ] && step "the compiled library of the other precision" \
         'link_with_ductile_compiled_for_single_precision' refused \
-        compile bullet_precision.cpp -DDUCTILE_COMPILED $bullet "$archive" $(bullet_libraries "")
+        compile "$here/bullet.cpp" -DDUCTILE_COMPILED $bullet "$archive" $(bullet_libraries "")
 fi
 has ode && step "ODE in double, compiled for single" \
     'ductile: compiled for ODE in single precision .dIDESINGLE., but' \
-    refused compile ode_precision.cpp $ode -DdIDESINGLE -lode
+    refused compile "$here/ode.cpp" $ode -DdIDESINGLE -lode
 
 if [ $failures -gt 0 ]; then
     echo "$failures ways failed"
