@@ -48,6 +48,7 @@
 #include "ductile/joint/coupled_row.hpp"
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
+#include "ductile/joint/off_normal_work.hpp"
 #include "ductile/law/law.hpp"
 #include "ductile/numeric/small_vector.hpp"
 #include "ductile/surface/grown.hpp"
@@ -124,68 +125,10 @@ class CoupledJoint {
     }
 
     /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
-    [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept {
-        start_ = motion.velocity;
-        predicted_ = predict(state_, motion.midway, dt);
-        elastic_ = motion.position - state_.plastic_offset;
-        if (state_.broken) {
-            rows_.fill({.lower = 0, .upper = 0});
-            return rows_;
-        }
-        bound(motion, dt);
-        for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
-        return rows_;
-    }
+    [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s].
-    Step commit(const Reaction& reaction, Scalar dt) noexcept {
-        Step step;
-        if (state_.broken) {
-            step.outcome = Outcome::broken;
-            return step;
-        }
-        Taken taken{.force = reaction.force};
-        Scalar most = 0;
-        const Scalar jump = allowed_residual(start_);
-        for (int i = 0; i < dimension; ++i) {
-            const RowBooking<Scalar> booked = open_row(i, jump).book(
-                {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
-            taken.flow += booked.flow;
-            if (booked.flow > most) {
-                most = booked.flow;
-                taken.axis = i;
-            }
-            step.direction[i] = booked.travel;
-            step.elastic += booked.elastic;
-            step.other_work += booked.other;
-            step.residual = std::max(step.residual, booked.residual);
-            taken.error += booked.error;
-            taken.at_bound[i] = booked.at_bound;
-            if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
-            if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
-        }
-        taken.error.flow =
-            std::max(taken.error.flow, off_normal_work(reaction.force, step.direction, taken.flow));
-        if (brittle(reaction.force)) {
-            snap(step, taken, reaction, dt);
-        } else {
-            flow(step, taken, reaction, dt);
-        }
-        settle(state_, step,
-               StepEnd<Scalar, Vector>{.start = start_,
-                                       .velocity = reaction.velocity,
-                                       .force = taken.force,
-                                       .start_speed = numeric::largest(start_),
-                                       .absolute_residual = parameters_.absolute_residual,
-                                       .allowed_residual = allowed_residual(reaction.velocity),
-                                       .error = taken.error,
-                                       .strength = first_strength_ * grown_,
-                                       .least_travel = least_travel(taken.error),
-                                       .allowed_step_error = parameters_.allowed_step_error,
-                                       .dt = dt,
-                                       .at_bound = taken.at_bound.any()});
-        return step;
-    }
+    Step commit(const Reaction& reaction, Scalar dt) noexcept;
 
   private:
     /// What all rows together did in a step.
@@ -208,8 +151,6 @@ class CoupledJoint {
         return law_.value(state_.plastic_travel + ahead) / first_strength_ *
                criterion_.strength_factor(state_.criterion, ahead);
     }
-
-    // ---- before the solve -------------------------------------------------------------------------
 
     [[nodiscard]] Impedance<Scalar, dimension> impedance_of(const Matrix& mass,
                                                             Scalar dt) const noexcept {
@@ -262,8 +203,6 @@ class CoupledJoint {
         return spring_row(k, elastic_[i], implicit_[i], lower_[i], upper_[i], dt);
     }
 
-    // ---- after the solve --------------------------------------------------------------------------
-
     /// `jump`: a change of velocity between the steps by more is somebody's [m/s | rad/s].
     [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar jump) const noexcept {
         const bool jumped = std::abs(start_[i] - state_.velocity[i]) > jump;
@@ -299,19 +238,6 @@ class CoupledJoint {
             energy = std::max(energy, bound * bound / (2 * parameters_.stiffness[i]));
         }
         return energy / (first_strength_ * grown_);
-    }
-
-    /// Plastic work that the flow did along another direction than the surface's normal at the force
-    /// [J]: more than round-off where the box was made around the wrong force.
-    [[nodiscard]] Scalar off_normal_work(const Vector& force, const Vector& travel, Scalar work) const noexcept {
-        if (!(work > 0)) return 0;
-        const Vector normal = surface_.normal(force);
-        const Scalar length = work / surface_.value(force);
-        Scalar sum = 0;
-        for (int i = 0; i < dimension; ++i) {
-            sum += std::abs(force[i] * (travel[i] + length * normal[i]));
-        }
-        return sum / 2;
     }
 
     /// True where the forces reached the cap, which need not be where a row reached its bound.
@@ -402,5 +328,73 @@ class CoupledJoint {
     Scalar cap_ = 0;   ///< γ of a brittle break
     Predicted<Vector> predicted_{Vector::Zero()};
 };
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
+    -> Rows {
+    start_ = motion.velocity;
+    predicted_ = predict(state_, motion.midway, dt);
+    elastic_ = motion.position - state_.plastic_offset;
+    if (state_.broken) {
+        rows_.fill({.lower = 0, .upper = 0});
+        return rows_;
+    }
+    bound(motion, dt);
+    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
+    return rows_;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt) noexcept
+    -> Step {
+    Step step;
+    if (state_.broken) {
+        step.outcome = Outcome::broken;
+        return step;
+    }
+    Taken taken{.force = reaction.force};
+    Scalar most = 0;
+    const Scalar jump = allowed_residual(start_);
+    for (int i = 0; i < dimension; ++i) {
+        const RowBooking<Scalar> booked = open_row(i, jump).book(
+            {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
+        taken.flow += booked.flow;
+        if (booked.flow > most) {
+            most = booked.flow;
+            taken.axis = i;
+        }
+        step.direction[i] = booked.travel;
+        step.elastic += booked.elastic;
+        step.other_work += booked.other;
+        step.residual = std::max(step.residual, booked.residual);
+        taken.error += booked.error;
+        taken.at_bound[i] = booked.at_bound;
+        if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
+        if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
+    }
+    const Scalar misdirected = off_normal_work(surface_, reaction.force, step.direction, taken.flow);
+    taken.error.flow = std::max(taken.error.flow, misdirected);
+    if (brittle(reaction.force)) {
+        snap(step, taken, reaction, dt);
+    } else {
+        flow(step, taken, reaction, dt);
+    }
+    settle(state_, step,
+           StepEnd<Scalar, Vector>{.start = start_,
+                                   .velocity = reaction.velocity,
+                                   .force = taken.force,
+                                   .start_speed = numeric::largest(start_),
+                                   .absolute_residual = parameters_.absolute_residual,
+                                   .allowed_residual = allowed_residual(reaction.velocity),
+                                   .error = taken.error,
+                                   .strength = first_strength_ * grown_,
+                                   .least_travel = least_travel(taken.error),
+                                   .allowed_step_error = parameters_.allowed_step_error,
+                                   .dt = dt,
+                                   .at_bound = taken.at_bound.any()});
+    return step;
+}
 
 } // namespace ductile

@@ -115,62 +115,10 @@ class OneAxisJoint {
     }
 
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
-    [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept {
-        start_ = motion.velocity;
-        predicted_ = predict(state_, motion.midway, dt);
-        elastic_ = motion.position - state_.plastic_offset;
-        if (state_.broken) return {.lower = 0, .upper = 0};
-        bound(dt);
-        RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
-        if (rigid()) {
-            row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
-        } else {
-            implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
-            row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
-        }
-        bias_ = row.bias;
-        return row;
-    }
+    [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s].
-    Step<Scalar> commit(const Reaction<Scalar>& reaction, Scalar dt) noexcept {
-        Step<Scalar> step;
-        if (state_.broken) {
-            step.outcome = Outcome::broken;
-            return step;
-        }
-        const Taken taken{.force = reaction.force,
-                          .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
-                          .travel = (start_ + reaction.velocity) / 2 * dt,
-                          .position = reaction.position,
-                          .dt = dt,
-                          .at_upper = reaction.force >= upper_ - tolerance_,
-                          .at_lower = reaction.force <= lower_ + tolerance_};
-        step.residual = violation(reaction, taken);
-        if (brittle(taken)) {
-            snap(step, taken);
-        } else if (rigid()) {
-            commit_rigid(step, taken);
-        } else {
-            commit_elastic(step, taken);
-        }
-        settle(state_, step,
-               StepEnd<Scalar, Scalar>{.start = start_,
-                                       .velocity = reaction.velocity,
-                                       .force = reaction.force,
-                                       .start_speed = std::abs(start_),
-                                       .absolute_residual = parameters_.absolute_residual,
-                                       .allowed_residual = allowed_residual(reaction.velocity),
-                                       .error = error_of(step, taken),
-                                       .strength = resistance(taken.travel),
-                                       .least_travel = least_travel(),
-                                       .allowed_step_error = parameters_.allowed_step_error,
-                                       .dt = dt,
-                                       .at_bound = taken.at_bound()});
-        if (state_.broken) [[unlikely]]
-            place_break(step, taken);
-        return step;
-    }
+    Step<Scalar> commit(const Reaction<Scalar>& reaction, Scalar dt) noexcept;
 
   private:
     using Taken = RowTaken<Scalar>;
@@ -190,8 +138,6 @@ class OneAxisJoint {
         return rigid() ? Scalar(0) : 1 / (implicit_ * parameters_.stiffness * dt * dt);
     }
 
-    // ---- before the solve ---------------------------------------------------------------------------
-
     /// The bounds of the row's force for this step.
     void bound(Scalar dt) noexcept {
         const Scalar ahead = start_ * dt;
@@ -200,9 +146,11 @@ class OneAxisJoint {
         flow_lower_ = range.lower * fade_;
         flow_upper_ = range.upper * fade_;
         const Scalar direction = std::copysign(Scalar(1), start_);
-        left_ = std::min(
-            criterion_.remaining(state_.criterion, resistance(direction), direction),
-            fading_distance());
+        left_ = criterion_.remaining(state_.criterion, resistance(direction), direction);
+        if constexpr (StrengthLaw<Law>) { // until a softening law has faded to nothing
+            const Scalar fading = exhaustion(law_.law()) - state_.plastic_travel;
+            left_ = std::min(left_, std::max(fading, Scalar(0)));
+        }
         const Scalar share = unspent_share(left_, std::abs(start_), std::abs(state_.start_velocity),
                                            state_.flowing, dt);
         upper_ = std::min(-flow_lower_ * share, criterion_.force_cap(state_.criterion, Scalar(1)));
@@ -215,17 +163,6 @@ class OneAxisJoint {
     [[nodiscard]] Scalar resistance(Scalar direction) const noexcept {
         return std::abs(direction < 0 ? flow_lower_ : flow_upper_);
     }
-
-    /// Travel until a softening law has faded to nothing [m | rad].
-    [[nodiscard]] Scalar fading_distance() const noexcept {
-        if constexpr (StrengthLaw<Law>) {
-            return std::max(exhaustion(law_.law()) - state_.plastic_travel, Scalar(0));
-        } else {
-            return std::numeric_limits<Scalar>::infinity();
-        }
-    }
-
-    // ---- after the solve ----------------------------------------------------------------------------
 
     /// True where somebody changed the velocity between the steps, well above solver noise.
     [[nodiscard]] bool jumped() const noexcept {
@@ -396,5 +333,67 @@ class OneAxisJoint {
     Scalar implicit_ = 1; ///< θ of an elastic row
     Predicted<Scalar> predicted_{};
 };
+
+template <class Law, FractureCriterion Criterion>
+    requires CyclicLaw<typename CyclicForm<Law>::type>
+auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar dt) noexcept
+    -> RowLimits<Scalar> {
+    start_ = motion.velocity;
+    predicted_ = predict(state_, motion.midway, dt);
+    elastic_ = motion.position - state_.plastic_offset;
+    if (state_.broken) return {.lower = 0, .upper = 0};
+    bound(dt);
+    RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
+    if (rigid()) {
+        row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
+    } else {
+        implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
+        row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
+    }
+    bias_ = row.bias;
+    return row;
+}
+
+template <class Law, FractureCriterion Criterion>
+    requires CyclicLaw<typename CyclicForm<Law>::type>
+auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scalar dt) noexcept
+    -> Step<Scalar> {
+    Step<Scalar> step;
+    if (state_.broken) {
+        step.outcome = Outcome::broken;
+        return step;
+    }
+    const Taken taken{.force = reaction.force,
+                      .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
+                      .travel = (start_ + reaction.velocity) / 2 * dt,
+                      .position = reaction.position,
+                      .dt = dt,
+                      .at_upper = reaction.force >= upper_ - tolerance_,
+                      .at_lower = reaction.force <= lower_ + tolerance_};
+    step.residual = violation(reaction, taken);
+    if (brittle(taken)) {
+        snap(step, taken);
+    } else if (rigid()) {
+        commit_rigid(step, taken);
+    } else {
+        commit_elastic(step, taken);
+    }
+    settle(state_, step,
+           StepEnd<Scalar, Scalar>{.start = start_,
+                                   .velocity = reaction.velocity,
+                                   .force = reaction.force,
+                                   .start_speed = std::abs(start_),
+                                   .absolute_residual = parameters_.absolute_residual,
+                                   .allowed_residual = allowed_residual(reaction.velocity),
+                                   .error = error_of(step, taken),
+                                   .strength = resistance(taken.travel),
+                                   .least_travel = least_travel(),
+                                   .allowed_step_error = parameters_.allowed_step_error,
+                                   .dt = dt,
+                                   .at_bound = taken.at_bound()});
+    if (state_.broken) [[unlikely]]
+        place_break(step, taken);
+    return step;
+}
 
 } // namespace ductile

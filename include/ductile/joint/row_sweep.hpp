@@ -94,39 +94,7 @@ class RowSweep {
     /// One sweep over the rows, on top of `impulses`, which it changes, from the velocities `now`.
     /// Returns by how much it changed these; `asked` becomes the largest change of a row's own
     /// velocity that was asked for within its bounds [m/s | rad/s].
-    SweptVelocities<S> sweep(const SweptVelocities<S>& now, Impulses& impulses, S& asked) noexcept {
-        if (!swept_) leave_out_the_rest();
-        Vector6<S> w;
-        w.template head<3>() = now.linear_a + now.angular_a.cross(a_.arm) - now.linear_b -
-                               now.angular_b.cross(b_.arm);
-        w.template tail<3>() = now.angular_a - now.angular_b;
-        Vector6<S> missing = bias_ - compliance_.cwiseProduct(impulses);
-        missing.noalias() -= directions_.transpose() * w;
-
-        asked = 0;
-        if (!has_mass_) {
-            if (missing.isZero(0) && within_bounds(impulses)) return {};
-            find_mass();
-        }
-        const Impulses before = impulses;
-        const int single = count_ - block_;
-        for (int i = 0; i < single; ++i) sweep_row(i, missing, impulses, asked);
-        S of_block = 0;
-        for (int i = single; i < count_; ++i) sweep_row(i, missing, impulses, of_block);
-        constexpr S round_off = 4 * std::numeric_limits<S>::epsilon();
-        if (swept_ && of_block * of_block > round_off * round_off * now.squared_norm()) {
-            sweep_block(single, missing, impulses - before, impulses);
-        }
-        asked = std::max(asked, of_block);
-        swept_ = true;
-        if (asked == 0) return {};
-        const Vector6<S> given = directions_ * (impulses - before);
-        const Vector3<S> force = given.template head<3>(), moment = given.template tail<3>();
-        return {a_.inverse_mass.cwiseProduct(force),
-                a_.inverse_inertia * (a_.arm.cross(force) + moment),
-                -b_.inverse_mass.cwiseProduct(force),
-                b_.inverse_inertia * -(b_.arm.cross(force) + moment)};
-    }
+    SweptVelocities<S> sweep(const SweptVelocities<S>& now, Impulses& impulses, S& asked) noexcept;
 
   private:
     void set(int i, const Vector3<S>& along, const Vector3<S>& about,
@@ -160,46 +128,9 @@ class RowSweep {
     /// All rows from `first` on at once, unless one would meet a bound. `missing` is of when they
     /// were taken up one by one, which changed their impulses by `changed`.
     void sweep_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
-                       Impulses& impulses) noexcept {
-        if (!has_factor_) {
-            Matrix6<S> system = Matrix6<S>::Identity();
-            for (int j = 0; j < block_; ++j) {
-                for (int i = 0; i < block_; ++i) system(i, j) = mass_(first + i, first + j);
-                system(j, j) += compliance_[first + j];
-            }
-            factor_ = numeric::Cholesky<S, 6>(system);
-            has_factor_ = true;
-        }
-        if (!factor_.succeeded()) return;
-        Vector6<S> wanted = Vector6<S>::Zero();
-        for (int i = 0; i < block_; ++i) {
-            const int row = first + i;
-            wanted[i] = missing[row] - compliance_[row] * changed[row];
-            for (int j = row; j < count_; ++j) wanted[i] -= mass_(j, row) * changed[j];
-        }
-        wanted = factor_.solve(wanted);
-        Impulses next = impulses;
-        for (int i = 0; i < block_; ++i) {
-            const int row = first + i;
-            next[row] += wanted[i];
-            if (!(next[row] >= lower_[row] && next[row] <= upper_[row])) return;
-        }
-        impulses = next;
-    }
+                     Impulses& impulses) noexcept;
     /// K, and from it the gains.
-    void find_mass() noexcept {
-        constexpr S least = std::numeric_limits<S>::min();
-        Matrix6<S> at_joint = inverse_mass_at_joint(
-            BodyAtJoint<S>{.inverse_inertia = a_.inverse_inertia, .arm = a_.arm},
-            BodyAtJoint<S>{.inverse_inertia = b_.inverse_inertia, .arm = b_.arm});
-        at_joint.diagonal().template head<3>() += a_.inverse_mass + b_.inverse_mass;
-        const Matrix6<S> moved = at_joint.lazyProduct(directions_);
-        mass_ = directions_.transpose().lazyProduct(moved);
-        for (int i = 0; i < 6; ++i) {
-            gain_[i] = mass_(i, i) > least ? 1 / (mass_(i, i) + compliance_[i]) : S(0);
-        }
-        has_mass_ = true;
-    }
+    void find_mass() noexcept;
 
     SweptBody<S> a_, b_;
     Matrix6<S> directions_; ///< Wᵀ: n above m of each row
@@ -212,5 +143,85 @@ class RowSweep {
     Matrix6<S> mass_;                ///< K, from when a row first changed
     numeric::Cholesky<S, 6> factor_; ///< of K + C of the block, from when first needed
 };
+
+template <std::floating_point S>
+SweptVelocities<S> RowSweep<S>::sweep(const SweptVelocities<S>& now, Impulses& impulses,
+                                      S& asked) noexcept {
+    if (!swept_) leave_out_the_rest();
+    Vector6<S> w;
+    w.template head<3>() = now.linear_a + now.angular_a.cross(a_.arm) - now.linear_b -
+                           now.angular_b.cross(b_.arm);
+    w.template tail<3>() = now.angular_a - now.angular_b;
+    Vector6<S> missing = bias_ - compliance_.cwiseProduct(impulses);
+    missing.noalias() -= directions_.transpose() * w;
+
+    asked = 0;
+    if (!has_mass_) {
+        if (missing.isZero(0) && within_bounds(impulses)) return {};
+        find_mass();
+    }
+    const Impulses before = impulses;
+    const int single = count_ - block_;
+    for (int i = 0; i < single; ++i) sweep_row(i, missing, impulses, asked);
+    S of_block = 0;
+    for (int i = single; i < count_; ++i) sweep_row(i, missing, impulses, of_block);
+    constexpr S round_off = 4 * std::numeric_limits<S>::epsilon();
+    if (swept_ && of_block * of_block > round_off * round_off * now.squared_norm()) {
+        sweep_block(single, missing, impulses - before, impulses);
+    }
+    asked = std::max(asked, of_block);
+    swept_ = true;
+    if (asked == 0) return {};
+    const Vector6<S> given = directions_ * (impulses - before);
+    const Vector3<S> force = given.template head<3>(), moment = given.template tail<3>();
+    return {a_.inverse_mass.cwiseProduct(force),
+            a_.inverse_inertia * (a_.arm.cross(force) + moment),
+            -b_.inverse_mass.cwiseProduct(force),
+            b_.inverse_inertia * -(b_.arm.cross(force) + moment)};
+}
+
+template <std::floating_point S>
+void RowSweep<S>::sweep_block(int first, const Vector6<S>& missing, const Vector6<S>& changed,
+                              Impulses& impulses) noexcept {
+    if (!has_factor_) {
+        Matrix6<S> system = Matrix6<S>::Identity();
+        for (int j = 0; j < block_; ++j) {
+            for (int i = 0; i < block_; ++i) system(i, j) = mass_(first + i, first + j);
+            system(j, j) += compliance_[first + j];
+        }
+        factor_ = numeric::Cholesky<S, 6>(system);
+        has_factor_ = true;
+    }
+    if (!factor_.succeeded()) return;
+    Vector6<S> wanted = Vector6<S>::Zero();
+    for (int i = 0; i < block_; ++i) {
+        const int row = first + i;
+        wanted[i] = missing[row] - compliance_[row] * changed[row];
+        for (int j = row; j < count_; ++j) wanted[i] -= mass_(j, row) * changed[j];
+    }
+    wanted = factor_.solve(wanted);
+    Impulses next = impulses;
+    for (int i = 0; i < block_; ++i) {
+        const int row = first + i;
+        next[row] += wanted[i];
+        if (!(next[row] >= lower_[row] && next[row] <= upper_[row])) return;
+    }
+    impulses = next;
+}
+
+template <std::floating_point S>
+void RowSweep<S>::find_mass() noexcept {
+    constexpr S least = std::numeric_limits<S>::min();
+    Matrix6<S> at_joint = inverse_mass_at_joint(
+        BodyAtJoint<S>{.inverse_inertia = a_.inverse_inertia, .arm = a_.arm},
+        BodyAtJoint<S>{.inverse_inertia = b_.inverse_inertia, .arm = b_.arm});
+    at_joint.diagonal().template head<3>() += a_.inverse_mass + b_.inverse_mass;
+    const Matrix6<S> moved = at_joint.lazyProduct(directions_);
+    mass_ = directions_.transpose().lazyProduct(moved);
+    for (int i = 0; i < 6; ++i) {
+        gain_[i] = mass_(i, i) > least ? 1 / (mass_(i, i) + compliance_[i]) : S(0);
+    }
+    has_mass_ = true;
+}
 
 } // namespace ductile

@@ -18,7 +18,7 @@
 //
 // Direction. Rows that share a yield surface flow along its normal as far as their bounds were set
 // around the right force. Plastic work done along another direction is misplaced as well
-// (CoupledJoint::off_normal_work).
+// (off_normal_work.hpp).
 //
 // Spring. One that the step cannot resolve is damped: it comes to rest under the force f where it
 // should swing on about it, by √(2 k E) with the energy E that it lost. Where that would have

@@ -15,32 +15,20 @@ namespace ductile::numeric {
 /// Σ a_i b_i.
 template <std::floating_point S, int N>
 [[nodiscard]] S dot(const Eigen::Matrix<S, N, 1>& a, const Eigen::Matrix<S, N, 1>& b) noexcept {
-    S sum = 0;
-    for (int i = 0; i < N; ++i) sum += a[i] * b[i];
-    return sum;
+    return a.dot(b);
 }
 
 /// A x.
 template <std::floating_point S, int N>
 [[nodiscard]] Eigen::Matrix<S, N, 1> times(const Eigen::Matrix<S, N, N>& a,
                                            const Eigen::Matrix<S, N, 1>& x) noexcept {
-    Eigen::Matrix<S, N, 1> result;
-    for (int i = 0; i < N; ++i) result[i] = a(i, 0) * x[0];
-    for (int j = 1; j < N; ++j) {
-        for (int i = 0; i < N; ++i) result[i] += a(i, j) * x[j];
-    }
-    return result;
+    return a.lazyProduct(x);
 }
 
 /// max |x_i|.
 template <std::floating_point S, int N>
 [[nodiscard]] S largest(const Eigen::Matrix<S, N, 1>& x) noexcept {
-    S result = 0;
-    for (int i = 0; i < N; ++i) {
-        const S size = std::abs(x[i]);
-        if (size > result) result = size;
-    }
-    return result;
+    return x.cwiseAbs().maxCoeff();
 }
 
 /// |x|, whatever its size: where the squares would leave the range of S they are scaled.

@@ -125,9 +125,7 @@ class Ellipsoid {
   private:
     /// D⁻¹ f.
     [[nodiscard]] Vector shares(const Vector& force) const noexcept {
-        Vector x;
-        for (int i = 0; i < N; ++i) x[i] = force[i] / capacity_[i];
-        return x;
+        return force.cwiseQuotient(capacity_);
     }
 
     /// `trial` outside the unit sphere. Cost: a Cholesky factorisation for each of 1 to 5 steps.

@@ -29,8 +29,14 @@ struct Grown {
     }
 
     [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept {
-        const auto [lower, upper] = chords_through(surface, Vector(point / by));
-        return {lower * by, upper * by};
+        const Vector inside = point / by;
+        if constexpr (ChordedSurface<Surface>) {
+            const auto [lower, upper] = surface.chords(inside);
+            return {lower * by, upper * by};
+        } else {
+            const auto [lower, upper] = chords_through(surface, inside);
+            return {lower * by, upper * by};
+        }
     }
 
     const Surface& surface;

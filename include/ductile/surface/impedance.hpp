@@ -49,9 +49,7 @@ class Impedance {
 
     /// Z v [N | N m] for a velocity v [m/s | rad/s].
     [[nodiscard]] Vector operator*(const Vector& velocity) const noexcept {
-        Vector force = numeric::times(mass_, rigid_ ? velocity : factors_.solve(velocity));
-        for (int i = 0; i < N; ++i) force[i] /= dt_;
-        return force;
+        return numeric::times(mass_, rigid_ ? velocity : factors_.solve(velocity)) / dt_;
     }
 
     /// Z dt, all that a projection needs [kg | kg m²].

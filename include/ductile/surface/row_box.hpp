@@ -96,11 +96,10 @@ template <class Vector, class Impedance>
 [[nodiscard]] Vector stopping_force(const Vector& last_force, const Vector& velocity,
                                     const Vector& last_velocity,
                                     const Impedance& impedance) noexcept {
-    Vector ahead = velocity;
-    for (int i = 0; i < int(ahead.size()); ++i) ahead[i] += velocity[i] - last_velocity[i];
-    Vector force = impedance * ahead;
-    for (int i = 0; i < int(force.size()); ++i) force[i] = last_force[i] - force[i];
-    return force;
+    Vector ahead = velocity - last_velocity;
+    ahead += velocity;
+    const Vector met = impedance * ahead;
+    return last_force - met;
 }
 
 /// Prediction of the force at the end of this step, inside or on the surface.
@@ -143,12 +142,8 @@ template <YieldSurface T>
                                                         const typename T::Vector& point) noexcept {
     using Vector = typename T::Vector;
     if constexpr (ChordedSurface<T>) {
-        Chords<Vector> chords = surface.chords(point);
-        for (int i = 0; i < T::dimension; ++i) {
-            chords.lower[i] = std::min(chords.lower[i], point[i]);
-            chords.upper[i] = std::max(chords.upper[i], point[i]);
-        }
-        return chords;
+        const auto [lower, upper] = surface.chords(point);
+        return {lower.cwiseMin(point), upper.cwiseMax(point)};
     } else {
         Chords<Vector> chords{point, point};
         for (int i = 0; i < T::dimension; ++i) {
