@@ -108,6 +108,7 @@
 #include "ductile/surface/tube_axial_bending.hpp"
 #include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/vocabulary/vector.hpp"

@@ -49,13 +49,13 @@
 #include <limits>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 
 #include "ductile/fidelity/peak_response.hpp"
 #include "ductile/section/capacity.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile {
 
@@ -133,10 +133,7 @@ namespace detail_choice {
 /// 12.3 -> "12.3", short enough to read.
 template <std::floating_point S>
 std::string number(S value) {
-    std::ostringstream text;
-    text.precision(3);
-    text << value;
-    return text.str();
+    return number_text(value, 3);
 }
 template <std::floating_point S>
 std::string percent(S share) {

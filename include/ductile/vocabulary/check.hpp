@@ -4,15 +4,15 @@
 // allowed range, thrown as std::invalid_argument. Constructors call these; hot functions never do.
 #pragma once
 
-#include "ductile/vocabulary/build_check.hpp"
-
 #include <cmath>
 #include <concepts>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "ductile/vocabulary/build_check.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::check {
 
@@ -21,12 +21,10 @@ namespace ductile::check {
 template <std::floating_point Scalar>
 [[noreturn]] void fail(std::string_view field, Scalar value, std::string_view unit,
                        std::string_view range) {
-    std::ostringstream message;
-    message.precision(std::numeric_limits<Scalar>::digits10);
-    message << field << " = " << value;
-    if (!unit.empty()) message << ' ' << unit;
-    message << ": must be " << range;
-    throw std::invalid_argument(message.str());
+    std::string message(field);
+    message.append(" = ").append(number_text(value, std::numeric_limits<Scalar>::digits10));
+    if (!unit.empty()) message.append(" ").append(unit);
+    throw std::invalid_argument(message.append(": must be ").append(range));
 }
 
 /// Finite and greater than zero.
@@ -56,11 +54,12 @@ Scalar between(std::string_view field, Scalar value, Scalar lower, Scalar upper,
                std::string_view unit, bool closed = false) {
     const bool inside = closed ? (value >= lower && value <= upper) : (value > lower && value < upper);
     if (!inside) {
-        std::ostringstream range;
-        range.precision(std::numeric_limits<Scalar>::digits10);
-        range << "in " << (closed ? '[' : '(') << lower << ", " << upper << (closed ? ']' : ')');
-        if (!unit.empty()) range << ' ' << unit;
-        fail(field, value, unit, range.str());
+        constexpr int digits = std::numeric_limits<Scalar>::digits10;
+        std::string range(closed ? "in [" : "in (");
+        range.append(number_text(lower, digits)).append(", ").append(number_text(upper, digits));
+        range.append(closed ? "]" : ")");
+        if (!unit.empty()) range.append(" ").append(unit);
+        fail(field, value, unit, range);
     }
     return value;
 }
