@@ -11,20 +11,22 @@ instructions.csv in --out. Rows of other states stay there.
     --state NAME       what the rows are called; default after
     --beside NAME      the state whose rows stand beside them in the last column; default before
     --only REGEX       of "engine precision joint set-up"
-    --joints, --cxx, --flags    with --tree; the flags' default are those of the release preset
-    --quick            nothing else; counts need no repeats and take a minute or two
+    --joints N         in a field; default 100
+    --cxx, --flags     with --tree: compiler, default g++, and flags, default those of the release preset
+    --quick            changes nothing: counts need no repeats
 
 bodies is what the bodies alone take per joint; ours and own are what a joint takes beyond that, ours and the
 engine's own for the same task; ratio is ours / own. Each is the difference of two runs of 100 and 200 steps,
 so that making the field and coming to rest cancel, by joints and steps. Counts repeat to the last digit on
-one machine; another compiler, other flags or another C library give others, by some per cent.
+one machine; another compiler, other flags, another C library or a processor for which that has other functions
+give others, by some per cent.
 
 own is the engine's hinge with motor, Bullet's six springs or ODE's fixed joint; there is none for six axes in
 ODE that flow. Springs and fixed joints do not flow: beside them flowing joints do more. plastic-hinge-ledger
 is plastic-hinge in a World that keeps the ledger, beside a motor in the engine's own world, which keeps none.
 
-Columns: state,commit,compiler,flags,engine,precision,library,joint,own_joint,set_up,joints,bodies,ours,own,
-ratio. library is header-only or compiled.
+Columns: state,commit,processor,compiler,flags,engine,precision,library,joint,own_joint,set_up,joints,bodies,ours,
+own,ratio. library is header-only or compiled.
 """
 
 import argparse
@@ -36,11 +38,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-from common import Progress, cached, output, stored_rows, write_rows
+from common import Progress, cached, output, processor, stored_rows, write_rows
 
 HERE = Path(__file__).resolve().parent
-COLUMNS = ("state", "commit", "compiler", "flags", "engine", "precision", "library", "joint", "own_joint",
-           "set_up", "joints", "bodies", "ours", "own", "ratio")
+COLUMNS = ("state", "commit", "processor", "compiler", "flags", "engine", "precision", "library", "joint",
+           "own_joint", "set_up", "joints", "bodies", "ours", "own", "ratio")
 KEY = ("engine", "precision", "library", "joint", "set_up")
 SET_UPS = ("pairs-flowing", "pairs-at-rest", "chain-at-rest")
 OURS = ("plastic-hinge", "plastic-joint", "plastic-hinge-ledger")
@@ -106,7 +108,8 @@ def programs(options, scratch):
                                                  "CMAKE_CXX_FLAGS_RELEASE")
         flags = " ".join(filter(None, [common_flags, release, "-ffp-contract=off"]))
         commit_of = HERE
-    common = {"state": options.state, "commit": output("git", "-C", commit_of, "describe", "--always", "--dirty"),
+    commit = output("git", "-C", commit_of, "describe", "--always", "--dirty", "--exclude=*")
+    common = {"state": options.state, "commit": commit, "processor": processor(),
               "compiler": output(compiler, "--version").splitlines()[0], "flags": flags}
     return [program for program in found if program and program.exists()], common
 
