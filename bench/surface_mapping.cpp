@@ -37,9 +37,12 @@
 
 #include "ductile/surface/bending_torsion.hpp"
 #include "ductile/surface/biaxial_rectangle.hpp"
+#include "ductile/surface/box_projection.hpp"
 #include "ductile/surface/i_axial_bending.hpp"
 #include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/row_box.hpp"
+#include "ductile/surface/stopping_force.hpp"
+#include "ductile/surface/turned_box.hpp"
 
 namespace {
 

@@ -20,6 +20,8 @@
 #include <limits>
 
 #include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/lu.hpp"
+#include "ductile/surface/row_box.hpp"
 
 namespace ductile {
 
@@ -72,6 +74,16 @@ template <std::floating_point S, int N>
         if (state(i) != Row::free) force[i] = bound(i);
     }
     return force.cwiseMax(lower).cwiseMin(upper);
+}
+
+/// The force a converged solver of the rows answers to `trial`, the force that would stop them all.
+template <std::floating_point S, int N>
+[[nodiscard]] Eigen::Matrix<S, N, 1> enforce(const RowBox<S, N>& box,
+                                             const Eigen::Matrix<S, N, 1>& trial,
+                                             const Eigen::Matrix<S, N, N>& mass) noexcept {
+    const Eigen::Matrix<S, N, N> inverse = numeric::inverse(box.basis);
+    const Eigen::Matrix<S, N, N> turned = inverse * mass * inverse.transpose();
+    return box.basis * project_on_box<S, N>(inverse * trial, box.lower, box.upper, turned);
 }
 
 } // namespace ductile

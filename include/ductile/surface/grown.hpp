@@ -6,7 +6,7 @@
 //   γ_g(f) = γ(f)/by
 #pragma once
 
-#include "ductile/surface/row_box.hpp"
+#include "ductile/surface/chords.hpp"
 #include "ductile/surface/surface.hpp"
 
 namespace ductile {

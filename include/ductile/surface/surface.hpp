@@ -57,7 +57,7 @@ struct Chords {
     Vector lower, upper;
 };
 
-/// A surface that knows its chords in closed form; others leave them to Newton (row_box.hpp).
+/// A surface that knows its chords in closed form; others leave them to Newton (chords.hpp).
 /// `chords(point)`  for a point not outside by more than round-off.
 template <class T>
 concept ChordedSurface = YieldSurface<T> && requires(const T surface,

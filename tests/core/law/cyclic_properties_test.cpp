@@ -15,7 +15,7 @@
 #include "ductile/law/iwan.hpp"
 #include "ductile/law/linear.hpp"
 #include "ductile/law/multilinear.hpp"
-#include "ductile/law/return_map.hpp"
+#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/softening.hpp"
 #include "ductile/law/voce.hpp"
 
@@ -46,11 +46,11 @@ auto hysteretic_laws(S length = 1) {
     const std::array<IwanElement<S>, 4> elements{
         {{80 * slope, 4}, {60 * slope, 6}, {40 * slope, 8}, {20 * slope, 10}}};
     return std::tuple{
-        ReturnMap(k, Hardening(weakening)),       ReturnMap(k, Hardening(pairs)),
-        ReturnMap(k, Hardening(fading)),          ReturnMap(k, Hardening(perfect)),
-        ReturnMap(k, Hardening(linear)),          ReturnMap(k, Hardening(voce)),
-        ReturnMap(k, Hardening(perfect, prager)), ReturnMap(k, Hardening(voce, prager)),
-        ReturnMap(k, Hardening(voce, recalling)), Iwan<S, 4>(elements),
+        UniaxialReturn(k, Hardening(weakening)),       UniaxialReturn(k, Hardening(pairs)),
+        UniaxialReturn(k, Hardening(fading)),          UniaxialReturn(k, Hardening(perfect)),
+        UniaxialReturn(k, Hardening(linear)),          UniaxialReturn(k, Hardening(voce)),
+        UniaxialReturn(k, Hardening(perfect, prager)), UniaxialReturn(k, Hardening(voce, prager)),
+        UniaxialReturn(k, Hardening(voce, recalling)), Iwan<S, 4>(elements),
         Iwan<S, 4>(elements, 5 * slope),
     };
 }

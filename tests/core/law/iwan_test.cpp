@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ductile/law/iwan.hpp"
-#include "ductile/law/return_map.hpp"
+#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/uniaxial.hpp"
 #include "support/throws.hpp"
 
@@ -185,7 +185,7 @@ TEST_CASE("one element is perfectly plastic, one element and a spring are Prager
     constexpr double alpha = 0.1;
     const std::array<IwanElement<double>, 1> one{{{k * (1 - alpha), 4 * (1 - alpha)}}};
     const Iwan<double, 1> iwan(one, alpha * k);
-    const ReturnMap prager(
+    const UniaxialReturn prager(
         k, KinematicHardening<double>(
                Perfect(PerfectParameters<double>{.strength = 4.0}),
                Prager(PragerParameters<double>{.modulus = alpha * k / (1 - alpha)})));
@@ -206,7 +206,7 @@ TEST_CASE("a multilinear law with a spring becomes elements with the same first 
     const Multilinear<double> law({{0, 10}, {0.1, 16}, {0.3, 22}, {0.5, 28}, {1, 34}});
     const auto iwan = Iwan<double, 5>::from_law(law, 50.0);
     CHECK(iwan.size() == 4); // two pieces of the same slope need one element
-    const ReturnMap direct(50.0, IsotropicHardening<Multilinear<double>>(law));
+    const UniaxialReturn direct(50.0, IsotropicHardening<Multilinear<double>>(law));
     for (const double q : {0.1, 0.25, 0.5, 0.9, 2.0}) {
         Iwan<double, 5>::State a;
         decltype(direct)::State b;

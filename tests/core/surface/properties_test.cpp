@@ -12,7 +12,7 @@
 #include "cases.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
-#include "ductile/surface/return_map.hpp"
+#include "ductile/surface/closest_point_return.hpp"
 
 using namespace ductile;
 using namespace ductile::test;

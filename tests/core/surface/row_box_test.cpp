@@ -1,56 +1,23 @@
 // SPDX-License-Identifier: MIT
-//
-// Yield surfaces as bounds of independent rows.
+#include "ductile/surface/row_box.hpp"
+
 #include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/Core>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <type_traits>
 
-#include "cases.hpp"
+#include "core/surface/cases.hpp"
+#include "core/surface/enforced_rows.hpp"
 #include "ductile/numeric/ldlt.hpp"
-#include "ductile/numeric/lu.hpp"
-#include "ductile/surface/row_box.hpp"
+#include "ductile/surface/turned_box.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
 
 namespace {
-
-/// Rigid rows of a joint under an outside load, enforced by `Mapping`; plastic travel at the end.
-struct Boxed {};
-struct Exact {};
-
-template <class Mapping, class T>
-struct Rows {
-    const T& surface;
-    typename T::Matrix mass;
-    typename T::Matrix believed_mass = mass;
-
-    using Vector = typename T::Vector;
-
-    Vector force = Vector::Zero(), velocity = force, last_velocity = force, travel = force;
-
-    void step(const Vector& load, double dt) {
-        const Vector loaded = velocity + numeric::inverse(mass) * load * dt;
-        const Vector trial = -(mass * loaded) / dt;
-        if constexpr (std::is_same_v<Mapping, Exact>) {
-            force = surface.project(trial, mass);
-        } else {
-            const typename T::Matrix impedance = believed_mass / dt;
-            force = enforce(box_along(surface, predicted_force(surface, force, velocity,
-                                                               last_velocity, impedance)),
-                            trial, mass);
-        }
-        last_velocity = velocity;
-        velocity = loaded + numeric::inverse(mass) * force * dt;
-        travel += velocity * dt;
-    }
-};
-
-const Eigen::Matrix2d masses{{0.05, 0.02}, {0.02, 0.03}};
 
 template <class Mapping, class T>
 Eigen::Vector2d travel_of(const T& surface, int steps_per_second, const Eigen::Matrix2d& believed) {
@@ -65,30 +32,6 @@ Eigen::Vector2d travel_of(const T& surface, int steps_per_second, const Eigen::M
 }
 
 } // namespace
-
-TEST_CASE("the box solver finds the closest point of a box", "[surface]") {
-    using Vector = Eigen::Matrix<double, 4, 1>;
-    rc::prop("complementarity", [] {
-        const Vector middle = any_vector<Vector>();
-        const Vector half = any_vector<Vector>().cwiseAbs(); // now and then without width
-        const Vector lower = middle - half, upper = middle + half;
-        const auto k = any_stiffness<Eigen::Matrix4d>();
-        const Vector trial = 5 * any_vector<Vector>();
-        const Vector force = project_on_box<double, 4>(trial, lower, upper, k);
-        const Vector slip = numeric::solve_semidefinite(k, Vector(trial - force));
-        constexpr double tolerance = 1e-11; // condition about 100
-        for (int i = 0; i < 4; ++i) {
-            RC_ASSERT(force[i] >= lower[i]);
-            RC_ASSERT(force[i] <= upper[i]);
-            if (force[i] < upper[i]) RC_ASSERT(slip[i] <= tolerance);
-            if (force[i] > lower[i]) RC_ASSERT(slip[i] >= -tolerance);
-        }
-    });
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const Eigen::Vector2d rigid = project_on_box<double, 2>({5, -7}, {-infinity, -1}, {infinity, 1},
-                                                            Eigen::Matrix2d::Identity());
-    CHECK(rigid == Eigen::Vector2d(5, -1));
-}
 
 TEST_CASE("the box along a prediction touches the surface there and holds what is inside",
           "[surface]") {
@@ -119,47 +62,6 @@ TEST_CASE("the box along a prediction touches the surface there and holds what i
     });
 }
 
-TEST_CASE("chords in closed form are those that Newton finds", "[surface]") {
-    int closed = 0;
-    for_every_surface<double>([&](const std::string& name, const auto& surface) {
-        using T = std::decay_t<decltype(surface)>;
-        using Vector = typename T::Vector;
-        if constexpr (ChordedSurface<T>) {
-            ++closed;
-            rc::prop(name, [&] {
-                const auto ray = any_direction<Vector>();
-                const Vector point = ray * (any_number(0.0, 1.0) / surface.value(ray));
-                const auto [lower, upper] = surface.chords(point);
-                for (int i = 0; i < T::dimension; ++i) {
-                    const double up = point[i] + reach(surface, point, Vector(Vector::Unit(i)));
-                    const double down = point[i] - reach(surface, point, Vector(-Vector::Unit(i)));
-                    // where a line only touches, both have half the digits
-                    const double tolerance = upper[i] - lower[i] < 1e-2 ? 1e-7 : 1e-12;
-                    RC_ASSERT(std::abs(upper[i] - up) <= tolerance);
-                    RC_ASSERT(std::abs(lower[i] - down) <= tolerance);
-                }
-            });
-        }
-    });
-    CHECK(closed == 3); // ellipse, ellipsoid, independent axes
-}
-
-TEST_CASE("the ends of the chords take in a point that round-off put outside", "[surface]") {
-    for_every_surface<float>([](const std::string& name, const auto& surface) {
-        using T = std::decay_t<decltype(surface)>;
-        using Vector = typename T::Vector;
-        rc::prop(name, [&] {
-            const auto ray = any_direction<Vector>();
-            const Vector point = ray * ((1 + on_surface<float>) / surface.value(ray));
-            const auto [lower, upper] = chords_through(surface, point);
-            for (int i = 0; i < T::dimension; ++i) {
-                RC_ASSERT(lower[i] <= point[i]);
-                RC_ASSERT(upper[i] >= point[i]);
-            }
-        });
-    });
-}
-
 TEST_CASE("told the right force, the rows give it and its associated flow", "[surface]") {
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
@@ -182,25 +84,6 @@ TEST_CASE("told the right force, the rows give it and its associated flow", "[su
     });
 }
 
-TEST_CASE("under a steady load the prediction is the answer, in rest and in flow", "[surface]") {
-    const RectangleAxialBending<double> surface;
-    for (const double size : {0.5, 1.5}) {
-        CAPTURE(size);
-        Rows<Exact, RectangleAxialBending<double>> rows{surface, masses};
-        rows.velocity = {0.3, -0.2}; // so that the flow turns
-        const Eigen::Vector2d load = size * Eigen::Vector2d(0.6, 0.5);
-        const double dt = 1e-3;
-        for (int i = 0; i < 20; ++i) {
-            const Eigen::Vector2d predicted =
-                predicted_force(surface, rows.force, rows.velocity, rows.last_velocity,
-                                Eigen::Matrix2d(masses / dt));
-            rows.step(load, dt);
-            if (i > 0)
-                CHECK((predicted - rows.force).norm() < 1e-12); // the load came before step 0
-        }
-    }
-}
-
 TEST_CASE("a row without force in flow gets no room, and its chord only touches", "[surface]") {
     const RectangleAxialBending<double> surface;
     const auto box = box_along(surface, {0, 1});
@@ -210,22 +93,6 @@ TEST_CASE("a row without force in flow gets no room, and its chord only touches"
     CHECK(bent.upper[0] == Approx(0.5).epsilon(1e-14));
     CHECK(bent.lower[0] == Approx(-0.5).epsilon(1e-14));
     CHECK(bent.upper[1] == Approx(1).epsilon(1e-14));
-}
-
-TEST_CASE("turned rows decouple, and slip along the normal", "[surface]") {
-    const IAxialBending<double> surface(i_200<double>, BendingAxis::strong);
-    const Eigen::Vector2d predicted{0.5, surface.moment(0.5)};
-    const auto box = turned_box(surface, predicted, masses);
-    const Eigen::Matrix2d inverse = numeric::inverse(box.basis);
-    const Eigen::Matrix2d turned = inverse * masses * inverse.transpose();
-    CHECK(std::abs(turned(0, 1)) < 1e-15 * turned(0, 0));
-    // the trial was not quite where it was predicted, but within the window
-    const Eigen::Vector2d trial =
-        predicted + 0.02 * masses * surface.normal(predicted) + Eigen::Vector2d(-0.002, 0.003);
-    const Eigen::Vector2d slip = numeric::inverse(masses) * (trial - enforce(box, trial, masses));
-    const Eigen::Vector2d normal = surface.normal(predicted);
-    CHECK(std::abs(slip[0] * normal[1] - slip[1] * normal[0]) < 1e-12 * slip.norm());
-    CHECK(slip.dot(normal) > 0);
 }
 
 TEST_CASE("rows bounded along the prediction flow as the surface does, to first order",

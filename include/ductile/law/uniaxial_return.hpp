@@ -40,24 +40,24 @@ namespace ductile {
 
 /// What an elastic-plastic row remembers. Plain value.
 template <class FlowState, std::floating_point S>
-struct ReturnMapState {
+struct UniaxialReturnState {
     S plastic_offset = 0; ///< q_p [m | rad]
     FlowState flow{};     ///< of the cyclic law
 
-    bool operator==(const ReturnMapState&) const = default;
+    bool operator==(const UniaxialReturnState&) const = default;
 };
 
 /// Immutable value; noexcept after construction.
 template <CyclicLaw Law>
-class ReturnMap {
+class UniaxialReturn {
   public:
     using Scalar = typename Law::Scalar;
-    using State = ReturnMapState<typename Law::State, Scalar>;
+    using State = UniaxialReturnState<typename Law::State, Scalar>;
 
     /// `stiffness` k [N/m | N m/rad].
     /// @throws std::invalid_argument where the stiffness is NaN, infinite or not positive.
-    ReturnMap(Scalar stiffness, Law law)
-        : stiffness_(check::positive("ReturnMap.stiffness", stiffness, "N/m or N m/rad")),
+    UniaxialReturn(Scalar stiffness, Law law)
+        : stiffness_(check::positive("UniaxialReturn.stiffness", stiffness, "N/m or N m/rad")),
           law_(std::move(law)) {}
 
     [[nodiscard]] const Law& law() const noexcept { return law_; }
@@ -110,7 +110,7 @@ class ReturnMap {
     Law law_;
 };
 
-static_assert(HysteresisLaw<ReturnMap<IsotropicHardening<Perfect<float>>>>);
-static_assert(HysteresisLaw<ReturnMap<KinematicHardening<double>>>);
+static_assert(HysteresisLaw<UniaxialReturn<IsotropicHardening<Perfect<float>>>>);
+static_assert(HysteresisLaw<UniaxialReturn<KinematicHardening<double>>>);
 
 } // namespace ductile

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ductile/law/linear.hpp"
-#include "ductile/law/return_map.hpp"
+#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/softening.hpp"
 #include "ductile/law/voce.hpp"
 #include "support/throws.hpp"
@@ -22,8 +22,8 @@ namespace {
 
 static_assert(!HysteresisLaw<KinematicHardening<double>>);
 
-using Kinematic = ReturnMap<KinematicHardening<double>>;
-using Isotropic = ReturnMap<IsotropicHardening<Linear<double>>>;
+using Kinematic = UniaxialReturn<KinematicHardening<double>>;
+using Isotropic = UniaxialReturn<IsotropicHardening<Linear<double>>>;
 
 // P07a: k = 200, R = 4, post-yield stiffness α k with α = 0.1
 constexpr double k = 200;
@@ -111,9 +111,9 @@ Oscillation swing(const Kinematic& law, double dt) {
 } // namespace
 
 TEMPLATE_TEST_CASE("a perfectly plastic loop takes 4R(ua - R/k) at any number of moves (P06a)",
-                   "[law][return_map]", float, double) {
+                   "[law][uniaxial_return]", float, double) {
     using S = TestType;
-    const ReturnMap law(
+    const UniaxialReturn law(
         S(200), IsotropicHardening<Perfect<S>>(Perfect(PerfectParameters<S>{.strength = 10})));
     // round-off of the summed increments
     const double round_off = std::is_same_v<S, float> ? 2e-4 : 1e-12;
@@ -137,7 +137,7 @@ TEMPLATE_TEST_CASE("a perfectly plastic loop takes 4R(ua - R/k) at any number of
 }
 
 TEST_CASE("the kinematic oscillator peaks and rests where energy says (P07a)",
-          "[law][return_map]") {
+          "[law][uniaxial_return]") {
     Kinematic::State state;
     double dissipated = 0;
     const double first = peak(kinematic, state, 0, 1, energy);
@@ -164,7 +164,7 @@ TEST_CASE("the kinematic oscillator peaks and rests where energy says (P07a)",
 }
 
 TEST_CASE("the isotropic oscillator yields once and then swings elastically (P07a)",
-          "[law][return_map]") {
+          "[law][uniaxial_return]") {
     Isotropic::State state;
     const double first = peak(isotropic, state, 0, 1, energy);
     const auto step = isotropic.project(state, first);
@@ -177,7 +177,7 @@ TEST_CASE("the isotropic oscillator yields once and then swings elastically (P07
 }
 
 TEST_CASE("an explicit spring finds peak and set of the oscillator to second order (P07a)",
-          "[law][return_map][order]") {
+          "[law][uniaxial_return][order]") {
     Kinematic::State state;
     const double exact = peak(kinematic, state, 0, 1, energy);
     std::array<double, 4> error{};
@@ -199,8 +199,8 @@ TEST_CASE("an explicit spring finds peak and set of the oscillator to second ord
 }
 
 TEST_CASE("mixed and non-linear hardening return to the range along the exact flow",
-          "[law][return_map][property]") {
-    using Law = ReturnMap<Hardening<Voce<double>, ArmstrongFrederick<double>>>;
+          "[law][uniaxial_return][property]") {
+    using Law = UniaxialReturn<Hardening<Voce<double>, ArmstrongFrederick<double>>>;
     const Law law(
         k, Hardening(Voce(VoceParameters<double>{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
                      ArmstrongFrederick(
@@ -229,16 +229,16 @@ TEST_CASE("mixed and non-linear hardening return to the range along the exact fl
 }
 
 TEST_CASE("the return takes one Newton step for linear hardening and few for Voce",
-          "[law][return_map]") {
+          "[law][uniaxial_return]") {
     int calls = 0;
-    const ReturnMap line(
+    const UniaxialReturn line(
         k, IsotropicHardening<Counted<Linear<double>>>(
                {Linear(LinearParameters<double>{.strength = 4.0, .hardening = 90.0}), &calls}));
     decltype(line)::State a;
     line.project(a, 0.5);
     CHECK(calls <= 5); // range: 2, start: 1, there: 1, and one that confirms
     calls = 0;
-    const ReturnMap curved(
+    const UniaxialReturn curved(
         k, IsotropicHardening<Counted<Voce<double>>>(
                {Voce(VoceParameters<double>{.strength = 4.0, .saturation = 30.0, .rate = 9.0}),
                 &calls}));
@@ -248,10 +248,10 @@ TEST_CASE("the return takes one Newton step for linear hardening and few for Voc
 }
 
 TEST_CASE("a softening spring fades to zero and stays there, having taken its area",
-          "[law][return_map]") {
+          "[law][uniaxial_return]") {
     const Softening fading(
         SofteningParameters<double>{.strength = 10.0, .plateau = 0.1, .exhaustion = 0.5});
-    const ReturnMap law(100.0, IsotropicHardening<Softening<double>>(fading));
+    const UniaxialReturn law(100.0, IsotropicHardening<Softening<double>>(fading));
     for (const int parts : {10, 1000}) {
         decltype(law)::State state;
         const double dissipated = drive(law, state, 0, {1, -1, 1}, parts);
@@ -262,9 +262,9 @@ TEST_CASE("a softening spring fades to zero and stays there, having taken its ar
 }
 
 TEST_CASE("a spring steeper than the softening snaps back without leaving the range",
-          "[law][return_map]") {
+          "[law][uniaxial_return]") {
     const Softening steep(SofteningParameters<double>{.strength = 10.0, .exhaustion = 0.01});
-    const ReturnMap law(100.0, IsotropicHardening<Softening<double>>(steep)); // slope 1000 > 100
+    const UniaxialReturn law(100.0, IsotropicHardening<Softening<double>>(steep)); // slope 1000 > 100
     decltype(law)::State state;
     double dissipated = 0;
     for (int i = 1; i <= 100; ++i) {
@@ -279,9 +279,9 @@ TEST_CASE("a spring steeper than the softening snaps back without leaving the ra
     CHECK(std::abs(law.force(state, 0.3)) < 1e-12);
 }
 
-TEST_CASE("the stiff limit of the return map is the rigid-plastic law", "[law][return_map]") {
+TEST_CASE("the stiff limit of the return map is the rigid-plastic law", "[law][uniaxial_return]") {
     const KinematicHardening<double> rigid = kinematic.law();
-    const ReturnMap stiff(1e9, rigid);
+    const UniaxialReturn stiff(1e9, rigid);
     decltype(stiff)::State state;
     HardeningState<double> flow;
     double from = 0;
@@ -294,7 +294,7 @@ TEST_CASE("the stiff limit of the return map is the rigid-plastic law", "[law][r
     }
 }
 
-TEST_CASE("the return map refuses a stiffness that is none", "[law][return_map][input]") {
+TEST_CASE("the return map refuses a stiffness that is none", "[law][uniaxial_return][input]") {
     CHECK(message_of([] { Kinematic(0, kinematic.law()); }) ==
-          "ReturnMap.stiffness = 0 N/m or N m/rad: must be finite and > 0");
+          "UniaxialReturn.stiffness = 0 N/m or N m/rad: must be finite and > 0");
 }
