@@ -15,8 +15,8 @@
 #include "ductile/law/iwan.hpp"
 #include "ductile/law/linear.hpp"
 #include "ductile/law/multilinear.hpp"
-#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/softening.hpp"
+#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/voce.hpp"
 
 using namespace ductile;
