@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The few operations on vectors and matrices of fixed size that every joint does in every step,
-// as plain loops: Eigen's expressions do the same, but each one costs a compiler some dozens of
-// types. Sums are taken in the order of the entries.
+// The few operations on vectors of any fixed size that a coupled joint does in every step. They have
+// names so that each is compiled once per size: every further shape of an Eigen expression costs a
+// compiler some dozens of types.
 #pragma once
 
 #include <Eigen/Core>
