@@ -51,7 +51,7 @@ void close(double value, double expected, double tolerance = exact) {
 }
 
 const btVector3 along_z(0, 0, 1);
-const btVector3 skew(btScalar(1) / 3, btScalar(2) / 3, btScalar(2) / 3);
+const btVector3 slanted(btScalar(1) / 3, btScalar(2) / 3, btScalar(2) / 3);
 
 /// Every joint's certificate of the last tick.
 bool some_unreliable(Cantilever& beam) {
@@ -73,7 +73,7 @@ TEST_CASE("P01 a spinning link stops on its hinge", "[multibody][P01]") {
     const bool turned = GENERATE(false, true);
     const double dt = 1 / rate;
     INFO(solver << ", dt = 1/" << rate << ", spin " << spin);
-    Rotors rig(solver, {2}, turned ? skew : along_z);
+    Rotors rig(solver, {2}, turned ? slanted : along_z);
     Hinge& hinge = rig.hinge(0, joint(40));
     rig.body().setJointVel(0, btScalar(spin));
     for (double t = 0; t < std::abs(spin) / 20 + 2 * dt; t += dt) rig.step(dt);
@@ -90,7 +90,7 @@ TEST_CASE("P01 a spinning link stops on its hinge", "[multibody][P01]") {
 TEST_CASE("P01 a link and its free base come to a common speed", "[multibody][P01]") {
     const std::string solver = GENERATE(as<std::string>{}, "si", "mlcp");
     const bool turned = GENERATE(false, true);
-    const btVector3 axis = turned ? skew : along_z;
+    const btVector3 axis = turned ? slanted : along_z;
     const double dt = 1.0 / 240;
     Rotors rig(solver, {2}, axis, 3);
     Hinge& hinge = rig.hinge(0, joint(12));

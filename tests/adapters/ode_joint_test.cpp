@@ -4,6 +4,7 @@
 // sleeping bodies, broken and detached joints, saved state, bad input.
 #include "adapters/ode_rig.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

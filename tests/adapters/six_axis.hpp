@@ -3,6 +3,7 @@
 // Joints, frames and exact answers for the tests of the six-axis joint. Included after the rig.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -63,102 +63,26 @@ class BoxedLcp {
   public:
     /// @throws std::runtime_error where no solution within lcp_tolerance is found.
     const Vector<S>& solve(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
-                           const Vector<S>& upper) {
-        const Eigen::Index n = g.size();
-        if (lambda_.size() != n) restart(n);
-        lambda_ = lambda_.cwiseMax(lower).cwiseMin(upper);
-        std::erase_if(free_, [&](Eigen::Index i) {
-            return !(lambda_[i] > lower[i] && lambda_[i] < upper[i]);
-        });
-        if (!factorise(a)) restart(n);
-
-        const int most = 50 * int(n) + 100;
-        for (int entries = 0; entries <= most; ++entries) {
-            relax(a, g, lower, upper);
-            w_ = a * lambda_ + g;
-            scale_ = velocity_scale(a, g);
-            const Eigen::Index entering = most_violated(a, lower, upper);
-            if (entering < 0) {
-                certify(lower, upper);
-                return lambda_;
-            }
-            free_.push_back(entering);
-            if (!factorise(a)) throw std::runtime_error("BoxedLcp: an entering row is dependent");
-        }
-        throw std::runtime_error("BoxedLcp: no solution after " + std::to_string(most) +
-                                 " entries");
-    }
+                           const Vector<S>& upper);
 
     /// w of the last solve [m/s | rad/s].
     [[nodiscard]] const Vector<S>& slack() const noexcept { return w_; }
 
   private:
-    void restart(Eigen::Index n) {
-        lambda_ = Vector<S>::Zero(n);
-        free_.clear();
-    }
+    void restart(Eigen::Index n);
 
-    bool factorise(const Matrix<S>& a) {
-        if (free_.empty()) return true;
-        factor_.compute(a(free_, free_));
-        return factor_.info() == Eigen::Success;
-    }
+    bool factorise(const Matrix<S>& a);
 
     /// Moves λ to the optimum over the free set, dropping every row that meets a bound on the way.
     void relax(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
-               const Vector<S>& upper) {
-        while (!free_.empty()) {
-            // from the other rows alone, not as a change of λ, which would leave the round-off of
-            // what λ was; refined once, because chains are ill conditioned, ~N⁴
-            Vector<S> reached = lambda_;
-            reached(free_).setZero();
-            const Vector<S> solved = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
-            reached(free_) = solved;
-            const Vector<S> left = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
-            reached(free_) += left;
-
-            S share = 1;
-            for (const Eigen::Index i : free_) {
-                share = std::min(share, share_to_bound(i, reached[i] - lambda_[i], lower, upper));
-            }
-            if (share == 1) {
-                for (const Eigen::Index i : free_) {
-                    lambda_[i] = std::clamp(reached[i], lower[i], upper[i]);
-                }
-                return;
-            }
-            std::erase_if(free_, [&](Eigen::Index i) {
-                const S step = reached[i] - lambda_[i];
-                const bool blocks = share_to_bound(i, step, lower, upper) <= share;
-                lambda_[i] = blocks ? (step > 0 ? upper[i] : lower[i])
-                                    : std::clamp(lambda_[i] + share * step, lower[i], upper[i]);
-                return blocks;
-            });
-            if (!factorise(a)) throw std::runtime_error("BoxedLcp: the free set became singular");
-        }
-    }
+               const Vector<S>& upper);
 
     /// Share of `step` that row i can go before it meets its bound; above 1 where it does not.
-    S share_to_bound(Eigen::Index i, S step, const Vector<S>& lower, const Vector<S>& upper) const {
-        if (step == 0) return std::numeric_limits<S>::infinity();
-        const S room = step > 0 ? upper[i] - lambda_[i] : lambda_[i] - lower[i];
-        return room / std::abs(step);
-    }
+    S share_to_bound(Eigen::Index i, S step, const Vector<S>& lower, const Vector<S>& upper) const;
 
     /// The row that violates its condition most and does not depend on the free ones; -1: none.
     Eigen::Index most_violated(const Matrix<S>& a, const Vector<S>& lower,
-                               const Vector<S>& upper) const {
-        Eigen::Index worst = -1;
-        S most = S(0.1) * lcp_tolerance<S> * scale_;
-        for (Eigen::Index i = 0; i < w_.size(); ++i) {
-            const S violation = lcp_violation(w_[i], lambda_[i], lower[i], upper[i]);
-            if (violation > most && independent(a, i)) {
-                most = violation;
-                worst = i;
-            }
-        }
-        return worst;
-    }
+                               const Vector<S>& upper) const;
 
     bool independent(const Matrix<S>& a, Eigen::Index i) const {
         if (std::find(free_.begin(), free_.end(), i) != free_.end()) return false;
@@ -170,23 +94,9 @@ class BoxedLcp {
         return pivot > S(100) * std::numeric_limits<S>::epsilon() * a(i, i);
     }
 
-    S velocity_scale(const Matrix<S>& a, const Vector<S>& g) const {
-        const S pushed = (a.cwiseAbs() * lambda_.cwiseAbs()).maxCoeff();
-        return std::max({g.cwiseAbs().maxCoeff(), pushed, std::numeric_limits<S>::min()});
-    }
+    S velocity_scale(const Matrix<S>& a, const Vector<S>& g) const;
 
-    void certify(const Vector<S>& lower, const Vector<S>& upper) const {
-        for (Eigen::Index i = 0; i < w_.size(); ++i) {
-            const bool inside = lambda_[i] >= lower[i] && lambda_[i] <= upper[i];
-            const S violation = lcp_violation(w_[i], lambda_[i], lower[i], upper[i]);
-            if (!inside || !(violation <= lcp_tolerance<S> * scale_)) {
-                std::ostringstream message;
-                message << "BoxedLcp: row " << i << " violates its condition by " << violation
-                        << ", velocities are of the order of " << scale_;
-                throw std::runtime_error(message.str());
-            }
-        }
-    }
+    void certify(const Vector<S>& lower, const Vector<S>& upper) const;
 
     Vector<S> lambda_;
     Vector<S> w_;
@@ -194,5 +104,125 @@ class BoxedLcp {
     std::vector<Eigen::Index> free_;
     Eigen::LLT<Matrix<S>> factor_;
 };
+
+template <std::floating_point S>
+const Vector<S>& BoxedLcp<S>::solve(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
+                                    const Vector<S>& upper) {
+    const Eigen::Index n = g.size();
+    if (lambda_.size() != n) restart(n);
+    lambda_ = lambda_.cwiseMax(lower).cwiseMin(upper);
+    std::erase_if(
+        free_, [&](Eigen::Index i) { return !(lambda_[i] > lower[i] && lambda_[i] < upper[i]); });
+    if (!factorise(a)) restart(n);
+
+    const int most = 50 * int(n) + 100;
+    for (int entries = 0; entries <= most; ++entries) {
+        relax(a, g, lower, upper);
+        w_ = a * lambda_ + g;
+        scale_ = velocity_scale(a, g);
+        const Eigen::Index entering = most_violated(a, lower, upper);
+        if (entering < 0) {
+            certify(lower, upper);
+            return lambda_;
+        }
+        free_.push_back(entering);
+        if (!factorise(a)) throw std::runtime_error("BoxedLcp: an entering row is dependent");
+    }
+    throw std::runtime_error("BoxedLcp: no solution after " + std::to_string(most) + " entries");
+}
+
+template <std::floating_point S>
+void BoxedLcp<S>::restart(Eigen::Index n) {
+    lambda_ = Vector<S>::Zero(n);
+    free_.clear();
+}
+
+template <std::floating_point S>
+bool BoxedLcp<S>::factorise(const Matrix<S>& a) {
+    if (free_.empty()) return true;
+    factor_.compute(a(free_, free_));
+    return factor_.info() == Eigen::Success;
+}
+
+template <std::floating_point S>
+void BoxedLcp<S>::relax(const Matrix<S>& a, const Vector<S>& g, const Vector<S>& lower,
+                        const Vector<S>& upper) {
+    while (!free_.empty()) {
+        // from the other rows alone, not as a change of λ, which would leave the round-off of
+        // what λ was; refined once, because chains are ill conditioned, ~N⁴
+        Vector<S> reached = lambda_;
+        reached(free_).setZero();
+        const Vector<S> solved = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
+        reached(free_) = solved;
+        const Vector<S> left = factor_.solve(-(a(free_, Eigen::all) * reached + g(free_)));
+        reached(free_) += left;
+
+        S share = 1;
+        for (const Eigen::Index i : free_) {
+            share = std::min(share, share_to_bound(i, reached[i] - lambda_[i], lower, upper));
+        }
+        if (share == 1) {
+            for (const Eigen::Index i : free_) {
+                lambda_[i] = std::clamp(reached[i], lower[i], upper[i]);
+            }
+            return;
+        }
+        std::erase_if(free_, [&](Eigen::Index i) {
+            const S step = reached[i] - lambda_[i];
+            const bool blocks = share_to_bound(i, step, lower, upper) <= share;
+            lambda_[i] = blocks ? (step > 0 ? upper[i] : lower[i])
+                                : std::clamp(lambda_[i] + share * step, lower[i], upper[i]);
+            return blocks;
+        });
+        if (!factorise(a)) throw std::runtime_error("BoxedLcp: the free set became singular");
+    }
+}
+
+template <std::floating_point S>
+S BoxedLcp<S>::share_to_bound(Eigen::Index i, S step, const Vector<S>& lower,
+                              const Vector<S>& upper) const {
+    if (step == 0) return std::numeric_limits<S>::infinity();
+    const S room = step > 0 ? upper[i] - lambda_[i] : lambda_[i] - lower[i];
+    return room / std::abs(step);
+}
+
+template <std::floating_point S>
+S BoxedLcp<S>::velocity_scale(const Matrix<S>& a, const Vector<S>& g) const {
+    const S pushed = (a.cwiseAbs() * lambda_.cwiseAbs()).maxCoeff();
+    return std::max({g.cwiseAbs().maxCoeff(), pushed, std::numeric_limits<S>::min()});
+}
+
+template <std::floating_point S>
+Eigen::Index BoxedLcp<S>::most_violated(const Matrix<S>& a, const Vector<S>& lower,
+                                        const Vector<S>& upper) const {
+    Eigen::Index worst = -1;
+    S most = S(0.1) * lcp_tolerance<S> * scale_;
+    for (Eigen::Index i = 0; i < w_.size(); ++i) {
+        const S violation = lcp_violation(w_[i], lambda_[i], lower[i], upper[i]);
+        if (violation > most && independent(a, i)) {
+            most = violation;
+            worst = i;
+        }
+    }
+    return worst;
+}
+
+template <std::floating_point S>
+void BoxedLcp<S>::certify(const Vector<S>& lower, const Vector<S>& upper) const {
+    for (Eigen::Index i = 0; i < w_.size(); ++i) {
+        const bool inside = lambda_[i] >= lower[i] && lambda_[i] <= upper[i];
+        const S violation = lcp_violation(w_[i], lambda_[i], lower[i], upper[i]);
+        if (!inside || !(violation <= lcp_tolerance<S> * scale_)) {
+            std::ostringstream message;
+            message << "BoxedLcp: row " << i << " violates its condition by " << violation
+                    << ", velocities are of the order of " << scale_;
+            throw std::runtime_error(message.str());
+        }
+    }
+}
+
+#ifdef DUCTILE_COMPILED
+extern template class BoxedLcp<double>; // tests/support/reference_world.cpp
+#endif
 
 } // namespace ductile::reference

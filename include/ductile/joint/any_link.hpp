@@ -133,7 +133,7 @@ class AnyLink {
     /// Of the last prepare.
     [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
     [[nodiscard]] LinkRow<S> row(JointAxis axis) const noexcept {
-        return {pose_.axes().col(Eigen::Index(index(axis) % 3)), turns(axis), limits_[index(axis)]};
+        return {column(pose_.axes(), int(index(axis) % 3)), turns(axis), limits_[index(axis)]};
     }
     [[nodiscard]] bool broken() const noexcept { return totals().broken; }
     [[nodiscard]] bool is_plastic(JointAxis axis) const noexcept { return plastic_[index(axis)]; }
@@ -215,12 +215,6 @@ class AnyLink {
     virtual void pause_joint() noexcept = 0;
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
-    [[nodiscard]] Vector6<S> along_plastic_axes(Vector6<S> six) const noexcept {
-        for (std::size_t i = 0; i < 6; ++i) {
-            if (!plastic_[i]) six[Eigen::Index(i)] = 0;
-        }
-        return six;
-    }
 
     /// LinkPose::rest_changes that M stays right for; the largest: that of the last prepare alone
     unsigned mass_at_ = std::numeric_limits<unsigned>::max();
@@ -234,7 +228,7 @@ void AnyLink<S>::start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
     pose_.set_rest(Matrix3<S>::Identity());
     const Vector6<S> q = strain();
     set_offset(q);
-    turn_rest(q.template tail<3>());
+    turn_rest(angular(q));
 }
 
 template <std::floating_point S>
@@ -242,11 +236,15 @@ void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept
     if (pose_.is_now(a, b)) return;
     const Vector6<S> before = strain();
     pose_.look(a, b);
-    const Vector6<S> moved = along_plastic_axes(strain() - before);
-    const Vector3<S> kept = pose_.elastic_rotation() - moved.template tail<3>();
-    set_offset(offset() + moved);
-    if (!moved.template tail<3>().isZero(0)) {
-        pose_.set_rest(turned_by<S>(-kept, pose_.orientation()));
+    Vector6<S> moved = strain(), rest = offset();
+    for (int i = 0; i < 6; ++i) {
+        moved[i] = plastic_[std::size_t(i)] ? moved[i] - before[i] : S(0);
+        rest[i] += moved[i];
+    }
+    const Vector3<S> kept = difference(pose_.elastic_rotation(), angular(moved));
+    set_offset(rest);
+    if (!is_zero(angular(moved))) {
+        pose_.set_rest(turned_by<S>(scaled(-1, kept), pose_.orientation()));
     }
 }
 
@@ -268,10 +266,10 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
                                   const JointWrench<S>& wrench, S dt) noexcept {
-    Vector6<S> forces;
-    forces.template head<3>() = pose_.axes().transpose() * wrench.force;
-    forces.template tail<3>() = pose_.axes().transpose() * wrench.moment;
-    return commit_rows(a, b, forces, dt);
+    return commit_rows(a, b,
+                       twist_of(transposed_times(pose_.axes(), wrench.force),
+                                transposed_times(pose_.axes(), wrench.moment)),
+                       dt);
 }
 
 template <std::floating_point S>
@@ -303,9 +301,7 @@ JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
 
 template <std::floating_point S>
 Vector6<S> AnyLink<S>::strain() const noexcept {
-    Vector6<S> result;
-    result.template head<3>() = pose_.displacement();
-    result.template tail<3>() = pose_.elastic_rotation();
+    Vector6<S> result = twist_of(pose_.displacement(), pose_.elastic_rotation());
     const Vector6<S> rest = offset();
     for (int i = 0; i < 3; ++i) result[i] -= rest[i];
     return result;
@@ -324,7 +320,7 @@ void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& vel
     rigid_unsolved_ =
         rigid_residual_ > allow.absolute_residual &&
         (worst[0] > allow.absolute_residual + allow.relative_residual * pose_.speed_of_a(a) ||
-         worst[1] > allow.absolute_residual + allow.relative_residual * a.spin.norm());
+         worst[1] > allow.absolute_residual + allow.relative_residual * norm(a.spin));
 }
 
 template <std::floating_point S>
@@ -333,7 +329,7 @@ void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
     for (int i = 0; i < 3; ++i) {
         if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
     }
-    pose_.set_rest(turn.isZero(0) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
+    pose_.set_rest(is_zero(turn) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
 }
 
 } // namespace ductile

@@ -34,13 +34,12 @@ namespace ductile {
 template <std::floating_point S>
 [[nodiscard]] JointImpulse<S> release_impulse(const Vector6<S>& response, const Vector6<S>& axis,
                                               const Vector6<S>& twist, S energy) noexcept {
-    const S mass = axis.dot(response);
-    const S momentum = twist.dot(response);
+    const S mass = dot(axis, response);
+    const S momentum = dot(twist, response);
     const S root = std::sqrt(momentum * momentum + 2 * mass * energy);
     if (!(mass > 0) || !std::isfinite(mass) || !(root > 0)) return {};
     const S change = std::copysign(2 * energy / (std::abs(momentum) + root), momentum);
-    const Vector6<S> impulse = response * change;
-    return {impulse.template head<3>(), impulse.template tail<3>()};
+    return {scaled(change, linear(response)), scaled(change, angular(response))};
 }
 
 /// The same for a joint whose other five axes are rigid, h = K⁻¹ e.
@@ -66,7 +65,8 @@ template <std::floating_point S>
 [[nodiscard]] BreakRelease<S> break_release(const BodyAtJoint<S>& a, const BodyAtJoint<S>& b,
                                             const JointImpulse<S>& impulse, S energy) noexcept {
     return {energy, velocity_change(a, impulse),
-            velocity_change(b, JointImpulse<S>{-impulse.linear, -impulse.angular})};
+            velocity_change(
+                b, JointImpulse<S>{scaled(-1, impulse.linear), scaled(-1, impulse.angular)})};
 }
 
 /// The velocity changes that give `energy` [J] back along `axis`; see release_impulse.

@@ -61,18 +61,14 @@ template <std::floating_point S>
                                               const Vector3<S>& displacement,
                                               const PrincipalMass<S>& a,
                                               const PrincipalMass<S>& b) noexcept {
-    const auto turned = [](const Matrix3<S>& axes, const Vector3<S>& diagonal) noexcept {
-        const Matrix3<S> scaled = axes * diagonal.asDiagonal();
-        return Matrix3<S>(scaled * axes.transpose());
-    };
     // axes of the two bodies along those of frame B
-    const Matrix3<S> axes_a = rotation * pose.frame_in_a().axes.transpose();
-    const Matrix3<S> axes_b = pose.frame_in_b().axes.transpose();
+    const Matrix3<S> axes_a = times_transposed(rotation, pose.frame_in_a().axes);
+    const Matrix3<S> axes_b = transposed(pose.frame_in_b().axes);
     return inverse_mass_at_joint(
-        BodyAtJoint<S>{a.inverse_mass, turned(axes_a, a.inverse_inertia),
-                       axes_a * pose.frame_in_a().origin},
-        BodyAtJoint<S>{b.inverse_mass, turned(axes_b, b.inverse_inertia),
-                       Vector3<S>(axes_b * pose.frame_in_b().origin + displacement)});
+        BodyAtJoint<S>{a.inverse_mass, sandwiched(axes_a, a.inverse_inertia),
+                       times(axes_a, pose.frame_in_a().origin)},
+        BodyAtJoint<S>{b.inverse_mass, sandwiched(axes_b, b.inverse_inertia),
+                       sum(times(axes_b, pose.frame_in_b().origin), displacement)});
 }
 
 /// The rows of `order`, each the axis that it names.
@@ -104,8 +100,8 @@ template <std::floating_point S>
         for (std::size_t i = j + 1; i < 6; ++i) {
             if (left[i][j] == 0) continue;
             const S share = left[i][j] / left[j][j];
-            rows[i].force -= share * rows[j].force;
-            rows[i].moment -= share * rows[j].moment;
+            rows[i].force = difference(rows[i].force, scaled(share, rows[j].force));
+            rows[i].moment = difference(rows[i].moment, scaled(share, rows[j].moment));
             for (std::size_t m = j + 1; m <= i; ++m) left[i][m] -= share * left[m][j];
         }
     }

@@ -23,7 +23,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <concepts>
 
 #include "ductile/numeric/ldlt.hpp"
@@ -57,31 +56,35 @@ struct VelocityChange {
 template <std::floating_point S>
 [[nodiscard]] VelocityChange<S> velocity_change(const BodyAtJoint<S>& body,
                                                 const JointImpulse<S>& impulse) noexcept {
-    return {body.inverse_mass * impulse.linear,
-            body.inverse_inertia * (body.arm.cross(impulse.linear) + impulse.angular)};
+    const Vector3<S> moment = sum(cross(body.arm, impulse.linear), impulse.angular);
+    return {scaled(body.inverse_mass, impulse.linear), times(body.inverse_inertia, moment)};
 }
 
 /// K [1/kg and 1/(kg m²)]: what the pair's relative twist at the joint answers to an impulse.
 template <std::floating_point S>
 [[nodiscard]] Matrix6<S> inverse_mass_at_joint(const BodyAtJoint<S>& a,
                                                const BodyAtJoint<S>& b) noexcept {
-    Matrix3<S> moving = Matrix3<S>::Identity() * (a.inverse_mass + b.inverse_mass);
-    Matrix3<S> turned = Matrix3<S>::Zero(); // [r]ₓ I⁻¹; its transpose is -I⁻¹ [r]ₓ
+    Matrix6<S> k = Matrix6<S>::Zero();
+    for (int i = 0; i < 3; ++i) k(i, i) = a.inverse_mass + b.inverse_mass;
     for (const BodyAtJoint<S>* body : {&a, &b}) {
-        Matrix3<S> own;
-        for (int i = 0; i < 3; ++i) own.col(i) = body->arm.cross(body->inverse_inertia.col(i));
-        turned += own;
+        const Matrix3<S>& inertia = body->inverse_inertia;
+        Matrix3<S> turned; // [r]ₓ I⁻¹; its transpose is -I⁻¹ [r]ₓ
+        for (int j = 0; j < 3; ++j) {
+            const Vector3<S> turn = cross(body->arm, column(inertia, j));
+            for (int i = 0; i < 3; ++i) {
+                turned(i, j) = turn[i];
+                k(i, 3 + j) -= turn[i];
+                k(3 + j, i) -= turn[i];
+                k(3 + i, 3 + j) += inertia(i, j);
+            }
+        }
         // [r]ₓ ([r]ₓ I⁻¹)ᵀ = -[r]ₓ I⁻¹ [r]ₓ
-        for (int i = 0; i < 3; ++i) {
-            const Vector3<S> row = own.row(i);
-            moving.col(i) += body->arm.cross(row);
+        for (int j = 0; j < 3; ++j) {
+            const Vector3<S> row(turned(j, 0), turned(j, 1), turned(j, 2));
+            const Vector3<S> moved = cross(body->arm, row);
+            for (int i = 0; i < 3; ++i) k(i, j) += moved[i];
         }
     }
-    Matrix6<S> k;
-    k.template topLeftCorner<3, 3>() = moving;
-    k.template topRightCorner<3, 3>() = -turned;
-    k.template bottomLeftCorner<3, 3>() = -turned.transpose();
-    k.template bottomRightCorner<3, 3>() = a.inverse_inertia + b.inverse_inertia;
     return k;
 }
 
@@ -92,17 +95,16 @@ template <std::floating_point S>
 ///   [ Qᵀ R  ]   = [ -R⁻¹ Qᵀ Z    R⁻¹ + R⁻¹ Qᵀ Z Q R⁻¹ ],   Z = (P - Q R⁻¹ Qᵀ)⁻¹
 template <std::floating_point S>
 [[nodiscard]] Matrix6<S> inverse_by_blocks(const Matrix6<S>& k) noexcept {
-    const Matrix3<S> q = k.template topRightCorner<3, 3>();
-    const Matrix3<S> r = numeric::inverse(Matrix3<S>(k.template bottomRightCorner<3, 3>()));
-    const Matrix3<S> qr = q * r;
-    const Matrix3<S> z =
-        numeric::inverse(Matrix3<S>(k.template topLeftCorner<3, 3>() - qr * q.transpose()));
-    const Matrix3<S> zqr = z * qr;
+    const Matrix3<S> q = block(k, 0, 3);
+    const Matrix3<S> r = numeric::inverse(block(k, 3, 3));
+    const Matrix3<S> qr = times(q, r);
+    const Matrix3<S> z = numeric::inverse(difference(block(k, 0, 0), times_transposed(qr, q)));
+    const Matrix3<S> zqr = scaled(-1, times(z, qr));
     Matrix6<S> result;
-    result.template topLeftCorner<3, 3>() = z;
-    result.template topRightCorner<3, 3>() = -zqr;
-    result.template bottomLeftCorner<3, 3>() = -zqr.transpose();
-    result.template bottomRightCorner<3, 3>() = r + qr.transpose() * zqr;
+    set_block(result, 0, 0, z);
+    set_block(result, 0, 3, zqr);
+    set_block(result, 3, 0, transposed(zqr));
+    set_block(result, 3, 3, difference(r, transposed_times(qr, zqr)));
     return result;
 }
 

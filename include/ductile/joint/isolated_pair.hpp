@@ -51,13 +51,13 @@ template <std::floating_point S>
         }
         for (int i = 0; i < 6; ++i) {
             if (!held[std::size_t(i)]) continue;
-            system.row(i).setZero();
-            system.col(i).setZero();
-            system(i, i) = 1;
+            for (int j = 0; j < 6; ++j) system(i, j) = system(j, i) = i == j ? S(1) : S(0);
             wanted[i] = impulse[i];
         }
         impulse = numeric::solve_semidefinite(system, wanted);
-        if (!impulse.allFinite()) return Vector6<S>::Zero();
+        if (!is_finite(linear(impulse)) || !is_finite(angular(impulse))) {
+            return Vector6<S>::Zero();
+        }
 
         int worst = -1;
         S most = 1;
@@ -78,7 +78,7 @@ template <std::floating_point S>
         const RowLimits<S>& limits = rows[std::size_t(worst)];
         impulse[worst] = std::clamp(impulse[worst], limits.lower * dt, limits.upper * dt);
     }
-    return impulse / dt;
+    return twist_of(scaled(1 / dt, linear(impulse)), scaled(1 / dt, angular(impulse)));
 }
 
 } // namespace ductile

@@ -99,7 +99,11 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         if constexpr (one_axis) {
             return joint_.parameters().stiffness == rigid;
         } else {
-            return (joint_.parameters().stiffness.array() == rigid).all();
+            bool all = true;
+            for (int k = 0; k < dimension; ++k) {
+                all = all && joint_.parameters().stiffness[k] == rigid;
+            }
+            return all;
         }
     }
     [[nodiscard]] typename Base::Allowed allowed() const noexcept override {
@@ -117,7 +121,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
     [[nodiscard]] Vector6<S> flow() const noexcept override {
         if constexpr (one_axis) {
-            return Vector6<S>::Unit(Eigen::Index(index(axes_[0])));
+            return from_joint(JointVector::Constant(1));
         } else {
             return from_joint(last_.direction);
         }
@@ -129,8 +133,12 @@ class Link final : public AnyLink<typename Joint::Scalar> {
                       S dt) noexcept override;
     void pause_joint() noexcept override {
         auto state = joint_.state();
-        state.velocity *= S(0);
-        state.start_velocity *= S(0);
+        if constexpr (one_axis) {
+            state.velocity = state.start_velocity = 0;
+        } else {
+            state.velocity.setZero();
+            state.start_velocity.setZero();
+        }
         state.flowing = false;
         joint_.restore(state);
         last_ = {};
@@ -150,6 +158,12 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         for (int k = 0; k < dimension; ++k) {
             result[Eigen::Index(index(axes_[std::size_t(k)]))] = of_joint[k];
         }
+        return result;
+    }
+    /// q of the joint's rows, from where they rested at the start of the step.
+    [[nodiscard]] JointVector from_rest(const Vector6<S>& strain) const noexcept {
+        JointVector result = to_joint(strain);
+        for (int k = 0; k < dimension; ++k) result[k] += offset_[k];
         return result;
     }
     /// q_p of the joint's rows.
@@ -183,8 +197,8 @@ void Link<Joint>::prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
             {strain[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass_(0, 0), midway},
             dt);
     } else {
-        const auto limits = joint_.prepare(
-            {to_joint(strain) + offset_, to_joint(pose_.twist(a, b)), mass_, midway}, dt);
+        const auto limits =
+            joint_.prepare({from_rest(strain), to_joint(pose_.twist(a, b)), mass_, midway}, dt);
         for (std::size_t k = 0; k < limits.size(); ++k) limits_[index(axes_[k])] = limits[k];
     }
 }
@@ -199,12 +213,17 @@ void Link<Joint>::commit_joint(const Vector6<S>& velocity, const BodyState<S>& a
         // the same velocity, as the next step sees it
         joint_.carry(pose_.twist_along(axis, a, b));
     } else {
-        last_ = joint_.commit(
-            {to_joint(force_), to_joint(velocity), to_joint(this->strain()) + offset_}, dt);
+        last_ =
+            joint_.commit({to_joint(force_), to_joint(velocity), from_rest(this->strain())}, dt);
         joint_.carry(to_joint(pose_.twist(a, b)));
     }
-    const JointVector flowed = joint_offset() - offset_;
-    if (!flowed.isZero(0)) this->turn_rest(Vector6<S>(from_joint(flowed)).template tail<3>());
+    JointVector flowed = joint_offset();
+    bool flows = false;
+    for (int k = 0; k < dimension; ++k) {
+        flowed[k] -= offset_[k];
+        flows = flows || flowed[k] != 0;
+    }
+    if (flows) this->turn_rest(angular(from_joint(flowed)));
 }
 
 } // namespace ductile

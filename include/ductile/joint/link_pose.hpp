@@ -8,7 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -39,12 +39,13 @@ class LinkPose {
         seen_a_ = {a.position, a.orientation};
         seen_b_ = {b.position, b.orientation};
         turned_ = true;
-        axes_ = b.orientation * in_b_.axes;
-        arm_a_ = a.orientation * in_a_.origin;
-        point_ = a.position + arm_a_;
-        arm_b_ = point_ - b.position;
-        displacement_ = axes_.transpose() * (arm_b_ - b.orientation * in_b_.origin);
-        orientation_ = axes_.transpose() * (a.orientation * in_a_.axes);
+        axes_ = times(b.orientation, in_b_.axes);
+        arm_a_ = times(a.orientation, in_a_.origin);
+        point_ = sum(a.position, arm_a_);
+        arm_b_ = difference(point_, b.position);
+        displacement_ =
+            transposed_times(axes_, difference(arm_b_, times(b.orientation, in_b_.origin)));
+        orientation_ = transposed_times(axes_, times(a.orientation, in_a_.axes));
     }
 
     // ---- as last looked at
@@ -59,7 +60,7 @@ class LinkPose {
     /// e = log(R R_pᵀ) [rad].
     [[nodiscard]] const Vector3<S>& elastic_rotation() const noexcept {
         if (turned_) {
-            elastic_rotation_ = rotation_vector<S>(orientation_ * rest_.transpose());
+            elastic_rotation_ = rotation_vector<S>(times_transposed(orientation_, rest_));
             turned_ = false;
         }
         return elastic_rotation_;
@@ -77,34 +78,27 @@ class LinkPose {
     /// Velocity of A minus that of B at the joint, and of their turning, along the axes of frame B
     /// [m/s, rad/s].
     [[nodiscard]] Vector6<S> twist(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
-        const Vector3<S> velocity = relative_velocity(a, b), spin = a.spin - b.spin;
-        Vector6<S> result;
-        result.template head<3>() = axes_.transpose() * velocity;
-        result.template tail<3>() = axes_.transpose() * spin;
-        return result;
+        return twist_of(transposed_times(axes_, relative_velocity(a, b)),
+                        transposed_times(axes_, difference(a.spin, b.spin)));
     }
     /// One entry of it.
     [[nodiscard]] S twist_along(std::size_t axis, const BodyState<S>& a,
                                 const BodyState<S>& b) const noexcept {
         if (axis >= 3) {
-            const Vector3<S> spin = a.spin - b.spin;
-            return axes_.col(Eigen::Index(axis - 3)).dot(spin);
+            return dot(column(axes_, int(axis) - 3), difference(a.spin, b.spin));
         }
-        return axes_.col(Eigen::Index(axis)).dot(relative_velocity(a, b));
+        return dot(column(axes_, int(axis)), relative_velocity(a, b));
     }
     /// Speed of A at the joint [m/s].
     [[nodiscard]] S speed_of_a(const BodyState<S>& a) const noexcept {
-        return (a.velocity + a.spin.cross(arm_a_)).norm();
+        return norm(sum(a.velocity, cross(a.spin, arm_a_)));
     }
     [[nodiscard]] BodyAtJoint<S> at_joint(const BodyState<S>& body) const noexcept {
-        return {body.inverse_mass, body.inverse_inertia, point_ - body.position};
+        return {body.inverse_mass, body.inverse_inertia, difference(point_, body.position)};
     }
     /// Entries along the axes of frame B, seen in the world.
     [[nodiscard]] Vector6<S> in_world(const Vector6<S>& of_frame_b) const noexcept {
-        Vector6<S> result;
-        result.template head<3>() = axes_ * of_frame_b.template head<3>();
-        result.template tail<3>() = axes_ * of_frame_b.template tail<3>();
-        return result;
+        return twist_of(times(axes_, linear(of_frame_b)), times(axes_, angular(of_frame_b)));
     }
 
   private:
@@ -114,16 +108,19 @@ class LinkPose {
         Matrix3<S> orientation = Matrix3<S>::Zero();
 
         [[nodiscard]] bool is(const BodyState<S>& body) const noexcept {
-            // without a branch for each entry
-            return (position - body.position).cwiseAbs().sum() +
-                       (orientation - body.orientation).cwiseAbs().sum() ==
-                   0;
+            S off = 0; // without a branch for each entry
+            for (int i = 0; i < 3; ++i) off += std::abs(position[i] - body.position[i]);
+            for (int i = 0; i < 9; ++i) {
+                off += std::abs(orientation.data()[i] - body.orientation.data()[i]);
+            }
+            return off == 0;
         }
     };
 
     [[nodiscard]] Vector3<S> relative_velocity(const BodyState<S>& a,
                                                const BodyState<S>& b) const noexcept {
-        return a.velocity + a.spin.cross(arm_a_) - b.velocity - b.spin.cross(arm_b_);
+        return difference(sum(a.velocity, cross(a.spin, arm_a_)),
+                          sum(b.velocity, cross(b.spin, arm_b_)));
     }
 
     JointFrame<S> in_a_, in_b_;

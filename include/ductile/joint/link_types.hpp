@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 
@@ -56,9 +57,9 @@ template <std::floating_point S>
                                               const Vector3<S>& joint,
                                               const Matrix3<S>& axes_in_world) noexcept {
     const auto along_axes = [&](const BodyState<S>& body) noexcept {
-        const Matrix3<S> inertia = axes_in_world.transpose() * body.inverse_inertia * axes_in_world;
-        return BodyAtJoint<S>{body.inverse_mass, inertia,
-                              axes_in_world.transpose() * (joint - body.position)};
+        const Matrix3<S> turned = transposed_times(axes_in_world, body.inverse_inertia);
+        return BodyAtJoint<S>{body.inverse_mass, times(turned, axes_in_world),
+                              transposed_times(axes_in_world, difference(joint, body.position))};
     };
     return inverse_mass_at_joint(along_axes(a), along_axes(b));
 }
@@ -76,7 +77,9 @@ template <std::floating_point S, std::size_t N>
                 mass(Eigen::Index(index(axes[i])), Eigen::Index(index(axes[j])));
         }
     }
-    if (!result.allFinite()) result.setIdentity();
+    for (std::size_t i = 0; i < N * N; ++i) {
+        if (!std::isfinite(result.data()[i])) return Eigen::Matrix<S, int(N), int(N)>::Identity();
+    }
     return result;
 }
 

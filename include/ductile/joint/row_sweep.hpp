@@ -62,8 +62,8 @@ struct SweptVelocities {
     Vector3<S> angular_b = Vector3<S>::Zero();
 
     [[nodiscard]] S squared_norm() const noexcept {
-        return linear_a.squaredNorm() + angular_a.squaredNorm() + linear_b.squaredNorm() +
-               angular_b.squaredNorm();
+        return dot(linear_a, linear_a) + dot(angular_a, angular_a) + dot(linear_b, linear_b) +
+               dot(angular_b, angular_b);
     }
 };
 
@@ -99,8 +99,10 @@ class RowSweep {
   private:
     void set(int i, const Vector3<S>& along, const Vector3<S>& about,
              const RowLimits<S>& limits) noexcept {
-        directions_.template block<3, 1>(0, i) = along;
-        directions_.template block<3, 1>(3, i) = about;
+        for (int j = 0; j < 3; ++j) {
+            directions_(j, i) = along[j];
+            directions_(3 + j, i) = about[j];
+        }
         bias_[i] = limits.bias;
         lower_[i] = limits.lower;
         upper_[i] = limits.upper;
@@ -112,8 +114,11 @@ class RowSweep {
         for (int i = count_; i < 6; ++i) set(i, none, none, {});
     }
     [[nodiscard]] bool within_bounds(const Impulses& impulses) const noexcept {
-        return (impulses.array() >= lower_.array()).all() &&
-               (impulses.array() <= upper_.array()).all();
+        bool within = true;
+        for (int i = 0; i < 6; ++i) {
+            within = within && impulses[i] >= lower_[i] && impulses[i] <= upper_[i];
+        }
+        return within;
     }
 
     /// Row i alone; what it does to those after it is taken off `missing`.
@@ -139,7 +144,7 @@ class RowSweep {
     int block_ = 0; ///< how many of the last rows are taken up together
     bool swept_ = false;
     bool has_mass_ = false, has_factor_ = false;
-    Vector6<S> gain_;                 ///< 1/(k + C)
+    Vector6<S> gain_;                ///< 1/(k + C)
     Matrix6<S> mass_;                ///< K, from when a row first changed
     numeric::Cholesky<S, 6> factor_; ///< of K + C of the block, from when first needed
 };
@@ -148,16 +153,20 @@ template <std::floating_point S>
 SweptVelocities<S> RowSweep<S>::sweep(const SweptVelocities<S>& now, Impulses& impulses,
                                       S& asked) noexcept {
     if (!swept_) leave_out_the_rest();
-    Vector6<S> w;
-    w.template head<3>() = now.linear_a + now.angular_a.cross(a_.arm) - now.linear_b -
-                           now.angular_b.cross(b_.arm);
-    w.template tail<3>() = now.angular_a - now.angular_b;
-    Vector6<S> missing = bias_ - compliance_.cwiseProduct(impulses);
-    missing.noalias() -= directions_.transpose() * w;
+    const Vector3<S> on_a = sum(now.linear_a, cross(now.angular_a, a_.arm));
+    const Vector3<S> on_b = sum(now.linear_b, cross(now.angular_b, b_.arm));
+    const Vector6<S> w = twist_of(difference(on_a, on_b), difference(now.angular_a, now.angular_b));
+    Vector6<S> missing;
+    bool at_rest = true;
+    for (int i = 0; i < 6; ++i) {
+        missing[i] = bias_[i] - compliance_[i] * impulses[i];
+        for (int j = 0; j < 6; ++j) missing[i] -= directions_(j, i) * w[j];
+        at_rest = at_rest && missing[i] == 0;
+    }
 
     asked = 0;
     if (!has_mass_) {
-        if (missing.isZero(0) && within_bounds(impulses)) return {};
+        if (at_rest && within_bounds(impulses)) return {};
         find_mass();
     }
     const Impulses before = impulses;
@@ -167,17 +176,27 @@ SweptVelocities<S> RowSweep<S>::sweep(const SweptVelocities<S>& now, Impulses& i
     for (int i = single; i < count_; ++i) sweep_row(i, missing, impulses, of_block);
     constexpr S round_off = 4 * std::numeric_limits<S>::epsilon();
     if (swept_ && of_block * of_block > round_off * round_off * now.squared_norm()) {
-        sweep_block(single, missing, impulses - before, impulses);
+        Vector6<S> changed;
+        for (int i = 0; i < 6; ++i) changed[i] = impulses[i] - before[i];
+        sweep_block(single, missing, changed, impulses);
     }
     asked = std::max(asked, of_block);
     swept_ = true;
     if (asked == 0) return {};
-    const Vector6<S> given = directions_ * (impulses - before);
-    const Vector3<S> force = given.template head<3>(), moment = given.template tail<3>();
-    return {a_.inverse_mass.cwiseProduct(force),
-            a_.inverse_inertia * (a_.arm.cross(force) + moment),
-            -b_.inverse_mass.cwiseProduct(force),
-            b_.inverse_inertia * -(b_.arm.cross(force) + moment)};
+    Vector6<S> given = Vector6<S>::Zero();
+    for (int i = 0; i < 6; ++i) {
+        const S change = impulses[i] - before[i];
+        for (int j = 0; j < 6; ++j) given[j] += directions_(j, i) * change;
+    }
+    const auto moved = [](const SweptBody<S>& body, const Vector3<S>& force) {
+        return Vector3<S>(body.inverse_mass[0] * force[0], body.inverse_mass[1] * force[1],
+                          body.inverse_mass[2] * force[2]);
+    };
+    const Vector3<S> force = linear(given), moment = angular(given);
+    const Vector3<S> turn_a = sum(cross(a_.arm, force), moment);
+    const Vector3<S> turn_b = sum(cross(b_.arm, force), moment);
+    return {moved(a_, force), times(a_.inverse_inertia, turn_a), scaled(-1, moved(b_, force)),
+            scaled(-1, times(b_.inverse_inertia, turn_b))};
 }
 
 template <std::floating_point S>
@@ -212,12 +231,21 @@ void RowSweep<S>::sweep_block(int first, const Vector6<S>& missing, const Vector
 template <std::floating_point S>
 void RowSweep<S>::find_mass() noexcept {
     constexpr S least = std::numeric_limits<S>::min();
-    Matrix6<S> at_joint = inverse_mass_at_joint(
-        BodyAtJoint<S>{.inverse_inertia = a_.inverse_inertia, .arm = a_.arm},
-        BodyAtJoint<S>{.inverse_inertia = b_.inverse_inertia, .arm = b_.arm});
-    at_joint.diagonal().template head<3>() += a_.inverse_mass + b_.inverse_mass;
-    const Matrix6<S> moved = at_joint.lazyProduct(directions_);
-    mass_ = directions_.transpose().lazyProduct(moved);
+    Matrix6<S> at_joint =
+        inverse_mass_at_joint(BodyAtJoint<S>{.inverse_inertia = a_.inverse_inertia, .arm = a_.arm},
+                              BodyAtJoint<S>{.inverse_inertia = b_.inverse_inertia, .arm = b_.arm});
+    for (int i = 0; i < 3; ++i) at_joint(i, i) += a_.inverse_mass[i] + b_.inverse_mass[i];
+    for (int j = 0; j < 6; ++j) {
+        Vector6<S> moved = Vector6<S>::Zero(); // by a unit impulse of row j
+        for (int k = 0; k < 6; ++k) {
+            for (int i = 0; i < 6; ++i) moved[i] += at_joint(i, k) * directions_(k, j);
+        }
+        for (int i = 0; i < 6; ++i) {
+            S entry = 0;
+            for (int k = 0; k < 6; ++k) entry += directions_(k, i) * moved[k];
+            mass_(i, j) = entry;
+        }
+    }
     for (int i = 0; i < 6; ++i) {
         gain_[i] = mass_(i, i) > least ? 1 / (mass_(i, i) + compliance_[i]) : S(0);
     }

@@ -37,7 +37,7 @@ class Cholesky {
     Cholesky() = default;
     explicit Cholesky(const Matrix& a) noexcept : succeeded_(true) {
         for (int j = 0; j < N; ++j) {
-            std::array<S, std::size_t(N)> scaled; // row j of L D
+            std::array<S, std::size_t(N)> scaled{}; // row j of L D
             S pivot = a(j, j);
             for (int k = 0; k < j; ++k) {
                 scaled[std::size_t(k)] = l_(j, k) * d_[k];

@@ -25,6 +25,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
 namespace ductile::bullet {
@@ -44,14 +45,14 @@ class EnergyMeter final : public ductile::EnergyMeter {
     }
 
   private:
-    void list_bodies(std::vector<MeteredBody>& bodies) const override;
-    void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
-    void watch_step() override;
-    void list_joints(std::vector<MeteredJoint>& joints) const override;
-    void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
-    [[nodiscard]] Vector3<double> gyroscopic_impulse(const MeteredBody& body,
+    DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;
+    DUCTILE_INLINE void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
+    DUCTILE_INLINE void watch_step() override;
+    DUCTILE_INLINE void list_joints(std::vector<MeteredJoint>& joints) const override;
+    DUCTILE_INLINE void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> gyroscopic_impulse(const MeteredBody& body,
                                                      double dt) const override;
-    void damp(MeteredBody& body, double dt) const override;
+    DUCTILE_INLINE void damp(MeteredBody& body, double dt) const override;
 
     btDiscreteDynamicsWorld& world_;
     std::unordered_map<const btTypedConstraint*, std::unique_ptr<btJointFeedback>> lent_;

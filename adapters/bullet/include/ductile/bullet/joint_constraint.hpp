@@ -31,6 +31,7 @@
 #include "ductile/bullet/kept_mass.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/any_link.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
 
@@ -50,27 +51,27 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     }
 
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
-    [[nodiscard]] JointView view() const override;
+    [[nodiscard]] DUCTILE_INLINE JointView view() const override;
 
     // ---- Bullet's side
 
     /// Bullet's own: called for every constraint when a tick opens.
-    void buildJacobian() override;
-    void getInfo1(btConstraintInfo1* info) override;
-    void getInfo2(btConstraintInfo2* info) override;
+    DUCTILE_INLINE void buildJacobian() override;
+    DUCTILE_INLINE void getInfo1(btConstraintInfo1* info) override;
+    DUCTILE_INLINE void getInfo2(btConstraintInfo2* info) override;
 
     /// BT_CONSTRAINT_ERP and BT_CONSTRAINT_STOP_ERP: share of the rigid rows' error that is removed
     /// per tick, in [0, 1]; negative (as it is at first): that of the world.
     /// @throws std::invalid_argument for a CFM: compliance follows from the joint's stiffness.
-    void setParam(int num, btScalar value, int axis = -1) override;
-    [[nodiscard]] btScalar getParam(int num, int axis = -1) const override;
+    DUCTILE_INLINE void setParam(int num, btScalar value, int axis = -1) override;
+    [[nodiscard]] DUCTILE_INLINE btScalar getParam(int num, int axis = -1) const override;
 
   protected:
     /// Where the bodies are now the joint is at rest.
     JointConstraint(AnyLink<double>& link, btRigidBody& a, btRigidBody& b, Feedback feedback);
-    ~JointConstraint() override;
+    DUCTILE_INLINE ~JointConstraint() override;
 
-    void settle() const override;
+    DUCTILE_INLINE void settle() const override;
     /// The link was given a saved state.
     void restored(bool was_broken);
 
@@ -86,7 +87,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] bool one_axis() const noexcept { return link_.axes().size() == 1; }
     /// Opens a tick [s]; `erp`: the world's.
     void prepare(double tick, double erp);
-    void end_tick() override;
+    DUCTILE_INLINE void end_tick() override;
     /// Commits the open tick some time after it.
     void settle_late(bool in_solver);
     void settle(const BodyState<double>& a, const BodyState<double>& b, bool in_solver);
@@ -99,7 +100,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] Reading& reading();
 
     [[nodiscard]] bool acts() const override { return is_awake(); }
-    [[nodiscard]] Vector6<double> velocities() const override;
+    [[nodiscard]] DUCTILE_INLINE Vector6<double> velocities() const override;
 
     // what every pass over the constraints asks for comes first
     Open open_ = Open::nothing;

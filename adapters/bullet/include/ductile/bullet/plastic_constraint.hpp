@@ -19,6 +19,7 @@
 #include "ductile/bullet/joint_view.hpp"
 #include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/bullet/soft_rows.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/leapfrog.hpp"
 
@@ -64,7 +65,7 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows, public Self
     struct EndOfTick final : btActionInterface {
         explicit EndOfTick(PlasticConstraint& owner) : owner_(owner) {}
         void updateAction(btCollisionWorld*, btScalar) override { owner_.end_tick(); }
-        void debugDraw(btIDebugDraw* drawer) override;
+        DUCTILE_INLINE void debugDraw(btIDebugDraw* drawer) override;
         PlasticConstraint& owner_;
     };
     EndOfTick end_of_tick_{*this};

@@ -25,6 +25,7 @@
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/axis_constraint.hpp"
 #include "ductile/world/axis_queries.hpp"
 
@@ -47,13 +48,13 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] double moment() const { return reaction(); }
 
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
-    [[nodiscard]] JointView view() const override;
+    [[nodiscard]] DUCTILE_INLINE JointView view() const override;
 
     // ---- Bullet's side
 
     void buildJacobian() override { settle(); }
-    void getInfo1(btConstraintInfo1* info) override;
-    void getInfo2(btConstraintInfo2* info) override;
+    DUCTILE_INLINE void getInfo1(btConstraintInfo1* info) override;
+    DUCTILE_INLINE void getInfo2(btConstraintInfo2* info) override;
     /// The hinge's own parameters are set at the hinge.
     void setParam(int, btScalar, int = -1) override {}
     [[nodiscard]] btScalar getParam(int, int = -1) const override { return 0; }
@@ -61,16 +62,16 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
   protected:
     MotorConstraint(AxisJoint& joint, btHingeConstraint& hinge, AtBreak at_break);
     /// Gives the motor back as it was; one that has broken stays off.
-    ~MotorConstraint() override;
+    DUCTILE_INLINE ~MotorConstraint() override;
 
-    void settle() const override;
+    DUCTILE_INLINE void settle() const override;
     void restored(double position);
 
   private:
     void end_tick() override { settle(); }
     void settle_tick();
     [[nodiscard]] bool acts() const override { return is_awake() && hinge_.isEnabled(); }
-    void add_speeds(JointReport<double>& report) const override;
+    DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
     /// Columns, world; z about the hinge's axis.
     [[nodiscard]] Matrix3<double> axes() const;

@@ -42,6 +42,7 @@
 #include "ductile/bullet/held_forces.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/stepped_world.hpp"
 
 namespace ductile::bullet {
@@ -83,15 +84,15 @@ class World final : public SteppedWorld {
 
     // ---- what SteppedWorld asks of Bullet
 
-    void require_possible(double dt) override;
-    void do_part(double dt, const ForceShare& how, const Effort& effort) override;
+    DUCTILE_INLINE void require_possible(double dt) override;
+    DUCTILE_INLINE void do_part(double dt, const ForceShare& how, const Effort& effort) override;
     void hold_forces() override { forces_.hold(world_); }
     void apply_held_forces() override { forces_.apply(); }
-    [[nodiscard]] int iterations() const override;
-    void set_iterations(int iterations) override;
-    void suspect(const void* joint) override;
-    void finish(const Effort& effort) override;
-    [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override;
+    [[nodiscard]] DUCTILE_INLINE int iterations() const override;
+    DUCTILE_INLINE void set_iterations(int iterations) override;
+    DUCTILE_INLINE void suspect(const void* joint) override;
+    DUCTILE_INLINE void finish(const Effort& effort) override;
+    [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;
 
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<SuspectSolver> suspect_solver_;

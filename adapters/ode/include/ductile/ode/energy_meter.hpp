@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
 namespace ductile::ode {
@@ -56,13 +57,13 @@ class EnergyMeter final : public ductile::EnergyMeter {
         bool lent;
     };
 
-    void list_bodies(std::vector<MeteredBody>& bodies) const override;
-    void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
-    void watch_step() override;
-    void list_joints(std::vector<MeteredJoint>& joints) const override;
-    void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
-    void end_watch() override;
-    [[nodiscard]] Vector3<double> gyroscopic_impulse(const MeteredBody& body,
+    DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;
+    DUCTILE_INLINE void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
+    DUCTILE_INLINE void watch_step() override;
+    DUCTILE_INLINE void list_joints(std::vector<MeteredJoint>& joints) const override;
+    DUCTILE_INLINE void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
+    DUCTILE_INLINE void end_watch() override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> gyroscopic_impulse(const MeteredBody& body,
                                                      double dt) const override;
     void take_feedback_back();
 

@@ -38,6 +38,7 @@
 #include "ductile/ode/motor_pose.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/axis_constraint.hpp"
 #include "ductile/world/axis_queries.hpp"
 
@@ -61,18 +62,18 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] dJointID id() const override { return row_.joint(); }
 
     /// @throws std::logic_error where somebody set a stop on the axis since it was taken over.
-    void check() const override;
+    DUCTILE_INLINE void check() const override;
     /// Sets the motor for a step of `dt` [s]. Called by World::step.
-    void prepare(double dt) override;
+    DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step; after a break lets go of the joint. Called by World::step.
-    void commit(double dt) override;
+    DUCTILE_INLINE void commit(double dt) override;
 
   protected:
     /// Takes over the motor `row`; where it is `owned`, its joint is destroyed with this object,
     /// else it has to outlive this object.
     /// @throws std::invalid_argument where the axis has a stop.
     OneAxisConstraint(AxisJoint& joint, const MotorAxis& row, AtBreak at_break, bool owned);
-    ~OneAxisConstraint() override;
+    DUCTILE_INLINE ~OneAxisConstraint() override;
 
     [[nodiscard]] const MotorAxis& row() const noexcept { return row_; }
     [[nodiscard]] const MotorPose& pose() const noexcept { return pose_; }
@@ -82,7 +83,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     /// Velocities that the rigid rows ask for in a step of `dt` [s], linear and angular, world
     /// axes; NaN where they are not known. ODE pulls the halves of a pin together by the world's
     /// ERP a step.
-    [[nodiscard]] virtual Vector6<double> rigid_target(double dt) const;
+    [[nodiscard]] DUCTILE_INLINE virtual Vector6<double> rigid_target(double dt) const;
     [[nodiscard]] double erp() const;
 
   private:
@@ -93,7 +94,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     /// Of the pin for hinges and universals, of the axis for a PlasticHinge; other rigid rows are
     /// not known.
     [[nodiscard]] double last_rigid_residual() const override { return rigid_residual_; }
-    void add_speeds(JointReport<double>& report) const override;
+    DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
     static bool has_stop(const MotorAxis& row);
     [[nodiscard]] bool may_act() const;

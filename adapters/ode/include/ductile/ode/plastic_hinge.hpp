@@ -19,6 +19,7 @@
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 
@@ -46,7 +47,7 @@ class HingeConstraint : public OneAxisConstraint {
   private:
     static dJointID make(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame);
     /// ODE pulls the axes together as it does the pin.
-    [[nodiscard]] Vector6<double> rigid_target(double dt) const override;
+    [[nodiscard]] DUCTILE_INLINE Vector6<double> rigid_target(double dt) const override;
 
     Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
 };

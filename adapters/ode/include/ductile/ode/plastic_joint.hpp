@@ -46,6 +46,7 @@
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/point_rows.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
 
@@ -69,9 +70,9 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] dJointID id() const override { return id_; }
 
     /// Sets the rows for a step of `dt` [s]. Called by World::step.
-    void prepare(double dt) override;
+    DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step; after a break lets go. Called by World::step.
-    void commit(double dt) override;
+    DUCTILE_INLINE void commit(double dt) override;
 
   protected:
     using Frame = JointFrame<double>;
@@ -90,7 +91,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
 
   private:
     [[nodiscard]] bool is_silent() const override { return silent_; }
-    [[nodiscard]] Vector6<double> velocities() const override;
+    [[nodiscard]] DUCTILE_INLINE Vector6<double> velocities() const override;
 
     [[nodiscard]] bool may_act() const;
     /// True where ODE did solve the rows: it wakes whatever hangs on a body that is awake.

@@ -39,6 +39,7 @@
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/stepped_world.hpp"
 
 namespace ductile::ode {
@@ -85,8 +86,8 @@ class World final : public SteppedWorld {
   private:
     // ---- what SteppedWorld asks of ODE
 
-    void require_possible(double dt) override;
-    void do_part(double dt, const ForceShare& how, const Effort& effort) override;
+    DUCTILE_INLINE void require_possible(double dt) override;
+    DUCTILE_INLINE void do_part(double dt, const ForceShare& how, const Effort& effort) override;
     void hold_forces() override { forces_.hold(bodies_); }
     void apply_held_forces() override { forces_.apply(); }
     [[nodiscard]] int iterations() const override {
