@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Checks that what the READMEs show is of the examples, which are built and run: readme_quotes.py REPOSITORY
 
-Every ```cpp block of README.md must stand, line by line and but for its indentation, in one file of examples/,
-and the lines of every ```text block of examples/README.md, in their order, in the output that a source's opening
+Every ```cpp block of README.md and examples/README.md must stand, line by line and but for its indentation, in one
+file of examples/, and the lines of every ```text block of examples/README.md, in their order, in the output that a source's opening
 comment expects or that is stored in a table.
 """
 
@@ -30,7 +30,8 @@ def printed(block, text):
 def main():
     root = Path(sys.argv[1])
     examples = [path.read_text() for path in sorted(root.glob("examples/*/*.cpp"))]
-    blocks = re.findall(r"^```cpp\n(.*?)^```", (root / "README.md").read_text(), re.M | re.S)
+    blocks = [block for readme in ("README.md", "examples/README.md")
+              for block in re.findall(r"^```cpp\n(.*?)^```", (root / readme).read_text(), re.M | re.S)]
     missing = [block for block in blocks if not any(stands_in(block, text) for text in examples)]
     expected = examples + [path.read_text() for path in sorted(root.glob("examples/*/results/table.txt"))]
     outputs = re.findall(r"^```text\n(.*?)^```", (root / "examples/README.md").read_text(), re.M | re.S)

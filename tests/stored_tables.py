@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: MIT
+"""The tables and figures of the READMEs, each made of one stored file; readme_figures.py compares them.
+
+A rule takes the path of its file and returns a table in Markdown, a fenced text, or a list of figures. With another
+measurement a table changes by itself; with other columns or names its rule has to.
+"""
+
+import csv
+import gzip
+import re
+from collections import Counter
+
+BLOCK = re.compile(r"```\w*\n(?:.*\n)*?```|.+(?:\n.+)*")
+OURS = ("plastic-", "elastic-plastic")
+GAINED = ("energy-gained", "blown-up")
+GROUPS = {"Bullet, direct (`SoftMlcpSolver`, btMLCPSolver), double": ("mlcp double", "soft-mlcp double"),
+          "the same, float": ("mlcp float", "soft-mlcp float"),
+          "Bullet, sequential impulse and mended NNCG, double and float":
+              ("si double", "si float", "soft-nncg double", "soft-nncg float"),
+          "Bullet's own NNCG, double and float": ("nncg double", "nncg float"),
+          "ODE, dWorldStep and dWorldQuickStep": ("direct double", "quick double")}
+NAMES = {"plastic-hinge": "hinge", "plastic-joint": "six axes"}
+# our joint and the engine's own for the same task
+TASKS = {"bullet": {"plastic-hinge": "hinge-motor", "plastic-joint": "spring2"},
+         "ode": {"plastic-hinge": "hinge-motor", "plastic-joint": "fixed"}}
+
+
+def text_of(path):
+    return (gzip.open(path, "rt") if path.suffix == ".gz" else open(path)).read()
+
+
+def rows_of(path):
+    return list(csv.DictReader(text_of(path).splitlines()))
+
+
+def each(rows, *columns):
+    """What stands in the columns, each once and in the order of the file."""
+    return list(dict.fromkeys(tuple(row[column] for column in columns) for row in rows))
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(map(str, row)) + " |" for row in [head, *rows]]
+    return "\n".join([lines[0], "|---" * len(head) + "|", *lines[1:]])
+
+
+def is_ours(row):
+    return row["method"].startswith(OURS)
+
+
+def whole(path):
+    return "```text\n" + "\n".join(line.rstrip() for line in text_of(path).splitlines()) + "\n```"
+
+
+def section(path, heading):
+    return BLOCK.search(text_of(path).split(f"## {heading}\n")[1].lstrip()).group()
+
+
+def fixed_steps(path):
+    """The Charpy test's plastic hinge at fixed steps, direct solvers in double."""
+    rows = [row for row in rows_of(path) if (row["method"], row["scalar"]) == ("plastic-hinge", "double")]
+    found = {(row["engine"], row["step ms"]): row for row in rows if row["step ms"] != "adaptive"}
+
+    def cells(row):
+        work, loss = row["plastic work J"], row["hammer loss J"]
+        return work, loss, f"{float(loss) - float(work):.2f}"
+
+    head = ["step [ms]"] + [f"{engine} {what} [J]" for engine in ("Bullet", "ODE")
+                            for what in ("plastic work", "hammer loss", "difference")]
+    return table(head, [[step, *cells(found["bullet", step]), *cells(found["ode", step])]
+                        for step in dict.fromkeys(step for _, step in found)])
+
+
+def at_game_step(path):
+    """The best errors at 1/60 s, and what 1 % costs with steps that are fixed and of first order."""
+    rows = [row for row in rows_of(path) if row["quantity"] != "absorbed_energy"]
+
+    def best(rows, column):
+        return min(float(row[column]) for row in rows if row[column])
+
+    def error(rows, column):
+        return "exact" if best(rows, column) < 1e-9 else f"{100 * best(rows, column):.2g} %"
+
+    lines = []
+    for (scene,) in each(rows, "scene"):
+        ours = [row for row in rows if row["scene"] == scene and is_ours(row)]
+        others = [row for row in rows if row["scene"] == scene and not is_ours(row)]
+        fixed = [row for row in ours if not row["method"].endswith(("-leapfrog", "-adaptive"))]
+        lines.append([scene, *[error(side, column) for side in (ours, others)
+                               for column in ("error_at_60Hz", "energy_error_at_60Hz")],
+                      f"{best(fixed, 'cost_0.01') / best(others, 'cost_0.01'):.2f}"])
+    return table(["scene", "ours: motion", "energy", "others: motion", "energy", "cost of 1 %, ours / other"], lines)
+
+
+def counts(path):
+    """Cells by solver, whose and class; those that were not run left out."""
+    return Counter((f"{row['solver']} {row['precision']}", is_ours(row),
+                    "gained" if row["class"] in GAINED else row["class"])
+                   for row in rows_of(path) if row["class"] != "not-finished")
+
+
+def cells(path):
+    found = counts(path)
+
+    def count(group, ours, *classes):
+        return sum(n for (solver, whose, kind), n in found.items()
+                   if solver in group and whose == ours and (kind in classes or not classes))
+
+    return table(["cells", "right", "refused", "wrong", "gained energy or blew up", "others': right",
+                  "others': gained energy or blew up"],
+                 [[name, f"{count(group, True, 'right')} of {count(group, True)}", count(group, True, "refused"),
+                   count(group, True, "off", "drift", "jitter"), count(group, True, "gained"),
+                   f"{count(group, False, 'right')} of {count(group, False)}", count(group, False, "gained")]
+                  for name, group in GROUPS.items()])
+
+
+def totals(path):
+    """Our cells: all, right, refused, with energy gained."""
+    ours = [(kind, n) for (_, whose, kind), n in counts(path).items() if whose]
+    return [sum(n for _, n in ours), *[sum(n for kind, n in ours if kind == wanted)
+                                       for wanted in ("right", "refused", "gained")]]
+
+
+def alarms(path):
+    return [re.search(r"said to be unreliable: (\d+)", text_of(path)).group(1)]
+
+
+def cost_ratios(rows):
+    """Time of our joint over that of the engine's own: by column, set-up and number of joints."""
+    time = {(row["engine"], row["precision"], row["joint"], row["islands"] == "1", row["count"]):
+            float(row["ns_per_joint_step"]) for row in rows}
+    return {(f"{NAMES[joint]}, {engine} {precision}", f"{'chain' if chain else 'flowing pairs'}, {count}"):
+            took / time[engine, precision, TASKS[engine][joint], chain, count]
+            for (engine, precision, joint, chain, count), took in time.items() if joint in NAMES}
+
+
+def joint_cost(path):
+    ratios = cost_ratios(rows_of(path))
+    joints, set_ups = (list(dict.fromkeys(key[i] for key in ratios)) for i in (0, 1))
+    joints.sort(key=lambda joint: joint.split(", ")[0])
+    return table(["", *joints], [[set_up, *[f"{ratios[joint, set_up]:.2f}" for joint in joints]]
+                                 for set_up in set_ups])
+
+
+def dearest(path):
+    """Least and most of what a joint costs beside the engine's own, where ours are dearest."""
+    ratios = cost_ratios(rows_of(path))
+    wanted = (("six axes, bullet double", "pairs"), ("hinge, ode double", ""), ("six axes, ode double", ""))
+    ranges = [[ratio for (joint, set_up), ratio in ratios.items() if joint == name and where in set_up]
+              for name, where in wanted]
+    return [f"{end(of):.1f}" for of in ranges for end in (min, max)]
+
+
+def instructions(path):
+    """Ours / the engine's own = ratio, of the last state that is stored."""
+    rows = rows_of(path)
+    last = "after" if any(row["state"] == "after" for row in rows) else "before"
+    rows = [row for row in rows if row["state"] == last and row["own"]]
+    found = {(row["engine"], row["precision"], row["library"], row["joint"], row["set_up"]): row for row in rows}
+
+    def cell(row):
+        return f"{float(row['ours']):.0f} / {float(row['own']):.0f} = {float(row['ratio']):.2f}" if row else "-"
+
+    set_ups = [set_up for (set_up,) in each(rows, "set_up")]
+    return table(["joint", "engine", *[set_up.replace("-", " ") for set_up in set_ups]],
+                 [[f"`{joint}`", f"{engine} {precision}, {library}",
+                   *[cell(found.get((engine, precision, library, joint, set_up))) for set_up in set_ups]]
+                  for engine, precision, library, joint in each(rows, "engine", "precision", "library", "joint")])
+
+
+def scaling(path):
+    """Of 100,000 joints: microseconds of the world's step per joint, and kilobytes of a joint."""
+    rows = [row for row in rows_of(path) if row["joints"] == "100000"]
+    found = {(row["engine"], row["precision"], row["method"], row["yielding"]): row for row in rows}
+    builds = each(rows, "engine", "precision")
+
+    def cells(*key):
+        time = [f"{float(row['ns_per_joint_step']) / 1000:.1f}" if row else "-"
+                for row in (found[*key, "0"], found.get((*key, "1")))]
+        return *time, f"{float(found[*key, '0']['bytes_heap']) / 1000:.1f}"
+
+    return table(["joint", *[f"{' '.join(build)}: {what}" for build in builds
+                             for what in ("none yields [µs]", "all yield [µs]", "[kB]")]],
+                 [[f"`{method}`", *[cell for build in builds for cell in cells(*build, method)]]
+                  for (method,) in each(rows, "method")])
+
+
+def detail(path):
+    """The choices that keep their tolerance, and their cost beside the cheapest model that does."""
+    chosen = [row for row in rows_of(path) if row["chosen"] == "1"]
+
+    def line(name, rows):
+        within = [sum(float(row["cost_ratio"]) <= most for row in rows) for most in (1.2, 1.5)]
+        return [name, len(rows), sum(row["meets"] == "1" for row in rows), *within]
+
+    builds = each(chosen, "engine", "precision")
+    return table(["engine", "choices", "keep the tolerance", "cost at most 1.2 of the cheapest", "at most 1.5"],
+                 [line(" ".join(build), [row for row in chosen if (row["engine"], row["precision"]) == build])
+                  for build in builds] + [line("all", chosen)])
