@@ -21,7 +21,9 @@ namespace ductile::bullet {
 
 [[nodiscard]] inline Matrix3<double> to_core(const btMatrix3x3& m) noexcept {
     Matrix3<double> result;
-    for (int row = 0; row < 3; ++row) result.row(row) = to_core(m[row]).transpose();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) result(row, column) = double(m[row][column]);
+    }
     return result;
 }
 
@@ -34,8 +36,11 @@ namespace ductile::bullet {
 }
 
 [[nodiscard]] inline btTransform to_bullet(const JointFrame<double>& frame) noexcept {
+    const Matrix3<double>& m = frame.axes;
     btMatrix3x3 axes;
-    for (int row = 0; row < 3; ++row) axes[row] = to_bullet(frame.axes.row(row).transpose());
+    for (int row = 0; row < 3; ++row) {
+        axes[row] = btVector3(btScalar(m(row, 0)), btScalar(m(row, 1)), btScalar(m(row, 2)));
+    }
     return btTransform(axes, to_bullet(frame.origin));
 }
 
@@ -78,13 +83,17 @@ namespace ductile::bullet {
 /// The velocities that the body would have after a tick of `dt` [s] if nothing held it.
 [[nodiscard]] inline BodyState<double> free_state(const btRigidBody& body, double dt) noexcept {
     BodyState<double> state = body_state(body);
-    state.velocity += dt * state.inverse_mass * to_core(body.getTotalForce());
-    state.spin += dt * state.inverse_inertia * to_core(body.getTotalTorque());
+    const Vector3<double> force = to_core(body.getTotalForce());
+    const Vector3<double> torque = to_core(body.getTotalTorque());
+    state.velocity = sum(state.velocity, scaled(dt * state.inverse_mass, force));
+    state.spin = sum(state.spin, scaled(dt, times(state.inverse_inertia, torque)));
     if (!(state.inverse_mass > 0)) return state;
     if (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) {
-        state.spin += to_core(body.computeGyroscopicImpulseImplicit_Body(btScalar(dt)));
+        state.spin =
+            sum(state.spin, to_core(body.computeGyroscopicImpulseImplicit_Body(btScalar(dt))));
     } else if (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD) {
-        state.spin += to_core(body.computeGyroscopicImpulseImplicit_World(btScalar(dt)));
+        state.spin =
+            sum(state.spin, to_core(body.computeGyroscopicImpulseImplicit_World(btScalar(dt))));
     }
     return state;
 }

@@ -34,15 +34,14 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
         const btRigidBody* body = btRigidBody::upcast(objects[i]);
         if (body == nullptr || body->isStaticOrKinematicObject()) continue;
         const Matrix3<double> axes = to_core(body->getCenterOfMassTransform().getBasis());
-        const Matrix3<double> scaled = axes * to_core(body->getLocalInertia()).asDiagonal();
         MeteredBody& entry = bodies.emplace_back();
         entry.body = body;
         entry.position = to_core(body->getCenterOfMassPosition());
         entry.velocity = to_core(body->getLinearVelocity());
         entry.spin = to_core(body->getAngularVelocity());
         entry.mass = double(body->getMass());
-        entry.inertia = scaled * axes.transpose();
-        entry.weight = entry.mass * to_core(body->getGravity());
+        entry.inertia = sandwiched(axes, to_core(body->getLocalInertia()));
+        entry.weight = scaled(entry.mass, to_core(body->getGravity()));
         entry.force = to_core(body->getTotalForce());
         entry.torque = to_core(body->getTotalTorque());
     }
@@ -104,7 +103,7 @@ DUCTILE_INLINE void EnergyMeter::list_contacts(double /*dt*/,
             contacts.push_back(
                 {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
                  to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
-                 double(point.m_appliedImpulse) * to_core(point.m_normalWorldOnB),
+                 scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
                  to_core(lateral)});
         }
     }
@@ -116,23 +115,19 @@ DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody
                                                                double dt) const {
     const int flags = static_cast<const btRigidBody*>(body.body)->getFlags();
     if ((flags & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) == 0) return Vector3<double>::Zero();
-    const auto cross = [](const Vector3<double>& v) {
-        Matrix3<double> m;
-        m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-        return m;
-    };
-    const Vector3<double> momentum = body.inertia * body.spin;
-    const Matrix3<double> turned = cross(body.spin) * body.inertia;
-    const Matrix3<double> jacobian = body.inertia + dt * (turned - cross(momentum));
-    const Vector3<double> wanted = dt * body.spin.cross(momentum);
+    const Vector3<double> momentum = times(body.inertia, body.spin);
+    const Matrix3<double> turned = times(skew(body.spin), body.inertia);
+    const Matrix3<double> jacobian =
+        sum(body.inertia, scaled(dt, difference(turned, skew(momentum))));
+    const Vector3<double> wanted = scaled(dt, cross(body.spin, momentum));
     const Vector3<double> change = numeric::Lu<double, 3>(jacobian).solve(wanted);
-    return -(body.inertia * change);
+    return scaled(-1, times(body.inertia, change));
 }
 
 DUCTILE_INLINE void EnergyMeter::damp(MeteredBody& body, double dt) const {
     const auto& of = *static_cast<const btRigidBody*>(body.body);
-    body.velocity *= std::pow(1 - double(of.getLinearDamping()), dt);
-    body.spin *= std::pow(1 - double(of.getAngularDamping()), dt);
+    body.velocity = scaled(std::pow(1 - double(of.getLinearDamping()), dt), body.velocity);
+    body.spin = scaled(std::pow(1 - double(of.getAngularDamping()), dt), body.spin);
 }
 
 } // namespace ductile::bullet

@@ -180,10 +180,10 @@ DUCTILE_INLINE Vector6<double> JointConstraint::reaction_of_own_rows() {
     const Vector6<double> forces = forces_of_impulses(order_, decoupled_.get(), impulses(), dt_);
     if (m_jointFeedback != nullptr) {
         const LinkPose<double>& pose = link_.pose();
-        const Vector3<double> force = pose.axes() * forces.head<3>();
-        const Vector3<double> moment = pose.axes() * forces.tail<3>();
+        const Vector3<double> force = times(pose.axes(), linear(forces));
+        const Vector3<double> moment = times(pose.axes(), angular(forces));
         write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
-                       force * tick_share_, moment * tick_share_);
+                       scaled(tick_share_, force), scaled(tick_share_, moment));
     }
     return forces;
 }

@@ -54,7 +54,8 @@ inline void write_moment(btTypedConstraint::btConstraintInfo2& info, int at,
 inline void write_jacobian(btTypedConstraint::btConstraintInfo2& info, int at,
                            const Vector3<double>& arm_a, const Vector3<double>& arm_b,
                            const Vector3<double>& along, const Vector3<double>& about) noexcept {
-    const Vector3<double> on_a = arm_a.cross(along) + about, on_b = arm_b.cross(along) + about;
+    const Vector3<double> on_a = sum(cross(arm_a, along), about);
+    const Vector3<double> on_b = sum(cross(arm_b, along), about);
     for (int i = 0; i < 3; ++i) {
         info.m_J1linearAxis[at + i] = btScalar(along[i]);
         info.m_J1angularAxis[at + i] = btScalar(on_a[i]);
@@ -78,12 +79,13 @@ inline void write_given(btTypedConstraint::btConstraintInfo2& info, int row,
 inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
                           const btRigidBody& b, const Vector3<double>& joint,
                           const JointImpulse<double>& impulse) noexcept {
-    const Vector3<double> arm_a = joint - to_core(a.getCenterOfMassPosition());
-    const Vector3<double> arm_b = joint - to_core(b.getCenterOfMassPosition());
+    const Vector3<double> arm_a = difference(joint, to_core(a.getCenterOfMassPosition()));
+    const Vector3<double> arm_b = difference(joint, to_core(b.getCenterOfMassPosition()));
     const Vector3<double> none = Vector3<double>::Zero();
     for (int row = 0; row < 6; ++row) {
         const bool turns = row >= 3;
-        const Vector3<double> unit = Vector3<double>::Unit(row % 3);
+        Vector3<double> unit = none;
+        unit[row % 3] = 1;
         if (turns) {
             write_moment(info, row * info.rowskip, unit);
         } else {
@@ -97,15 +99,14 @@ inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRi
 [[nodiscard]] inline double inverse_mass_of(const LinkRow<double>& row, const btRigidBody& a,
                                             const btRigidBody& b,
                                             const Vector3<double>& joint) noexcept {
-    double sum = 0;
+    double result = 0;
     for (const btRigidBody* body : {&a, &b}) {
-        const Vector3<double> arm = joint - to_core(body->getCenterOfMassPosition());
-        const Vector3<double> n =
-            row.turns ? row.direction : Vector3<double>(arm.cross(row.direction));
-        sum += n.dot(to_core(body->getInvInertiaTensorWorld()) * n);
-        if (!row.turns) sum += double(body->getInvMass());
+        const Vector3<double> arm = difference(joint, to_core(body->getCenterOfMassPosition()));
+        const Vector3<double> n = row.turns ? row.direction : cross(arm, row.direction);
+        result += dot(n, times(to_core(body->getInvInertiaTensorWorld()), n));
+        if (!row.turns) result += double(body->getInvMass());
     }
-    return sum;
+    return result;
 }
 
 /// Impulse of a force over a step, within what Bullet takes for infinite [N s | N m s].
@@ -173,13 +174,14 @@ inline void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const An
     const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
     int at = 0;
     for (const CombinedRow<double>& row : combined) {
-        const Vector3<double> about = pose.axes() * row.moment;
-        double target = row.moment.dot(turning);
-        if (row.force.isZero(0)) {
+        const Vector3<double> about = times(pose.axes(), row.moment);
+        double target = dot(row.moment, turning);
+        if (is_zero(row.force)) {
             write_moment(info, at, about);
         } else {
-            write_jacobian(info, at, pose.arm_a(), pose.arm_b(), pose.axes() * row.force, about);
-            target += row.force.dot(moving);
+            const Vector3<double> along = times(pose.axes(), row.force);
+            write_jacobian(info, at, pose.arm_a(), pose.arm_b(), along, about);
+            target += dot(row.force, moving);
         }
         info.m_constraintError[at] = btScalar(target);
         info.cfm[at] = 0;
@@ -210,12 +212,12 @@ inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
         limits.lower *= dt;
         limits.upper *= dt;
         if (decoupled == nullptr) {
-            const Vector3<double> direction = axes.col(Eigen::Index(order[i] % 3));
+            const Vector3<double> direction = column(axes, int(order[i] % 3));
             order[i] < 3 ? sweep.add(direction, none, limits) : sweep.add(none, direction, limits);
         } else {
             const CombinedRow<double>& row = decoupled->rows()[i];
-            limits.bias = row.force.dot(moving) + row.moment.dot(turning);
-            sweep.add(axes * row.force, axes * row.moment, limits);
+            limits.bias = dot(row.force, moving) + dot(row.moment, turning);
+            sweep.add(times(axes, row.force), times(axes, row.moment), limits);
         }
     }
     if (dimension > 1) sweep.join_last(dimension);
@@ -231,8 +233,11 @@ inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
         if (decoupled == nullptr) {
             forces[Eigen::Index(order[i])] = force;
         } else {
-            forces.head<3>() += force * decoupled->rows()[i].force;
-            forces.tail<3>() += force * decoupled->rows()[i].moment;
+            const CombinedRow<double>& row = decoupled->rows()[i];
+            for (int k = 0; k < 3; ++k) {
+                forces[k] += force * row.force[k];
+                forces[3 + k] += force * row.moment[k];
+            }
         }
     }
     return forces;

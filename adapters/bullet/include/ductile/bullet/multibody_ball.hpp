@@ -15,7 +15,6 @@
 // for elastic rows.
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -88,9 +87,8 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     /// Turns the link's axes to the parent's, relative to the link's zero.
     [[nodiscard]] Matrix3<double> orientation() const noexcept {
         const btScalar* q = body().getJointPosMultiDof(link());
-        return Eigen::Quaterniond(double(q[3]), double(q[0]), double(q[1]), double(q[2]))
-            .normalized()
-            .toRotationMatrix();
+        return ductile::detail::to_matrix(ductile::detail::UnitQuaternion<double>{
+            double(q[3]), {double(q[0]), double(q[1]), double(q[2])}});
     }
 
     void prepare(const Tick& tick, std::span<RowLimits<double>> limits) override {

@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "ductile/bullet/convert.hpp"
+#include <LinearMath/btVector3.h>
 
 namespace ductile::bullet {
 
@@ -21,10 +21,13 @@ namespace ductile::bullet {
     std::vector<btVector3> spin(links + 1), velocity(links + 1); // in each link's own axes
     body.compTreeLinkVelocities(spin.data(), velocity.data());
     const auto energy = [&](std::size_t i, btScalar mass, const btVector3& inertia) {
-        const Vector3<double> w = to_core(spin[i]);
-        return (double(mass) * to_core(velocity[i]).squaredNorm() +
-                w.dot(to_core(inertia).cwiseProduct(w))) /
-               2;
+        const btVector3 v = velocity[i], w = spin[i];
+        double twice = 0;
+        for (int k = 0; k < 3; ++k) {
+            twice += double(mass) * double(v[k]) * double(v[k]);
+            twice += double(inertia[k]) * double(w[k]) * double(w[k]);
+        }
+        return twice / 2;
     };
     double sum = body.hasFixedBase() ? 0 : energy(0, body.getBaseMass(), body.getBaseInertia());
     for (std::size_t i = 0; i < links; ++i) {

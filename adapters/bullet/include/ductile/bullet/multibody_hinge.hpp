@@ -78,7 +78,7 @@ class MultiBodyPlasticHinge final : public MultiBodyPlasticConstraint {
         last_ = joint_.commit({moment_, velocity[0], rotation()}, dt);
         if (!broken()) return;
         moment_ = 0;
-        if (last_.release > 0) hand_back(last_.release, Values::UnitX());
+        if (last_.release > 0) hand_back(last_.release, {1, 0, 0});
     }
 
     Joint joint_;

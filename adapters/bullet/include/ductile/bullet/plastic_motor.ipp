@@ -50,10 +50,9 @@ DUCTILE_INLINE JointView MotorConstraint::view() const {
 }
 
 DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) const {
-    const Vector3<double> axis = axes().col(2);
     const Vector3<double> spin =
-        to_core(m_rbA.getAngularVelocity()) - to_core(m_rbB.getAngularVelocity());
-    report.rotation_rate = std::abs(axis.dot(spin));
+        difference(to_core(m_rbA.getAngularVelocity()), to_core(m_rbB.getAngularVelocity()));
+    report.rotation_rate = std::abs(dot(column(axes(), 2), spin));
 }
 
 // ---- Bullet's side
@@ -90,9 +89,8 @@ DUCTILE_INLINE Vector3<double> MotorConstraint::pivot() const {
     return to_core(m_rbA.getCenterOfMassTransform() * hinge_.getAFrame().getOrigin());
 }
 DUCTILE_INLINE double MotorConstraint::turning() const {
-    const Vector3<double> spin =
-        to_core(m_rbA.getAngularVelocity()) - to_core(m_rbB.getAngularVelocity());
-    return axis_.dot(spin);
+    return dot(axis_, difference(to_core(m_rbA.getAngularVelocity()),
+                                 to_core(m_rbB.getAngularVelocity())));
 }
 DUCTILE_INLINE double MotorConstraint::measure(double predicted) const {
     const btMatrix3x3 a =
@@ -107,18 +105,17 @@ DUCTILE_INLINE Matrix6<double> MotorConstraint::inverse_mass() const {
 }
 DUCTILE_INLINE Vector6<double> MotorConstraint::twist(const BodyState<double>& a,
                                                       const BodyState<double>& b) const {
-    const Vector3<double> at = pivot(), arm_a = at - a.position, arm_b = at - b.position;
-    Vector6<double> result;
-    result.head<3>() = a.velocity + a.spin.cross(arm_a) - b.velocity - b.spin.cross(arm_b);
-    result.tail<3>() = a.spin - b.spin;
-    return result;
+    const Vector3<double> at = pivot();
+    const auto velocity = [&at](const BodyState<double>& body) {
+        return sum(body.velocity, cross(body.spin, difference(at, body.position)));
+    };
+    return twist_of(difference(velocity(a), velocity(b)), difference(a.spin, b.spin));
 }
 DUCTILE_INLINE double MotorConstraint::moment_alone() const {
     const Vector6<double> free = twist(free_state(m_rbA, tick_), free_state(m_rbB, tick_));
-    const Matrix3<double> to_axes = axes().transpose();
-    Vector6<double> along_axes;
-    along_axes.head<3>() = to_axes * free.head<3>();
-    along_axes.tail<3>() = to_axes * free.tail<3>();
+    const Matrix3<double> frame = axes();
+    const Vector6<double> along_axes =
+        twist_of(transposed_times(frame, linear(free)), transposed_times(frame, angular(free)));
     std::array<RowLimits<double>, 6> rows{};
     rows[index(JointAxis::torsion)] = limits_;
     return forces_of_isolated_pair(rows, inverse_mass(), along_axes,
@@ -130,7 +127,7 @@ DUCTILE_INLINE double MotorConstraint::moment_alone() const {
 DUCTILE_INLINE void MotorConstraint::prepare() {
     tick_ = double(world_->getSolverInfo().m_timeStep);
     dt_ = force_share_.value * tick_;
-    axis_ = axes().col(2);
+    axis_ = column(axes(), 2);
     position_ = measure(position_);
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
@@ -161,17 +158,18 @@ DUCTILE_INLINE void MotorConstraint::read_own_row() {
     if (m_jointFeedback == nullptr) return;
     const Vector3<double> none = Vector3<double>::Zero();
     write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none,
-                   axis_ * (impulses()[0] / tick_));
+                   scaled(impulses()[0] / tick_, axis_));
 }
 
 DUCTILE_INLINE void MotorConstraint::hand_back() {
     const BodyState<double> a = body_state(m_rbA), b = body_state(m_rbB);
-    Vector6<double> direction = Vector6<double>::Zero();
-    direction.tail<3>() = axes().col(2);
+    const auto at_pivot = [this](const BodyState<double>& body) {
+        return BodyAtJoint<double>{body.inverse_mass, body.inverse_inertia,
+                                   difference(pivot(), body.position)};
+    };
+    const Vector6<double> direction = twist_of(Vector3<double>(0, 0, 0), column(axes(), 2));
     release_ =
-        break_release(BodyAtJoint<double>{a.inverse_mass, a.inverse_inertia, pivot() - a.position},
-                      BodyAtJoint<double>{b.inverse_mass, b.inverse_inertia, pivot() - b.position},
-                      direction, twist(a, b), joint_.last().release);
+        break_release(at_pivot(a), at_pivot(b), direction, twist(a, b), joint_.last().release);
     apply(m_rbA, release_.a);
     apply(m_rbB, release_.b);
 }

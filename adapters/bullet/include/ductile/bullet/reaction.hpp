@@ -39,10 +39,9 @@ struct ReactionArm {
         const btVector3 one(1, 1, 1);
         return body.getLinearFactor() == one && body.getAngularFactor() == one;
     };
-    const Vector3<double> arm_a = joint - to_core(a.getCenterOfMassPosition());
-    const Vector3<double> arm_b = joint - to_core(b.getCenterOfMassPosition());
-    const bool from_b =
-        feels_all(b) && (!feels_all(a) || arm_b.squaredNorm() < arm_a.squaredNorm());
+    const Vector3<double> arm_a = difference(joint, to_core(a.getCenterOfMassPosition()));
+    const Vector3<double> arm_b = difference(joint, to_core(b.getCenterOfMassPosition()));
+    const bool from_b = feels_all(b) && (!feels_all(a) || dot(arm_b, arm_b) < dot(arm_a, arm_a));
     return {from_b, from_b ? arm_b : arm_a};
 }
 
@@ -52,22 +51,19 @@ struct ReactionArm {
                                                     const ReactionArm& from,
                                                     const AnyLink<double>& link,
                                                     double share) noexcept {
-    const Vector3<double> force = from.from_b
-                                      ? Vector3<double>(-to_core(feedback.m_appliedForceBodyB))
-                                      : to_core(feedback.m_appliedForceBodyA);
-    const Vector3<double> torque = from.from_b
-                                       ? Vector3<double>(-to_core(feedback.m_appliedTorqueBodyB))
-                                       : to_core(feedback.m_appliedTorqueBodyA);
+    const Vector3<double> force =
+        to_core(from.from_b ? -feedback.m_appliedForceBodyB : feedback.m_appliedForceBodyA);
+    const Vector3<double> torque =
+        to_core(from.from_b ? -feedback.m_appliedTorqueBodyB : feedback.m_appliedTorqueBodyA);
     const Vector3<double>& arm = from.arm;
-    const Vector3<double> moment = torque - arm.cross(force);
+    const Vector3<double> moment = difference(torque, cross(arm, force));
     constexpr double round_off = 8 * double(std::numeric_limits<btScalar>::epsilon());
     Vector6<double> result;
     for (const JointAxis axis : all_joint_axes) {
         const LinkRow<double> row = link.row(axis);
-        double value = row.direction.dot(row.turns ? moment : force) / share;
+        double value = dot(row.direction, row.turns ? moment : force) / share;
         const double round_off_of_value =
-            round_off * (row.turns ? torque.norm() + arm.norm() * force.norm() : force.norm()) /
-            share;
+            round_off * (row.turns ? norm(torque) + norm(arm) * norm(force) : norm(force)) / share;
         for (const double bound : {row.limits.lower, row.limits.upper}) {
             if (std::abs(value - bound) <= round_off_of_value) value = bound;
         }

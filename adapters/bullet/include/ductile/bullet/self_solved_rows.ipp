@@ -23,7 +23,9 @@ DUCTILE_INLINE SweptBody<double> swept_body(const btRigidBody& body, const Vecto
                             to_core(body.getInvInertiaTensorWorld()), arm};
     if (body.getAngularFactor() != btVector3(1, 1, 1)) {
         const Vector3<double> f = to_core(body.getAngularFactor());
-        swept.inverse_inertia = f.asDiagonal() * swept.inverse_inertia * f.asDiagonal();
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) swept.inverse_inertia(i, j) *= f[i] * f[j];
+        }
     }
     return swept;
 }
@@ -68,11 +70,15 @@ DUCTILE_INLINE void SelfSolvedRows::sweep(btSolverBody& a, btSolverBody& b) {
     const SweptVelocities<double> already{
         to_core(a.internalGetDeltaLinearVelocity()), to_core(a.internalGetDeltaAngularVelocity()),
         to_core(b.internalGetDeltaLinearVelocity()), to_core(b.internalGetDeltaAngularVelocity())};
+    const auto with = [](const Vector3<double>& v, const btVector3& more,
+                         const btVector3& outside) {
+        return sum(sum(v, to_core(more)), to_core(outside));
+    };
     const SweptVelocities<double> now{
-        already.linear_a + to_core(a.m_linearVelocity) + to_core(a.m_externalForceImpulse),
-        already.angular_a + to_core(a.m_angularVelocity) + to_core(a.m_externalTorqueImpulse),
-        already.linear_b + to_core(b.m_linearVelocity) + to_core(b.m_externalForceImpulse),
-        already.angular_b + to_core(b.m_angularVelocity) + to_core(b.m_externalTorqueImpulse)};
+        with(already.linear_a, a.m_linearVelocity, a.m_externalForceImpulse),
+        with(already.angular_a, a.m_angularVelocity, a.m_externalTorqueImpulse),
+        with(already.linear_b, b.m_linearVelocity, b.m_externalForceImpulse),
+        with(already.angular_b, b.m_angularVelocity, b.m_externalTorqueImpulse)};
     double asked = 0;
     Impulses impulses = impulses_;
     const SweptVelocities<double> more = rows.sweep(now, impulses, asked);
@@ -98,10 +104,11 @@ DUCTILE_INLINE void write_feedback(btJointFeedback& feedback, const btRigidBody&
                                    const Vector3<double>& arm_b, const Vector3<double>& force,
                                    const Vector3<double>& moment) {
     feedback.m_appliedForceBodyA = to_bullet(force) * a.getLinearFactor();
-    feedback.m_appliedForceBodyB = to_bullet(-force) * b.getLinearFactor();
-    feedback.m_appliedTorqueBodyA = to_bullet(arm_a.cross(force) + moment) * a.getAngularFactor();
+    feedback.m_appliedForceBodyB = -to_bullet(force) * b.getLinearFactor();
+    feedback.m_appliedTorqueBodyA =
+        to_bullet(sum(cross(arm_a, force), moment)) * a.getAngularFactor();
     feedback.m_appliedTorqueBodyB =
-        to_bullet(-(arm_b.cross(force) + moment)) * b.getAngularFactor();
+        -to_bullet(sum(cross(arm_b, force), moment)) * b.getAngularFactor();
 }
 
 } // namespace ductile::bullet
