@@ -3,12 +3,17 @@
 // What of the adapter for Bullet is compiled once (DUCTILE_COMPILED), in either precision.
 #include <ductile/bullet/bullet.hpp>
 
+#include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/energy_meter.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/kept_mass.ipp>
+#include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
 #include <ductile/bullet/self_solved_rows.ipp>
+#include <ductile/bullet/shifted_lcp.ipp>
+#include <ductile/bullet/soft_mlcp_solver.ipp>
+#include <ductile/bullet/suspect_solver.ipp>
 #include <ductile/bullet/world.ipp>
 
 namespace ductile::bullet {

@@ -103,7 +103,7 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
         moment_ = force;
         last_ = joint_.commit({force, velocity, tracker_.follow(orientation())}, dt);
         if (!broken()) return;
-        moment_.setZero();
+        moment_ = {0, 0, 0};
         if (last_.release > 0) hand_back(last_.release, last_.direction);
     }
 

@@ -35,27 +35,20 @@
 // Not thread-safe beyond what Bullet guarantees for a constraint.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraint.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <span>
-#include <stdexcept>
-#include <vector>
 
-#include "ductile/bullet/convert.hpp"
-#include "ductile/numeric/lu.hpp"
-#include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/row.hpp"
+#include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_report.hpp"
 
 namespace ductile::bullet {
@@ -85,28 +78,8 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     /// Adds the constraint and its end-of-tick commit to a world. The multibody and its colliders
     /// must be in the world.
     /// @throws std::invalid_argument where Bullet would never solve it.
-    void add_to(btMultiBodyDynamicsWorld& world) {
-        if (collider() == nullptr) {
-            throw std::invalid_argument(
-                "MultiBodyPlasticConstraint.body: must have a collider that is not static, or "
-                "Bullet never solves its joints");
-        }
-        if (!world.getSimulationIslandManager()->getSplitIslands()) {
-            throw std::invalid_argument(
-                "MultiBodyPlasticConstraint.world: must split islands, or Bullet never solves the "
-                "joints of multibodies");
-        }
-        world.addMultiBodyConstraint(this);
-        world.addAction(&action_);
-        world_ = &world;
-    }
-    void remove_from(btMultiBodyDynamicsWorld& world) {
-        world.removeAction(&action_);
-        world.removeAction(&release_action_);
-        world.removeMultiBodyConstraint(this);
-        world_ = nullptr;
-        phase_ = Phase::idle;
-    }
+    void add_to(btMultiBodyDynamicsWorld& world);
+    void remove_from(btMultiBodyDynamicsWorld& world);
 
     [[nodiscard]] btMultiBody& body() const noexcept { return *m_bodyA; }
     [[nodiscard]] int link() const noexcept { return m_linkA; }
@@ -125,11 +98,7 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     /// @throws std::invalid_argument where the multibody has no such link or that has not `rows`
     /// degrees of freedom of the type.
     MultiBodyPlasticConstraint(btMultiBody& body, int link, int rows,
-                               btMultibodyLink::eFeatherstoneJointType type, const char* wanted)
-        // arguments are evaluated in any order: none may read a link that is not there
-        : btMultiBodyConstraint(&body, &body, link,
-                                body.getLink(checked(body, link, type, wanted)).m_parent, rows,
-                                true, MAX_MULTIBODY_CONSTRAINT_TYPE) {}
+                               btMultibodyLink::eFeatherstoneJointType type, const char* wanted);
 
     /// What the rows are given at the start of a tick.
     struct Tick {
@@ -148,20 +117,18 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     template <class Joint, class JointStep>
     [[nodiscard]] JointReport<double> report_of(const Joint& joint, const JointStep& last,
                                                 Outcome outcome) const noexcept {
-        auto now =
-            joint_report<double>(joint.state(), last, joint.fracture(), outcome, 0.0);
-        if (!broken()) now.rotation_rate = velocity().cwiseAbs().maxCoeff();
+        auto now = joint_report<double>(joint.state(), last, joint.fracture(), outcome, 0.0);
+        if (!broken()) {
+            for (int i = 0; i < m_numRows; ++i) {
+                now.rotation_rate = std::max(now.rotation_rate, std::abs(velocity()[i]));
+            }
+        }
         return asleep() ? idle_report(now) : now;
     }
 
     /// Gives energy >= 0 [J] to the motion along `direction` of the link's degrees of freedom when
     /// all joints of the world have committed the tick.
-    void hand_back(double energy, const Values& direction) {
-        release_.energy = energy;
-        release_direction_ = direction;
-        // Bullet calls actions in the order they were added, also those added meanwhile
-        if (world_ != nullptr) world_->addAction(&release_action_);
-    }
+    void hand_back(double energy, const Values& direction);
 
   private:
     /// idle -> watched: u is known -> asked: rows are with the solver -> idle
@@ -178,162 +145,49 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     struct ReleaseAction final : btActionInterface {
         explicit ReleaseAction(MultiBodyPlasticConstraint& owner) : owner_(owner) {}
         void updateAction(btCollisionWorld*, btScalar) override {
-            if (owner_.release_.impulse.isZero(0)) owner_.apply_release();
+            if (is_zero(owner_.release_.impulse)) owner_.apply_release();
         }
         void debugDraw(btIDebugDraw*) override {}
         MultiBodyPlasticConstraint& owner_;
     };
 
-    /// Faster than any joint: a row that wants it ends at its bound.
-    static constexpr double out_of_reach = 1e6;
-
     static int checked(const btMultiBody& body, int link,
-                       btMultibodyLink::eFeatherstoneJointType type, const char* wanted) {
-        if (link < 0 || link >= body.getNumLinks() || body.getLink(link).m_jointType != type) {
-            check::fail("MultiBodyPlasticConstraint.link", double(link), "", wanted);
-        }
-        return link;
-    }
+                       btMultibodyLink::eFeatherstoneJointType type, const char* wanted);
 
     /// Index of the row's degree of freedom in Bullet's velocity vector.
     [[nodiscard]] int column(int row) const noexcept {
         return 6 + m_bodyA->getLink(m_linkA).m_dofOffset + row;
     }
-    [[nodiscard]] Values velocity() const noexcept {
-        Values u = Values::Zero();
-        for (int i = 0; i < m_numRows; ++i) u[i] = double(m_bodyA->getJointVelMultiDof(m_linkA)[i]);
-        return u;
-    }
+    [[nodiscard]] Values velocity() const noexcept;
 
     /// By whose island the rows are found: nearest towards the base, else any.
-    [[nodiscard]] const btMultiBodyLinkCollider* collider() const noexcept {
-        const auto moves = [](const btMultiBodyLinkCollider* c) {
-            return c != nullptr && !c->isStaticOrKinematicObject();
-        };
-        for (int i = m_linkA; i >= 0; i = m_bodyA->getLink(i).m_parent) {
-            if (moves(m_bodyA->getLink(i).m_collider)) return m_bodyA->getLink(i).m_collider;
-        }
-        for (int i = 0; i < m_bodyA->getNumLinks(); ++i) {
-            if (moves(m_bodyA->getLink(i).m_collider)) return m_bodyA->getLink(i).m_collider;
-        }
-        return moves(m_bodyA->getBaseCollider()) ? m_bodyA->getBaseCollider() : nullptr;
-    }
+    [[nodiscard]] const btMultiBodyLinkCollider* collider() const noexcept;
 
     // ---- Bullet's side
-    // ---------------------------------------------------------------------------
-    void finalizeMultiDof() override {
-        allocateJacobiansMultiDof();
-        for (int i = 0; i < m_data.size(); ++i) m_data[i] = 0;
-        for (int i = 0; i < m_numRows; ++i) jacobianA(i)[column(i)] = 1;
-        m_numDofsFinalized = m_jacSizeBoth;
-    }
 
+    DUCTILE_INLINE void finalizeMultiDof() override;
     /// Bullet asks first while it makes islands, before this tick's forces change the velocities.
-    int getIslandIdA() const override {
-        if (phase_ == Phase::idle) {
-            tick_.velocity = velocity();
-            phase_ = Phase::watched;
-        }
-        const btMultiBodyLinkCollider* c = collider();
-        return c != nullptr ? c->getIslandTag() : -1;
-    }
+    DUCTILE_INLINE int getIslandIdA() const override;
     int getIslandIdB() const override { return getIslandIdA(); }
     void debugDraw(btIDebugDraw*) override {}
-
-    void createConstraintRows(btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
-                              const btContactSolverInfo& info) override {
-        if (m_jacSizeA != 6 + m_bodyA->getNumDofs()) finalizeMultiDof();
-        phase_ = Phase::asked;
-        if (broken()) return;
-        const int first = rows.size();
-        for (int i = 0; i < m_numRows; ++i) open_row(rows.expandNonInitializing(), i, data, info);
-        response_.setIdentity();
-        for (int i = 0; i < m_numRows; ++i) {
-            const btScalar* answer =
-                &data.m_deltaVelocitiesUnitImpulse[rows[first + i].m_jacAindex + column(0)];
-            for (int j = 0; j < m_numRows; ++j) response_(j, i) = double(answer[j]);
-        }
-        tick_.response = response_;
-        tick_.dt = double(info.m_timeStep);
-        std::array<RowLimits<double>, 3> limits;
-        prepare(tick_, std::span(limits).first(std::size_t(m_numRows)));
-        for (int i = 0; i < m_numRows; ++i) close_row(rows[first + i], limits[std::size_t(i)]);
-    }
+    DUCTILE_INLINE void createConstraintRows(btMultiBodyConstraintArray& rows,
+                                             btMultiBodyJacobianData& data,
+                                             const btContactSolverInfo& info) override;
 
     /// Jacobian, response and free velocity, by Bullet's own means.
     void open_row(btMultiBodySolverConstraint& row, int i, btMultiBodyJacobianData& data,
-                  const btContactSolverInfo& info) {
-        const btVector3 none(0, 0, 0);
-        const btMultibodyLink& link = m_bodyA->getLink(m_linkA);
-        // the world axis is for Bullet's joint feedback only
-        const btVector3 axis = link.m_cachedWorldTransform.getBasis() * link.getAxisTop(i);
-        fillMultiBodyConstraint(row, data, jacobianA(i), jacobianB(i), axis, none, none, none, 0,
-                                info, 0, 0, true);
-        row.m_orgConstraint = this;
-        row.m_orgDofIndex = i;
-        row.m_solverBodyIdA = row.m_solverBodyIdB = -1;
-    }
-
+                  const btContactSolverInfo& info);
     /// The row  (A + C) λ = b - u_free  inside its bounds. A force that is given, lower = upper, is
     /// asked for as a bound that the row cannot but reach, because Dantzig's method wants 0 inside
     /// them.
     void close_row(btMultiBodySolverConstraint& row,
-                   const RowLimits<double>& limits) const noexcept {
-        if (!(row.m_jacDiagABInv > 0)) return;
-        const double response = 1 / double(row.m_jacDiagABInv);
-        const double free_velocity = -double(row.m_rhs) * response;
-        const double stiff = response + limits.compliance;
-        const bool given = limits.lower == limits.upper;
-        const double target = given ? std::copysign(out_of_reach, limits.upper) : limits.bias;
-        const double lower = given ? std::min(limits.lower, 0.0) : limits.lower;
-        const double upper = given ? std::max(limits.upper, 0.0) : limits.upper;
-        row.m_jacDiagABInv = btScalar(1 / stiff);
-        row.m_rhs = btScalar((target - free_velocity) / stiff);
-        row.m_cfm = btScalar(limits.compliance / stiff);
-        row.m_lowerLimit = btScalar(lower * tick_.dt);
-        row.m_upperLimit = btScalar(upper * tick_.dt);
-    }
-
+                   const RowLimits<double>& limits) const noexcept;
     /// End of the tick.
-    void settle() {
-        const Phase was = phase_;
-        phase_ = Phase::idle;
-        left_out_ = was == Phase::watched && !asleep();
-        if (was != Phase::asked || broken()) return;
-        Values force = Values::Zero();
-        for (int i = 0; i < m_numRows; ++i) force[i] = double(getAppliedImpulse(i)) / tick_.dt;
-        commit(force, velocity(), tick_.dt);
-    }
-
+    void settle();
     /// The impulse h Δu with h = (J M⁻¹ Jᵀ)⁻¹ e along e; see ductile::release_impulse. Its work is
     /// impulse · (u + u')/2.
-    void apply_release() {
-        const Values along = release_direction_.normalized();
-        const Values held = numeric::inverse(response_) * along; // zero for rows that are not there
-        const double mass = along.dot(held);
-        const double momentum = held.dot(velocity());
-        const double root = std::sqrt(momentum * momentum + 2 * mass * release_.energy);
-        if (!(mass > 0) || !std::isfinite(mass) || !(root > 0)) return;
-        release_.impulse =
-            held * std::copysign(2 * release_.energy / (std::abs(momentum) + root), momentum);
-
-        const auto size = std::size_t(m_jacSizeA);
-        std::vector<btScalar> impulse(size, 0), change(size, 0);
-        for (int i = 0; i < m_numRows; ++i) {
-            impulse[std::size_t(column(i))] = btScalar(release_.impulse[i]);
-        }
-        btAlignedObjectArray<btScalar> scratch;
-        btAlignedObjectArray<btVector3> scratch_vectors;
-        // with the articulated inertias of this tick, as the solver had them
-        m_bodyA->calcAccelerationDeltasMultiDof(impulse.data(), change.data(), scratch,
-                                                scratch_vectors);
-        m_bodyA->applyDeltaVeeMultiDof(change.data(), 1);
-    }
-
-    [[nodiscard]] bool asleep() const noexcept {
-        const btMultiBodyLinkCollider* c = collider();
-        return c != nullptr && c->getActivationState() == ISLAND_SLEEPING;
-    }
+    void apply_release();
+    [[nodiscard]] bool asleep() const noexcept;
 
     CommitAction action_{*this};
     ReleaseAction release_action_{*this};
@@ -342,8 +196,12 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
     mutable Phase phase_ = Phase::idle;
     Matrix3<double> response_ = Matrix3<double>::Identity();
     MultiBodyRelease release_;
-    Values release_direction_ = Values::UnitX();
+    Values release_direction_{1, 0, 0};
     bool left_out_ = false;
 };
 
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/multibody_constraint.ipp"
+#endif

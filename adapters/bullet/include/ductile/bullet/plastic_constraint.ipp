@@ -5,6 +5,7 @@
 
 #include "ductile/bullet/draw.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/precision_check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
@@ -12,7 +13,9 @@ namespace ductile::bullet {
 // no built-in type: Bullet casts by type, e.g. when it draws
 DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b,
                                                     bool parts_bodies)
-    : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b), parts_bodies_(parts_bodies) {}
+    : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b), parts_bodies_(parts_bodies) {
+    require_matching_precision();
+}
 
 DUCTILE_INLINE void PlasticConstraint::enter(btDynamicsWorld& world,
                                              bool disable_collisions_between_bodies) {

@@ -27,24 +27,23 @@
 //     is left out.
 #pragma once
 
-#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
-#include <algorithm>
 #include <array>
 #include <type_traits>
 #include <vector>
 
 #include "ductile/bullet/shifted_lcp.hpp"
 #include "ductile/bullet/soft_rows.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
-/// Shares of its own effect by which a row yields, tried in turn [-]. Rows that repeat each other, as
-/// those of a beam held at both ends, would leave a direct solver to divide by round-off; they then
-/// share their force, and a single row is off by this share. Only where Dantzig's method failed
-/// without: what it can solve changes no bit. In float, structures of up to 30 rows are solved best
-/// from 1e-7, its round-off, to 3e-6, and less and less well beyond.
+/// Shares of its own effect by which a row yields, tried in turn [-]. Rows that repeat each other,
+/// as those of a beam held at both ends, would leave a direct solver to divide by round-off; they
+/// then share their force, and a single row is off by this share. Only where Dantzig's method
+/// failed without: what it can solve changes no bit. In float, structures of up to 30 rows are
+/// solved best from 1e-7, its round-off, to 3e-6, and less and less well beyond.
 template <class Scalar>
 inline constexpr auto row_softness = [] {
     if constexpr (std::is_same_v<Scalar, float>) {
@@ -61,136 +60,47 @@ inline constexpr int fallback_sweeps = 200;
 class SoftMlcpSolver : public btMLCPSolver {
   public:
     /// `lcp` must outlive this. `answer`: whether it is a direct solver, whose answers are checked.
-    SoftMlcpSolver(btMLCPSolverInterface& lcp, Answer answer)
-        : btMLCPSolver(nullptr),
-          shifted_(lcp, answer),
-          direct_(answer == Answer::exact),
-          pivots_(dynamic_cast<btDantzigSolver*>(&lcp) != nullptr) {
-        btMLCPSolver::setMLCPSolver(&shifted_);
-    }
+    SoftMlcpSolver(btMLCPSolverInterface& lcp, Answer answer);
     SoftMlcpSolver(const SoftMlcpSolver&) = delete;
     SoftMlcpSolver& operator=(const SoftMlcpSolver&) = delete;
 
     void setMLCPSolver(btMLCPSolverInterface*) = delete; // it would take the shift away
 
   protected:
-    btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
-                                               btPersistentManifold** manifolds,
-                                               int manifold_count, btTypedConstraint** constraints,
-                                               int constraint_count,
-                                               const btContactSolverInfo& info,
-                                               btIDebugDraw* drawer) override {
-        btContactSolverInfo enough = info;
-        if (direct_) { // and does not read it
-            enough.m_numIterations = std::max(info.m_numIterations, fallback_sweeps);
-        }
-        return btMLCPSolver::solveGroupCacheFriendlyIterations(
-            bodies, body_count, manifolds, manifold_count, constraints, constraint_count, enough,
-            drawer);
-    }
+    DUCTILE_INLINE btScalar solveGroupCacheFriendlyIterations(
+        btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+        int manifold_count, btTypedConstraint** constraints, int constraint_count,
+        const btContactSolverInfo& info, btIDebugDraw* drawer) override;
 
-    void convertJoints(btTypedConstraint** constraints, int count,
-                       const btContactSolverInfo& info) override {
-        soft_.mark(constraints, count);
-        btMLCPSolver::convertJoints(constraints, count, info);
-        soft_.unmark();
-        compliant_.clear();
-        soft_.for_each_row(m_tmpConstraintSizesPool, m_tmpSolverNonContactConstraintPool,
-                           [this](btSolverConstraint& row) {
-                               if (row.m_cfm > 0) compliant_.push_back(row_index(row));
-                           });
-        drop_constraints_without_rows();
-    }
+    DUCTILE_INLINE void convertJoints(btTypedConstraint** constraints, int count,
+                                      const btContactSolverInfo& info) override;
 
-    void createMLCP(const btContactSolverInfo& info) override {
-        btMLCPSolver::createMLCP(info);
-        add_compliance();
-    }
-    void createMLCPFast(const btContactSolverInfo& info) override {
-        btMLCPSolver::createMLCPFast(info);
-        add_compliance();
-    }
+    DUCTILE_INLINE void createMLCP(const btContactSolverInfo& info) override;
+    DUCTILE_INLINE void createMLCPFast(const btContactSolverInfo& info) override;
 
-    bool solveMLCP(const btContactSolverInfo& info) override {
-        if (m_A.rows() == 0) return true;
-        if (!solved_with_ties([&] { return solve_velocities(info); })) {
-            if (direct_) sweep_joints(info.m_numIterations);
-            return false;
-        }
-        if (info.m_splitImpulse) push_apart(info);
-        return true;
-    }
+    DUCTILE_INLINE bool solveMLCP(const btContactSolverInfo& info) override;
 
   private:
     /// Sequential impulse, which takes over, leaves each joint's rows after a number of their own.
-    void sweep_joints(int at_least) {
-        for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
-            int& sweeps = m_tmpSolverNonContactConstraintPool[i].m_overrideNumSolverIterations;
-            sweeps = std::max(sweeps, at_least);
-        }
-    }
+    void sweep_joints(int at_least);
 
-    [[nodiscard]] int row_index(const btSolverConstraint& row) const {
-        return int(&row - &m_tmpSolverNonContactConstraintPool[0]);
-    }
+    [[nodiscard]] int row_index(const btSolverConstraint& row) const;
 
-    void drop_constraints_without_rows() {
-        int kept = 0;
-        for (int i = 0; i < m_tmpConstraintSizesPool.size(); ++i) {
-            if (m_tmpConstraintSizesPool[i].m_numConstraintRows == 0) continue;
-            m_tmpConstraintSizesPool[kept++] = m_tmpConstraintSizesPool[i];
-        }
-        m_tmpConstraintSizesPool.resizeNoInitialize(kept);
-    }
+    void drop_constraints_without_rows();
 
     /// In A, and in the rows in case sequential impulse has to take over.
-    void add_compliance() {
-        for (const int i : compliant_) {
-            btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[i];
-            m_A.setElem(i, i, m_A(i, i) + row.m_cfm);
-            soften(row);
-        }
-    }
+    void add_compliance();
 
-    /// Whether `solve` succeeds, at last with every row yielding to its own impulse by a share too small
-    /// to matter: rows that repeat each other, joints' or contacts', become independent.
+    /// Whether `solve` succeeds, at last with every row yielding to its own impulse by a share too
+    /// small to matter: rows that repeat each other, joints' or contacts', become independent.
     template <class Solve>
-    bool solved_with_ties(const Solve& solve) {
-        if (solve()) return true;
-        if (!pivots_) return false;
-        for (const btScalar share : row_softness<btScalar>) {
-            for (int i = 0; i < m_A.rows(); ++i) m_A.setElem(i, i, m_A(i, i) * (1 + share));
-            if (solve()) return true;
-        }
-        return false;
-    }
+    bool solved_with_ties(const Solve& solve);
 
-    bool solve_velocities(const btContactSolverInfo& info) {
-        return shifted_.solveMLCP(m_A, m_b, m_x, m_lo, m_hi, m_limitDependencies,
-                                  info.m_numIterations);
-    }
+    bool solve_velocities(const btContactSolverInfo& info);
 
-    /// The push apart of what overlaps: the same rows, whose right side is a contact's depth. Where it
-    /// cannot be solved nothing is pushed in this step; the velocities, which are, stay.
-    void push_apart(const btContactSolverInfo& info) {
-        bool nothing_to_push = true;
-        for (int i = 0; i < m_bSplit.rows(); ++i) {
-            nothing_to_push = nothing_to_push && m_bSplit[i] == 0;
-        }
-        m_xSplit.setZero();
-        if (nothing_to_push) return;
-        for (int i = 0; i < m_lo.rows(); ++i) {
-            if (m_limitDependencies[i] >= 0) continue;
-            const btScalar given = std::min(std::max(btScalar(0), m_lo[i]), m_hi[i]);
-            m_lo[i] -= given;
-            m_hi[i] -= given;
-        }
-        const bool solved = solved_with_ties([&] {
-            return shifted_.solveMLCP(m_A, m_bSplit, m_xSplit, m_lo, m_hi, m_limitDependencies,
-                                      info.m_numIterations);
-        });
-        if (!solved) m_xSplit.setZero();
-    }
+    /// The push apart of what overlaps: the same rows, whose right side is a contact's depth. Where
+    /// it cannot be solved nothing is pushed in this step; the velocities, which are, stay.
+    void push_apart(const btContactSolverInfo& info);
 
     ShiftedLcp shifted_;
     bool direct_;
@@ -202,3 +112,7 @@ class SoftMlcpSolver : public btMLCPSolver {
 };
 
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/soft_mlcp_solver.ipp"
+#endif

@@ -16,15 +16,14 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 
-#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
 #include "ductile/bullet/soft_mlcp_solver.hpp"
 #include "ductile/bullet/sweep_group.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
@@ -43,45 +42,22 @@ class SuspectSolver final : public btConstraintSolver, public ProxySolver {
     void trust_all() noexcept { suspects_.clear(); }
 
     /// Islands that a direct solver was given and did not solve: the iterative one took over.
-    [[nodiscard]] int fallbacks() const {
-        const std::lock_guard lock(mutex_);
-        int sum = 0;
-        for (const auto& direct : idle_) sum += direct->solver.getNumFallbacks();
-        return sum;
-    }
+    [[nodiscard]] int fallbacks() const;
 
     // ---- Bullet's side
 
     void prepareSolve(int bodies, int manifolds) override {
         usual_.prepareSolve(bodies, manifolds);
     }
-    btScalar solveGroup(btCollisionObject** bodies, int body_count,
-                        btPersistentManifold** manifolds, int manifold_count,
-                        btTypedConstraint** constraints, int constraint_count,
-                        const btContactSolverInfo& info, btIDebugDraw* drawer,
-                        btDispatcher* dispatcher) override {
-        const auto solve = [&](btConstraintSolver& solver) {
-            return solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
-                                     constraint_count, info, drawer, dispatcher);
-        };
-        const bool has_suspect =
-            !suspects_.empty() && std::any_of(constraints, constraints + constraint_count,
-                                             [this](const btTypedConstraint* constraint) {
-                                                 return suspects_.count(constraint) > 0;
-                                             });
-        if (!has_suspect) return solve(usual_);
-        auto direct = borrow();
-        const btScalar result = solve(direct->solver);
-        give_back(std::move(direct));
-        return result;
-    }
+    DUCTILE_INLINE btScalar solveGroup(btCollisionObject** bodies, int body_count,
+                                       btPersistentManifold** manifolds, int manifold_count,
+                                       btTypedConstraint** constraints, int constraint_count,
+                                       const btContactSolverInfo& info, btIDebugDraw* drawer,
+                                       btDispatcher* dispatcher) override;
     void allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) override {
         usual_.allSolved(info, drawer);
     }
-    void reset() override {
-        usual_.reset();
-        for (auto& direct : idle_) direct->solver.reset();
-    }
+    DUCTILE_INLINE void reset() override;
     [[nodiscard]] btConstraintSolverType getSolverType() const override {
         return usual_.getSolverType();
     }
@@ -92,17 +68,8 @@ class SuspectSolver final : public btConstraintSolver, public ProxySolver {
         SoftMlcpSolver solver{dantzig, Answer::exact};
     };
 
-    std::unique_ptr<Direct> borrow() {
-        const std::lock_guard lock(mutex_);
-        if (idle_.empty()) return std::make_unique<Direct>();
-        auto result = std::move(idle_.back());
-        idle_.pop_back();
-        return result;
-    }
-    void give_back(std::unique_ptr<Direct> direct) {
-        const std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(direct));
-    }
+    std::unique_ptr<Direct> borrow();
+    void give_back(std::unique_ptr<Direct> direct);
 
     btConstraintSolver& usual_;
     std::unordered_set<const void*> suspects_;
@@ -111,3 +78,7 @@ class SuspectSolver final : public btConstraintSolver, public ProxySolver {
 };
 
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/suspect_solver.ipp"
+#endif

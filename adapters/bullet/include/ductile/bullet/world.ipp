@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ductile/bullet/force_share.hpp"
+#include "ductile/bullet/precision_check.hpp"
 #include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -47,6 +48,7 @@ void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Re
 
 DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
     : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
+    require_matching_precision();
     if (parameters.effort.action == OnUnconverged::direct_solver) {
         require_exchangeable_solver();
         suspect_solver_ = std::make_unique<SuspectSolver>(*world_.getConstraintSolver());
