@@ -23,6 +23,7 @@
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 namespace ductile::numeric {
 
@@ -35,7 +36,8 @@ class Cholesky {
 
     /// To be assigned to; not a factorisation.
     Cholesky() = default;
-    explicit Cholesky(const Matrix& a) noexcept : succeeded_(true) {
+    explicit Cholesky(const Matrix& a) noexcept : succeeded_(true), regular_(true) {
+        constexpr S epsilon = std::numeric_limits<S>::epsilon();
         for (int j = 0; j < N; ++j) {
             std::array<S, std::size_t(N)> scaled{}; // row j of L D
             S pivot = a(j, j);
@@ -44,6 +46,7 @@ class Cholesky {
                 pivot -= l_(j, k) * scaled[std::size_t(k)];
             }
             succeeded_ = succeeded_ && pivot > 0;
+            regular_ = regular_ && pivot * pivot > epsilon * a(j, j) * a(j, j);
             d_[j] = pivot;
             inverse_d_[j] = 1 / pivot;
             for (int i = j + 1; i < N; ++i) {
@@ -56,6 +59,9 @@ class Cholesky {
 
     /// True where A was positive definite, to round-off; else solutions mean nothing.
     [[nodiscard]] bool succeeded() const noexcept { return succeeded_; }
+    /// True where A is so far from singular that no more than half of the digits of any entry of D
+    /// cancelled.
+    [[nodiscard]] bool regular() const noexcept { return succeeded_ && regular_; }
 
     /// x with A x = b.
     [[nodiscard]] Vector solve(const Vector& b) const noexcept {
@@ -84,7 +90,7 @@ class Cholesky {
     Matrix l_; ///< below the diagonal
     Vector d_;
     Vector inverse_d_;
-    bool succeeded_ = false;
+    bool succeeded_ = false, regular_ = false;
 };
 
 } // namespace ductile::numeric

@@ -6,6 +6,9 @@
 //
 //   Π A Πᵀ = L D Lᵀ,   x = Πᵀ L⁻ᵀ D⁺ L⁻¹ Π b,   D⁺: 1/d, and 0 where |d| is zero or denormal
 //
+// Where A is positive definite and far from singular the order of the pivots does not matter, and
+// none is looked for (cholesky.hpp).
+//
 // Limit cases: A positive definite: the solution; a row and column of zeros: its entry of x is
 // zero, whatever b, and the others are those of the system without it, so that a matrix of fewer
 // rows than N is filled up with zeros; A = 0: x = 0.
@@ -27,6 +30,8 @@
 #include <limits>
 #include <utility>
 
+#include "ductile/numeric/cholesky.hpp"
+
 namespace ductile::numeric {
 
 /// x with A x = b; a solution of the least-squares kind is not sought where there is none. Not
@@ -34,10 +39,11 @@ namespace ductile::numeric {
 template <std::floating_point S, int N>
 [[nodiscard]] Eigen::Matrix<S, N, 1> solve_semidefinite(const Eigen::Matrix<S, N, N>& a,
                                                         const Eigen::Matrix<S, N, 1>& b) noexcept {
+    if (const Cholesky<S, N> plain(a); plain.regular()) return plain.solve(b);
     std::array<int, std::size_t(N)> order; // row i of Π A is row order[i] of A
     const auto of = [&](int i) { return order[std::size_t(i)]; };
     Eigen::Matrix<S, N, N> l;
-    Eigen::Matrix<S, N, 1> d;
+    Eigen::Matrix<S, N, 1> d, inverse;
     for (int i = 0; i < N; ++i) {
         order[std::size_t(i)] = i;
         d[i] = a(i, i);
@@ -57,11 +63,11 @@ template <std::floating_point S, int N>
         }
         std::array<S, std::size_t(N)> scaled; // row k of L D
         for (int j = 0; j < k; ++j) scaled[std::size_t(j)] = l(k, j) * d[j];
-        const S inverse = 1 / d[k];
+        inverse[k] = 1 / d[k];
         for (int i = k + 1; i < N; ++i) {
             S left = a(of(i), of(k));
             for (int j = 0; j < k; ++j) left -= l(i, j) * scaled[std::size_t(j)];
-            l(i, k) = left * inverse;
+            l(i, k) = left * inverse[k];
             d[i] -= left * l(i, k);
         }
     }
@@ -72,7 +78,7 @@ template <std::floating_point S, int N>
     }
     Eigen::Matrix<S, N, 1> x = Eigen::Matrix<S, N, 1>::Zero();
     for (int i = rank - 1; i >= 0; --i) {
-        y[i] /= d[i];
+        y[i] *= inverse[i];
         for (int j = i + 1; j < rank; ++j) y[i] -= l(j, i) * y[j];
         x[of(i)] = y[i];
     }

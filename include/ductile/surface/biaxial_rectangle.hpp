@@ -29,6 +29,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 #include "ductile/surface/closest_point.hpp"
 #include "ductile/surface/surface.hpp"
@@ -101,15 +102,20 @@ class BiaxialRectangle {
         } else {
             return Matrix::Zero();
         }
-        Matrix m;
-        m << 1, 2 * y, 2 * x, 2 * y, 4 * yy, 4 * xy, 2 * x, 4 * xy, 4 * xx;
-        Vector signs;
-        for (int i = 0; i < 3; ++i) signs[i] = std::copysign(S(1), flow[i]);
         if (line.swapped) {
-            m.row(1).swap(m.row(2));
-            m.col(1).swap(m.col(2));
+            std::swap(x, y);
+            std::swap(xx, yy);
         }
-        return signs.asDiagonal() * (density * m) * signs.asDiagonal();
+        const S n = std::copysign(S(1), flow[0]);
+        const S up = std::copysign(S(2), flow[1]), aside = std::copysign(S(2), flow[2]);
+        Matrix m;
+        m(0, 0) = density;
+        m(1, 1) = density * 4 * yy;
+        m(2, 2) = density * 4 * xx;
+        m(0, 1) = m(1, 0) = density * n * up * y;
+        m(0, 2) = m(2, 0) = density * n * aside * x;
+        m(1, 2) = m(2, 1) = density * up * aside * xy;
+        return m;
     }
 
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {

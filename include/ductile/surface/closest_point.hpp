@@ -25,6 +25,7 @@
 #include <limits>
 
 #include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/small_vector.hpp"
 #include "ductile/surface/surface.hpp"
 
 namespace ductile {
@@ -46,6 +47,7 @@ template <CurvedSurface T>
     using S = typename T::Scalar;
     using Vector = typename T::Vector;
     using Matrix = typename T::Matrix;
+    constexpr int N = T::dimension;
     constexpr S epsilon = std::numeric_limits<S>::epsilon();
     constexpr int max_steps = 60;
     constexpr int max_halvings = 40;
@@ -54,40 +56,57 @@ template <CurvedSurface T>
     if (!(value > 1 + on_surface<S>)) return trial;
 
     // a stiffness of order one keeps K e, f and h(e) comparable whatever the units
-    const Matrix k = stiffness / (stiffness.trace() / S(T::dimension));
+    S mean = 0;
+    for (int i = 0; i < N; ++i) mean += stiffness(i, i) / S(N);
+    Matrix k;
+    for (int i = 0; i < N; ++i) {
+        for (int j = 0; j < N; ++j) k(i, j) = stiffness(i, j) / mean;
+    }
     const auto potential = [&](const Vector& e, const Vector& force) {
-        return e.dot(k * e) / 2 - e.dot(trial) + e.dot(force);
+        return numeric::dot(e, numeric::times(k, e)) / 2 - numeric::dot(e, trial) +
+               numeric::dot(e, force);
+    };
+    const auto norm = [](const Vector& x) { return std::sqrt(numeric::dot(x, x)); };
+    const auto moved = [](const Vector& from, S by, const Vector& along) {
+        Vector to;
+        for (int i = 0; i < N; ++i) to[i] = from[i] + by * along[i];
+        return to;
     };
 
     const Vector normal = surface.normal(trial);
-    Vector e = normal * ((value - 1) / normal.dot(k * normal));
+    const S first = (value - 1) / numeric::dot(normal, numeric::times(k, normal));
+    Vector e = moved(Vector::Zero(), first, normal);
     Vector force = surface.support(e);
+    const S size = norm(trial);
     for (int step = 0; step < max_steps; ++step) {
-        const Vector gradient = k * e - trial + force;
-        if (gradient.norm() <= 4 * epsilon * trial.norm()) return force;
-        const Matrix hessian = k + surface.support_slope(e);
-        const Vector change = -numeric::solve_semidefinite(hessian, gradient);
-        const S descent = change.dot(gradient);
+        const Vector downhill = moved(moved(trial, -1, force), -1, numeric::times(k, e)); // -∇φ
+        if (norm(downhill) <= 4 * epsilon * size) return force;
+        Matrix hessian = surface.support_slope(e);
+        for (int i = 0; i < N; ++i) {
+            for (int j = 0; j < N; ++j) hessian(i, j) += k(i, j);
+        }
+        const Vector change = numeric::solve_semidefinite(hessian, downhill);
+        const S descent = -numeric::dot(change, downhill);
         const S phi = potential(e, force);
-        const S noise = 8 * epsilon * (std::abs(phi) + e.norm() * trial.norm());
+        const S noise = 8 * epsilon * (std::abs(phi) + norm(e) * size);
         S part = 1;
-        Vector next = e + change;
+        Vector next = moved(e, 1, change);
         Vector next_force = surface.support(next);
         for (int halving = 0; halving < max_halvings; ++halving) {
             if (potential(next, next_force) <= phi + S(1e-4) * part * descent + noise) break;
             part /= 2;
-            next = e + part * change;
+            next = moved(e, part, change);
             next_force = surface.support(next);
         }
-        const bool settled = (next - e).norm() <= epsilon * e.norm();
+        const bool settled = part * norm(change) <= epsilon * norm(e);
         e = next;
         force = next_force;
         if (settled) break;
     }
     // where the surface is curved so sharply that round-off of e moves the support point
-    const Vector elastic = trial - k * e;
-    return (elastic - force).norm() > 64 * epsilon * trial.norm() ? elastic / surface.value(elastic)
-                                                                  : force;
+    const Vector elastic = moved(trial, -1, numeric::times(k, e));
+    if (!(norm(moved(elastic, -1, force)) > 64 * epsilon * size)) return force;
+    return elastic / surface.value(elastic);
 }
 
 } // namespace ductile

@@ -57,9 +57,13 @@ class Scaled {
     }
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
         if (!(value(force) > 1 + on_surface<Scalar>)) return force; // to the bit
-        const Vector d = capacity_.cwiseInverse();
-        return capacity_.cwiseProduct(
-            surface_.project(d.cwiseProduct(force), d.asDiagonal() * stiffness * d.asDiagonal()));
+        Matrix shares; // K₁
+        for (int j = 0; j < dimension; ++j) {
+            for (int i = 0; i < dimension; ++i) {
+                shares(i, j) = stiffness(i, j) / (capacity_[i] * capacity_[j]);
+            }
+        }
+        return capacity_.cwiseProduct(surface_.project(force.cwiseQuotient(capacity_), shares));
     }
     [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept
         requires ChordedSurface<Surface>

@@ -71,6 +71,22 @@ TEMPLATE_TEST_CASE("Cholesky says where a matrix is not positive definite", "", 
     CHECK(Cholesky<S, N>(Matrix::Identity()).succeeded());
 }
 
+TEST_CASE("Cholesky says where half of the digits of a pivot are gone") {
+    // the second pivot is 1 - a²
+    const auto regular = [](double a) {
+        Eigen::Matrix2d matrix;
+        matrix << 4, 2 * a, 2 * a, 1;
+        return Cholesky<double, 2>(matrix).regular();
+    };
+    CHECK(regular(0));
+    CHECK(regular(1 - 1e-7));
+    CHECK_FALSE(regular(1 - 1e-9));
+    CHECK_FALSE(regular(1));
+    CHECK_FALSE(regular(2));
+    CHECK_FALSE(regular(std::numeric_limits<double>::quiet_NaN()));
+    CHECK_FALSE(Cholesky<double, 2>().regular());
+}
+
 TEST_CASE("A matrix of fewer rows is filled up with those of 1") {
     std::mt19937 random(4);
     const Eigen::Matrix3d small = matrices::symmetric<double, 3>(Eigen::Vector3d(1, 2, 3), random);
