@@ -5,6 +5,8 @@
 // swing, which is the same for every method, does not enter the cost.
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "charpy/reference.hpp"
 #include "charpy/scenario.hpp"
 #include "scenes/scene.hpp"

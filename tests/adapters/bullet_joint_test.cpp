@@ -2,6 +2,7 @@
 //
 // PlasticJoint in Bullet: six coupled or rigid or elastic axes, reactions, and what the solvers
 // make of compliance. P03, P04, P07a, P23 are problems with closed-form answers.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 // go, save and restore, serialisation, drawing; ticks that are committed late.
 #include <LinearMath/btSerializer.h>
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -6,6 +6,7 @@
 // Compiled for every engine and precision (RIG_HEADER), run with every solver.
 #include RIG_HEADER
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -5,6 +5,7 @@
 // engine and precision (RIG_HEADER), run with every solver.
 #include RIG_HEADER
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -9,6 +9,7 @@
 // ends is three rows overdetermined out of its plane, as a user's would be.
 #include RIG_HEADER
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

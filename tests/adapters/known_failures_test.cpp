@@ -5,6 +5,7 @@
 // it, and its message says so. Nothing here depends on how long anything takes.
 //
 // Scenes, expected answers and methods are those of the bench.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

@@ -4,6 +4,7 @@
 // either way of attaching it, one or several plastic axes, and what is the user's stays the user's.
 #include "adapters/ode_rig.hpp"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -4,6 +4,7 @@
 // engine, with the rig's verbs (RIG_HEADER).
 #include RIG_HEADER
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

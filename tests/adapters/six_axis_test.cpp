@@ -3,6 +3,7 @@
 // The joint of six axes: what holds for every engine, with the rig's verbs (RIG_HEADER).
 #include RIG_HEADER
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

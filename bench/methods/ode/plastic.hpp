@@ -4,6 +4,7 @@
 // of six axes, whose other five are a hundred times as strong.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <optional>
 #include <utility>

@@ -170,7 +170,7 @@ DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,
     const Vector3<double> arm = point - course->start.position;
     const Vector3<double> spins = course->start.spin + course->spin_after;
     const Vector3<double> velocities = course->start.velocity + course->velocity_after;
-    return velocities + spins.cross(arm);
+    return sum(velocities, cross(spins, arm));
 }
 
 } // namespace ductile

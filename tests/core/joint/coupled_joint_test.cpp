@@ -2,6 +2,7 @@
 //
 // The coupled joint on a body whose axes are decoupled (diagonal mass), so that clamping solves the
 // rows exactly and every difference from the closed form is the joint's own.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <rapidcheck/catch.h>
 

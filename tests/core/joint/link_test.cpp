@@ -2,6 +2,7 @@
 //
 // A link in the smallest engine there is: two bodies, solved exactly.
 #include <rapidcheck/catch.h>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <cmath>

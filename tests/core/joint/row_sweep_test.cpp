@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <rapidcheck/catch.h>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <algorithm>

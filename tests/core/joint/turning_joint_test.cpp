@@ -2,6 +2,7 @@
 //
 // A joint that turns with its bodies, loaded below yield: what it holds is no flow. The velocity of
 // a row changes with the axes it is seen along, which nobody has kicked.
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
 #include <array>

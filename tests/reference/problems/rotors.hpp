@@ -7,6 +7,7 @@
 // short: that is the geometric rest position. The work-conjugate travel and the energy are exact.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: MIT
+#include <catch2/catch.hpp>
+
+#include "properties.hpp"
+
+TEST_CASE("yield surfaces keep what their concept promises, in double", "[surface]") {
+    ductile::test::check_all<double>();
+}
