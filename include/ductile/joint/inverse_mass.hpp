@@ -109,21 +109,32 @@ template <std::floating_point S>
 }
 
 /// h: impulse that changes the velocity along the unit `axis` by one, changes none along the
-/// columns of `held` (unit, at right angles to `axis` and each other), and has no part along any
-/// other direction. Its share along the axis, e·h, is the mass m that the row feels [kg | kg m²].
+/// first `count` <= 5 columns of `held` (unit, at right angles to `axis` and each other), and has no
+/// part along any other direction. Its share along the axis, e·h, is the mass m that the row feels [kg | kg m²].
 /// Zero where neither body can move.
 ///
 ///   h = B (Bᵀ K B)⁻¹ (0, ..., 0, 1)ᵀ,   B = (held, e);   with five axes held h = K⁻¹ e
-template <std::floating_point S, class Held>
+template <std::floating_point S>
 [[nodiscard]] Vector6<S> axis_response(const Matrix6<S>& k, const Vector6<S>& axis,
-                                       const Eigen::MatrixBase<Held>& held) noexcept {
-    const auto n = int(held.cols());
-    Matrix6<S> basis = Matrix6<S>::Zero(); // directions that are free ask for nothing
-    for (int i = 0; i < n; ++i) basis.col(i) = held.col(i);
-    basis.col(n) = axis;
-    const Matrix6<S> moved = k.lazyProduct(basis);
-    const Matrix6<S> projected = basis.transpose().lazyProduct(moved);
-    return basis * numeric::solve_semidefinite(projected, Vector6<S>(Vector6<S>::Unit(n)));
+                                       const Matrix6<S>& held, int count) noexcept {
+    const auto basis = [&](int i, int j) { return j < count ? held(i, j) : axis[i]; };
+    Matrix6<S> projected = Matrix6<S>::Zero(); // directions that are free ask for nothing
+    for (int j = 0; j <= count; ++j) {
+        Vector6<S> moved = Vector6<S>::Zero(); // K b_j
+        for (int l = 0; l < 6; ++l) {
+            for (int i = 0; i < 6; ++i) moved[i] += k(i, l) * basis(l, j);
+        }
+        for (int i = 0; i <= count; ++i) {
+            for (int l = 0; l < 6; ++l) projected(i, j) += basis(l, i) * moved[l];
+        }
+    }
+    Vector6<S> wanted = Vector6<S>::Zero(), result = Vector6<S>::Zero();
+    wanted[count] = 1;
+    const Vector6<S> shares = numeric::solve_semidefinite(projected, wanted);
+    for (int j = 0; j <= count; ++j) {
+        for (int i = 0; i < 6; ++i) result[i] += basis(i, j) * shares[j];
+    }
+    return result;
 }
 
 } // namespace ductile

@@ -13,8 +13,7 @@ namespace detail {
 /// Kinetic energy of a body with these velocities [J].
 DUCTILE_INLINE double kinetic_energy(const MeteredBody& body, const Vector3<double>& velocity,
                                      const Vector3<double>& spin) {
-    const Vector3<double> momentum = body.inertia * spin;
-    return body.mass * velocity.dot(velocity) / 2 + spin.dot(momentum) / 2;
+    return body.mass * dot(velocity, velocity) / 2 + dot(spin, times(body.inertia, spin)) / 2;
 }
 
 } // namespace detail
@@ -34,7 +33,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
     list_bodies(bodies_);
     for (const MeteredBody& body : bodies_) {
         result.kinetic += detail::kinetic_energy(body, body.velocity, body.spin);
-        result.potential -= body.weight.dot(body.position);
+        result.potential -= dot(body.weight, body.position);
     }
     return result;
 }
@@ -88,8 +87,8 @@ DUCTILE_INLINE EnergyMeter::Course* EnergyMeter::course_of(const void* body) {
 
 DUCTILE_INLINE void EnergyMeter::take_back(const void* body, const VelocityChange<double>& change) {
     if (Course* course = course_of(body)) {
-        course->velocity_after -= change.linear;
-        course->spin_after -= change.angular;
+        course->velocity_after = difference(course->velocity_after, change.linear);
+        course->spin_after = difference(course->spin_after, change.angular);
     }
 }
 
@@ -114,16 +113,15 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
         }
         return;
     }
-    const Vector3<double> velocities = start.velocity + course.velocity_after;
-    const Vector3<double> spins = start.spin + course.spin_after;
-    ledger_.supply(share * dt * (start.force.dot(velocities) + start.torque.dot(spins)) / 2);
+    const Vector3<double> velocities = sum(start.velocity, course.velocity_after);
+    const Vector3<double> spins = sum(start.spin, course.spin_after);
+    ledger_.supply(share * dt * (dot(start.force, velocities) + dot(start.torque, spins)) / 2);
 
-    const Vector3<double> moved = now.position - start.position;
-    const double potential = now.weight.dot(moved) - share * dt * now.weight.dot(velocities) / 2;
+    const Vector3<double> moved = difference(now.position, start.position);
+    const double potential = dot(now.weight, moved) - share * dt * dot(now.weight, velocities) / 2;
     const Vector3<double>& w = course.spin_after;
-    const Vector3<double> momentum_then = start.inertia * w, momentum_now = now.inertia * w;
-    const double turning = (w.dot(momentum_then) - w.dot(momentum_now)) / 2;
-    const double gyroscopic = -gyroscopic_impulse(start, dt).dot(spins) / 2;
+    const double turning = (dot(w, times(start.inertia, w)) - dot(w, times(now.inertia, w))) / 2;
+    const double gyroscopic = -dot(gyroscopic_impulse(start, dt), spins) / 2;
     ledger_.book(Account::integration, course.damped + potential + turning + gyroscopic);
 }
 
@@ -133,9 +131,9 @@ DUCTILE_INLINE double EnergyMeter::work(const void* body, const Vector3<double>&
     const Course* course = course_of(body);
     // an engine leaves what it told of a sleeping body's joint as it was
     if (course == nullptr || course->asleep_after) return 0;
-    const Vector3<double> velocities = course->start.velocity + course->velocity_after;
-    const Vector3<double> spins = course->start.spin + course->spin_after;
-    return dt / 2 * (force.dot(velocities) + torque.dot(spins));
+    const Vector3<double> velocities = sum(course->start.velocity, course->velocity_after);
+    const Vector3<double> spins = sum(course->start.spin, course->spin_after);
+    return dt / 2 * (dot(force, velocities) + dot(torque, spins));
 }
 
 DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt) {
@@ -157,19 +155,19 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
 }
 
 DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {
-    const Vector3<double> sum =
-        velocity_sum(contact.a, contact.point_a) - velocity_sum(contact.b, contact.point_b);
-    ledger_.book(Account::contact, -contact.normal.dot(sum) / 2);
-    ledger_.book(Account::friction, -contact.tangential.dot(sum) / 2);
+    const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
+                                             velocity_sum(contact.b, contact.point_b));
+    ledger_.book(Account::contact, -dot(contact.normal, twice) / 2);
+    ledger_.book(Account::friction, -dot(contact.tangential, twice) / 2);
 }
 
 DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,
                                                          const Vector3<double>& point) {
     const Course* course = course_of(body);
     if (course == nullptr) return Vector3<double>::Zero();
-    const Vector3<double> arm = point - course->start.position;
-    const Vector3<double> spins = course->start.spin + course->spin_after;
-    const Vector3<double> velocities = course->start.velocity + course->velocity_after;
+    const Vector3<double> arm = difference(point, course->start.position);
+    const Vector3<double> spins = sum(course->start.spin, course->spin_after);
+    const Vector3<double> velocities = sum(course->start.velocity, course->velocity_after);
     return sum(velocities, cross(spins, arm));
 }
 

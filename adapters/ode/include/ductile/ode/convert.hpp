@@ -18,7 +18,10 @@ namespace ductile::ode {
 /// ODE stores 3×3 matrices by rows of four.
 [[nodiscard]] inline Matrix3<double> matrix_to_core(const dReal* m) noexcept {
     Matrix3<double> result;
-    for (int row = 0; row < 3; ++row) result.row(row) = to_core(m + 4 * row).transpose();
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column)
+            result(row, column) = double(m[4 * row + column]);
+    }
     return result;
 }
 
@@ -32,15 +35,14 @@ namespace ductile::ode {
 [[nodiscard]] inline Matrix3<double> inertia(dBodyID body) noexcept {
     dMass m;
     dBodyGetMass(body, &m);
-    const Matrix3<double> rotation = matrix_to_core(dBodyGetRotation(body));
-    return rotation * matrix_to_core(m.I) * rotation.transpose();
+    return sandwiched(matrix_to_core(dBodyGetRotation(body)), matrix_to_core(m.I));
 }
 
 [[nodiscard]] inline Vector3<double> linear_velocity(dBodyID body) noexcept {
-    return body != nullptr ? to_core(dBodyGetLinearVel(body)) : Vector3<double>::Zero();
+    return body != nullptr ? to_core(dBodyGetLinearVel(body)) : Vector3<double>(0, 0, 0);
 }
 [[nodiscard]] inline Vector3<double> angular_velocity(dBodyID body) noexcept {
-    return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>::Zero();
+    return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>(0, 0, 0);
 }
 
 /// The body as a joint at `point` (world) sees it; the static world and kinematic bodies cannot
@@ -50,7 +52,7 @@ namespace ductile::ode {
     if (body == nullptr || dBodyIsKinematic(body)) return {};
     return {.inverse_mass = 1 / mass(body),
             .inverse_inertia = numeric::inverse(inertia(body)),
-            .arm = point - to_core(dBodyGetPosition(body))};
+            .arm = difference(point, to_core(dBodyGetPosition(body)))};
 }
 
 /// The two bodies of a joint in the order in which ODE's rows and feedback know them: a joint made
@@ -90,8 +92,7 @@ struct AttachedBodies {
     dMass m;
     dBodyGetMass(body, &m);
     result.inverse_mass = 1 / double(m.mass);
-    const Matrix3<double> turned = result.orientation * numeric::inverse(matrix_to_core(m.I));
-    result.inverse_inertia = turned * result.orientation.transpose();
+    result.inverse_inertia = sandwiched(result.orientation, numeric::inverse(matrix_to_core(m.I)));
     return result;
 }
 
@@ -102,8 +103,8 @@ inline void add_force(dBodyID body, const Vector3<double>& force, const Vector3<
 }
 
 inline void apply(dBodyID body, const VelocityChange<double>& change) noexcept {
-    const Vector3<double> v = linear_velocity(body) + change.linear;
-    const Vector3<double> w = angular_velocity(body) + change.angular;
+    const Vector3<double> v = sum(linear_velocity(body), change.linear);
+    const Vector3<double> w = sum(angular_velocity(body), change.angular);
     dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
     dBodySetAngularVel(body, dReal(w.x()), dReal(w.y()), dReal(w.z()));
 }

@@ -19,7 +19,6 @@
 
 #include <ode/ode.h>
 
-#include <deque>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -58,13 +57,15 @@ class EnergyMeter final : public ductile::EnergyMeter {
     };
 
     DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;
-    DUCTILE_INLINE void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
+    DUCTILE_INLINE void list_plastic_joints(
+        std::vector<MeteredPlasticJoint>& joints) const override;
     DUCTILE_INLINE void watch_step() override;
     DUCTILE_INLINE void list_joints(std::vector<MeteredJoint>& joints) const override;
-    DUCTILE_INLINE void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
+    DUCTILE_INLINE void list_contacts(double dt,
+                                      std::vector<MeteredContact>& contacts) const override;
     DUCTILE_INLINE void end_watch() override;
     [[nodiscard]] DUCTILE_INLINE Vector3<double> gyroscopic_impulse(const MeteredBody& body,
-                                                     double dt) const override;
+                                                                    double dt) const override;
     void take_feedback_back();
 
     dWorldID world_;
@@ -73,7 +74,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
     std::unordered_map<dJointID, dContactGeom> contacts_;
     std::vector<WatchedJoint> watched_; ///< each joint of the watched bodies, once
     std::unordered_set<dJointID> seen_;
-    std::deque<dJointFeedback> feedback_; ///< to be lent
+    std::vector<dJointFeedback> feedback_; ///< to be lent
 };
 
 } // namespace ductile::ode

@@ -3,6 +3,8 @@
 // Bodies of energy_meter.hpp.
 #pragma once
 
+#include <cstddef>
+
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
@@ -21,7 +23,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
         entry.spin = angular_velocity(body);
         entry.mass = mass(body);
         entry.inertia = inertia(body);
-        if (dBodyGetGravityMode(body) != 0) entry.weight = entry.mass * to_core(gravity);
+        if (dBodyGetGravityMode(body) != 0) entry.weight = scaled(entry.mass, to_core(gravity));
         entry.force = to_core(dBodyGetForce(body));
         entry.torque = to_core(dBodyGetTorque(body));
         entry.asleep = dBodyIsEnabled(body) == 0;
@@ -38,14 +40,17 @@ DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
 
 DUCTILE_INLINE void EnergyMeter::watch_step() {
     take_feedback_back(); // of a step that was never made
-    feedback_.clear();
     seen_.clear();
+    std::size_t most = 0;
+    for (const dBodyID body : bodies_) most += std::size_t(dBodyGetNumJoints(body));
+    feedback_.assign(most, dJointFeedback{}); // its places stay where they are
+    std::size_t lent = 0;
     for (const dBodyID body : bodies_) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
             const dJointID id = dBodyGetJoint(body, i);
             if (dJointIsEnabled(id) == 0 || !seen_.insert(id).second) continue;
             const bool lend = dJointGetFeedback(id) == nullptr;
-            if (lend) dJointSetFeedback(id, &feedback_.emplace_back());
+            if (lend) dJointSetFeedback(id, &feedback_[lent++]);
             watched_.push_back({id, dJointGetFeedback(id), lend});
         }
     }
@@ -62,8 +67,8 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
         if (seen_.count(constraint->id()) == 0) continue;
         const auto [a, b, reversed] = attached_bodies(constraint->id());
         const OutsideForce& outside = constraint->outside_force();
-        joints.push_back({constraint->id(), a, b, outside.force, outside.torque_a, -outside.force,
-                          outside.torque_b, &constraint->queries()});
+        joints.push_back({constraint->id(), a, b, outside.force, outside.torque_a,
+                          scaled(-1, outside.force), outside.torque_b, &constraint->queries()});
     }
 }
 
@@ -75,9 +80,9 @@ DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
         const auto [a, b, reversed] = attached_bodies(id);
         const Vector3<double> point = to_core(contact->second.pos);
         const Vector3<double> normal = to_core(contact->second.normal);
-        const Vector3<double> impulse = dt * to_core(feedback->f1);
-        const Vector3<double> pressed = normal.dot(impulse) * normal;
-        contacts.push_back({a, b, point, point, pressed, impulse - pressed});
+        const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
+        const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
+        contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed)});
     }
 }
 
@@ -98,13 +103,10 @@ DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody
                                                                double dt) const {
     const auto* id = static_cast<const dxBody*>(body.body);
     if (dBodyGetGyroscopicMode(const_cast<dBodyID>(id)) == 0) return Vector3<double>::Zero();
-    const Vector3<double> momentum = body.inertia * body.spin;
-    Matrix3<double> cross;
-    cross << 0, -momentum.z(), momentum.y(), momentum.z(), 0, -momentum.x(), -momentum.y(),
-        momentum.x(), 0;
-    const Matrix3<double> tilde = body.inertia - dt * cross;
+    const Vector3<double> momentum = times(body.inertia, body.spin);
+    const Matrix3<double> tilde = difference(body.inertia, scaled(dt, skew(momentum)));
     const Vector3<double> turned = numeric::Lu<double, 3>(tilde).solve(momentum);
-    return body.inertia * turned - momentum;
+    return difference(times(body.inertia, turned), momentum);
 }
 
 } // namespace ductile::ode

@@ -28,11 +28,10 @@ inline void share_forces(std::span<const dBodyID> bodies,
             dWorldGetGravity(dBodyGetWorld(body), gravity);
             dMass mass;
             dBodyGetMass(body, &mass);
-            force += double(mass.mass) * to_core(gravity);
+            force = sum(force, scaled(double(mass.mass), to_core(gravity)));
         }
-        force *= how.value - 1;
-        const Vector3<double> torque = (how.value - 1) * to_core(dBodyGetTorque(body));
-        add_force(body, force, torque);
+        const double more = how.value - 1;
+        add_force(body, scaled(more, force), scaled(more, to_core(dBodyGetTorque(body))));
     }
 }
 

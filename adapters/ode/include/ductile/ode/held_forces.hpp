@@ -20,7 +20,7 @@ class HeldForces {
         held_.clear();
         for (dBodyID body : bodies) {
             const Held held{body, to_core(dBodyGetForce(body)), to_core(dBodyGetTorque(body))};
-            if (!held.force.isZero(0) || !held.torque.isZero(0)) held_.push_back(held);
+            if (!is_zero(held.force) || !is_zero(held.torque)) held_.push_back(held);
         }
     }
     void apply() const {

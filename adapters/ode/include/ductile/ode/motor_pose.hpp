@@ -12,26 +12,15 @@
 #include <algorithm>
 #include <array>
 
-#include "ductile/joint/pair.hpp"
-#include "ductile/ode/convert.hpp"
 #include "ductile/ode/motor_axis.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile::ode {
 
 class MotorPose {
   public:
-    void look(const MotorAxis& row) {
-        seen_a_ = Place(row.bodies().a);
-        seen_b_ = Place(row.bodies().b);
-        point_ = row.point();
-        axes_ = row.axes();
-        axis_ = axes_.col(row.number());
-        if (!row.measured()) placement_ = row.placement();
-        const auto& [a, b, reversed] = row.bodies();
-        arm_a_ = point_ - to_core(dBodyGetPosition(a));
-        arm_b_.setZero();
-        if (b != nullptr) arm_b_ = point_ - to_core(dBodyGetPosition(b));
-    }
+    void look(const MotorAxis& row);
     /// True where neither body has moved since, to the last bit.
     [[nodiscard]] bool is_now(const MotorAxis& row) const {
         return seen_a_.is(row.bodies().a) && seen_b_.is(row.bodies().b);
@@ -47,25 +36,10 @@ class MotorPose {
     [[nodiscard]] const Vector3<double>& arm_b() const noexcept { return arm_b_; }
 
     /// Linear and angular velocity now of A minus B where the row acts, world axes [m/s, rad/s].
-    [[nodiscard]] Vector6<double> twist(const MotorAxis& row) const {
-        const auto& [a, b, reversed] = row.bodies();
-        const Vector3<double> wa = angular_velocity(a), wb = angular_velocity(b);
-        Vector6<double> result;
-        result.head<3>() =
-            linear_velocity(a) + wa.cross(arm_a_) - linear_velocity(b) - wb.cross(arm_b_);
-        result.tail<3>() = wa - wb;
-        return result;
-    }
+    [[nodiscard]] Vector6<double> twist(const MotorAxis& row) const;
     /// Its share along the row.
-    [[nodiscard]] double along(const MotorAxis& row, const Vector6<double>& twist) const {
-        return row.turns() ? axis_.dot(twist.tail<3>()) : axis_.dot(twist.head<3>());
-    }
-    [[nodiscard]] double velocity(const MotorAxis& row) const {
-        if (!row.turns()) return along(row, twist(row));
-        const auto& [a, b, reversed] = row.bodies();
-        const Vector3<double> turning = angular_velocity(a) - angular_velocity(b);
-        return axis_.dot(turning);
-    }
+    [[nodiscard]] double along(const MotorAxis& row, const Vector6<double>& twist) const;
+    [[nodiscard]] double velocity(const MotorAxis& row) const;
 
   private:
     /// A body's place; that of the static world is never looked at.
@@ -99,3 +73,7 @@ class MotorPose {
 };
 
 } // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/motor_pose.ipp"
+#endif

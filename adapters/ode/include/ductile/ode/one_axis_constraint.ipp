@@ -10,6 +10,7 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 
@@ -27,6 +28,7 @@ inline constexpr const char* stop_refused =
 DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const MotorAxis& row,
                                                     AtBreak at_break, bool owned)
     : AxisQueries(joint), row_(row), at_break_(at_break), owned_(owned) {
+    require_matching_precision();
     if (has_stop(row_)) throw std::invalid_argument(detail::stop_refused);
     position_ = row_.measure(0);
     joint_.set_plastic_offset(position_);
@@ -148,21 +150,20 @@ DUCTILE_INLINE double OneAxisConstraint::erp() const {
 }
 
 DUCTILE_INLINE Vector6<double> OneAxisConstraint::rigid_target(double dt) const {
-    Vector6<double> target = Vector6<double>::Constant(std::numeric_limits<double>::quiet_NaN());
-    target.head<3>() = erp() / dt * row_.pin_error(pose_.point());
-    return target;
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    return twist_of(scaled(erp() / dt, row_.pin_error(pose_.point())),
+                    Vector3<double>(unknown, unknown, unknown));
 }
 
 DUCTILE_INLINE Vector6<double> OneAxisConstraint::direction() const {
-    Vector6<double> result = Vector6<double>::Zero();
-    result.segment<3>(row_.turns() ? 3 : 0) = pose_.axis();
-    return result;
+    const Vector3<double> none(0, 0, 0);
+    return row_.turns() ? twist_of(none, pose_.axis()) : twist_of(pose_.axis(), none);
 }
 
 DUCTILE_INLINE double OneAxisConstraint::mass() const {
     const Vector6<double> response = row_.response(at_joint(row_.bodies().a, pose_.point()),
                                                    at_joint(row_.bodies().b, pose_.point()));
-    const double result = direction().dot(response);
+    const double result = dot(direction(), response);
     return std::isfinite(result) ? result : 0;
 }
 
@@ -180,12 +181,12 @@ DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits
 
 DUCTILE_INLINE void OneAxisConstraint::apply_centre() {
     if (row_.turns()) {
-        outside_.torque_a = centre_ * pose_.axis();
-        outside_.torque_b = -outside_.torque_a;
+        outside_.torque_a = scaled(centre_, pose_.axis());
+        outside_.torque_b = scaled(-1, outside_.torque_a);
     } else {
-        outside_.force = centre_ * pose_.axis();
-        outside_.torque_a = pose_.arm_a().cross(outside_.force);
-        outside_.torque_b = -pose_.arm_b().cross(outside_.force);
+        outside_.force = scaled(centre_, pose_.axis());
+        outside_.torque_a = cross(pose_.arm_a(), outside_.force);
+        outside_.torque_b = cross(outside_.force, pose_.arm_b());
     }
     add_outside(1);
 }
@@ -197,27 +198,32 @@ DUCTILE_INLINE void OneAxisConstraint::take_back() {
 
 DUCTILE_INLINE void OneAxisConstraint::add_outside(double sign) {
     const auto& [a, b, reversed] = row_.bodies();
-    add_force(a, sign * outside_.force, sign * outside_.torque_a);
-    if (b != nullptr) add_force(b, -sign * outside_.force, sign * outside_.torque_b);
+    add_force(a, scaled(sign, outside_.force), scaled(sign, outside_.torque_a));
+    if (b != nullptr) add_force(b, scaled(-sign, outside_.force), scaled(sign, outside_.torque_b));
 }
 
 DUCTILE_INLINE void OneAxisConstraint::certify_rigid_rows(const Vector6<double>& twist) {
-    Vector6<double> off = twist - rigid_target_;
-    const int plastic = row_.turns() ? 3 : 0;
-    const Vector3<double> part = off.segment<3>(plastic);
-    off.segment<3>(plastic) = part - pose_.axis() * pose_.axis().dot(part);
-    if (rigid_target_.head<3>().hasNaN()) off.head<3>().setZero();
-    if (rigid_target_.tail<3>().hasNaN()) off.tail<3>().setZero();
-    rigid_residual_ = off.cwiseAbs().maxCoeff();
+    const Vector3<double>& axis = pose_.axis();
+    const auto off = [&](const Vector3<double>& is, const Vector3<double>& wanted, bool of_row) {
+        if (!is_finite(wanted)) return Vector3<double>(0, 0, 0); // not known
+        const Vector3<double> whole = difference(is, wanted);
+        return of_row ? difference(whole, scaled(dot(axis, whole), axis)) : whole;
+    };
+    const Vector3<double> moving = off(linear(twist), linear(rigid_target_), !row_.turns());
+    const Vector3<double> turning = off(angular(twist), angular(rigid_target_), row_.turns());
+    rigid_residual_ = 0;
+    for (int i = 0; i < 3; ++i) {
+        rigid_residual_ = std::max({rigid_residual_, std::abs(moving[i]), std::abs(turning[i])});
+    }
 
-    const double linear = off.head<3>().norm(), angular = off.tail<3>().norm();
+    const double speed = norm(moving), spin = norm(turning);
     rigid_unsolved_ = false;
-    if (std::max(linear, angular) <= joint_.allowed_residual(0)) return;
+    if (std::max(speed, spin) <= joint_.allowed_residual(0)) return;
     const dBodyID a = row_.bodies().a;
     const Vector3<double> w = angular_velocity(a);
-    const Vector3<double> v = linear_velocity(a) + w.cross(pose_.arm_a());
+    const Vector3<double> v = sum(linear_velocity(a), cross(w, pose_.arm_a()));
     rigid_unsolved_ =
-        linear > joint_.allowed_residual(v.norm()) || angular > joint_.allowed_residual(w.norm());
+        speed > joint_.allowed_residual(norm(v)) || spin > joint_.allowed_residual(norm(w));
 }
 
 DUCTILE_INLINE double OneAxisConstraint::row_force() const {

@@ -15,8 +15,7 @@ DUCTILE_INLINE HingeConstraint::HingeConstraint(AxisJoint& joint, dWorldID world
     : OneAxisConstraint(joint, hinge_axis(make(world, a, b, frame)), AtBreak::disable_joint, true) {
     axis_in_b_ = row().axis();
     if (b == nullptr) return;
-    const Matrix3<double> to_b = matrix_to_core(dBodyGetRotation(b)).transpose();
-    axis_in_b_ = to_b * row().axis();
+    axis_in_b_ = transposed_times(matrix_to_core(dBodyGetRotation(b)), row().axis());
 }
 
 DUCTILE_INLINE dJointID HingeConstraint::make(dWorldID world, dBodyID a, dBodyID b,
@@ -32,11 +31,10 @@ DUCTILE_INLINE dJointID HingeConstraint::make(dWorldID world, dBodyID a, dBodyID
 
 DUCTILE_INLINE Vector6<double> HingeConstraint::rigid_target(double dt) const {
     const dBodyID b = row().bodies().b;
-    Vector6<double> target = OneAxisConstraint::rigid_target(dt);
     Vector3<double> axis_b = axis_in_b_;
-    if (b != nullptr) axis_b = matrix_to_core(dBodyGetRotation(b)) * axis_in_b_;
-    target.tail<3>() = erp() / dt * pose().axis().cross(axis_b);
-    return target;
+    if (b != nullptr) axis_b = times(matrix_to_core(dBodyGetRotation(b)), axis_in_b_);
+    return twist_of(linear(OneAxisConstraint::rigid_target(dt)),
+                    scaled(erp() / dt, cross(pose().axis(), axis_b)));
 }
 
 } // namespace ductile::ode

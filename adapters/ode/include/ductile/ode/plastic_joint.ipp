@@ -11,6 +11,7 @@
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_joint.hpp"
+#include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 
@@ -25,10 +26,8 @@ inline constexpr double softness = 1e-12;
 /// Velocity of the row that a unit impulse of its own gives to one body [1/kg | 1/(kg m²)].
 DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<double>& arm,
                                const LinkRow<double>& row) {
-    const Vector3<double> turn =
-        row.turns ? row.direction : Vector3<double>(arm.cross(row.direction));
-    const Vector3<double> answer = body.inverse_inertia * turn;
-    return (row.turns ? 0 : body.inverse_mass) + turn.dot(answer);
+    const Vector3<double> turn = row.turns ? row.direction : cross(arm, row.direction);
+    return (row.turns ? 0 : body.inverse_mass) + dot(turn, times(body.inverse_inertia, turn));
 }
 
 } // namespace detail
@@ -36,6 +35,7 @@ DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<doub
 DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
                                               dBodyID b)
     : LinkQueries(link), a_(a), b_(b), forces_(world), id_(dJointCreateAMotor(world, nullptr)) {
+    require_matching_precision();
     dJointAttach(id_, a_, b_);
     dJointSetAMotorNumAxes(id_, 3);
     dJointSetFeedback(id_, &moments_);
@@ -52,11 +52,18 @@ DUCTILE_INLINE const JointFrame<double>& LinkConstraint::require_frame(const cha
                                                                        const Frame& frame) {
     constexpr double round_off = 1e-9;
     const std::string field = std::string("PlasticJoint.") + name;
-    if (!frame.origin.allFinite()) {
+    if (!is_finite(frame.origin)) {
         throw std::invalid_argument(field + ".origin: must be finite [m]");
     }
-    const Matrix3<double> products = frame.axes.transpose() * frame.axes;
-    if (!(products.isIdentity(round_off) && numeric::determinant(frame.axes) > 0)) {
+    const Matrix3<double> products = transposed_times(frame.axes, frame.axes);
+    bool orthonormal = true;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            const double off = products(i, j) - (i == j ? 1 : 0);
+            orthonormal = orthonormal && std::abs(off) <= round_off;
+        }
+    }
+    if (!(orthonormal && numeric::determinant(frame.axes) > 0)) {
         throw std::invalid_argument(field +
                                     ".axes: must be three orthonormal columns, right-handed");
     }
@@ -65,9 +72,8 @@ DUCTILE_INLINE const JointFrame<double>& LinkConstraint::require_frame(const cha
 
 DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const Frame& world) {
     const BodyState<double> at = body_motion(body);
-    const Matrix3<double> to_body = at.orientation.transpose();
-    const Vector3<double> from_centre = world.origin - at.position;
-    return {.origin = to_body * from_centre, .axes = to_body * world.axes};
+    return {.origin = transposed_times(at.orientation, difference(world.origin, at.position)),
+            .axes = transposed_times(at.orientation, world.axes)};
 }
 
 DUCTILE_INLINE void LinkConstraint::restored(bool) {
@@ -108,8 +114,8 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     put_back_ = false;
     const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
     link_.prepare(a, b, force_share_.value * dt, rate, force_share_.midway);
-    arm_a_ = link_.point() - a.position;
-    arm_b_ = link_.point() - b.position;
+    arm_a_ = difference(link_.point(), a.position);
+    arm_b_ = difference(link_.point(), b.position);
     centre_ = {};
     std::array<PointRow, 3> force_rows, moment_rows;
     bool out_of_scale = false; // a moment's row
@@ -118,7 +124,8 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
         SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
         symmetric.cfm += detail::softness * dt * moved;
-        (row.turns ? centre_.moment : centre_.force) += symmetric.centre * row.direction;
+        Vector3<double>& centre = row.turns ? centre_.moment : centre_.force;
+        centre = sum(centre, scaled(symmetric.centre, row.direction));
         const double scale = row_scale(moved + symmetric.cfm / dt);
         out_of_scale = out_of_scale || (row.turns && scale != 1);
         (row.turns ? moment_rows : force_rows)[index(axis) % 3] = {row.direction, symmetric, scale};
@@ -141,15 +148,19 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
     }
     silent_ = false;
     outside_ = forces_.collect();
-    outside_.force += centre_.force;
-    outside_.torque_a += arm_a_.cross(centre_.force) + centre_.moment;
-    outside_.torque_b -= arm_b_.cross(centre_.force) + centre_.moment;
-    const Vector3<double> torque = outside_.torque_a + to_core(moments_.t1);
-    const Vector3<double> moment = torque - arm_a_.cross(outside_.force);
+    const auto about_centre = [this](const Vector3<double>& arm) {
+        return sum(cross(arm, centre_.force), centre_.moment);
+    };
+    outside_.force = sum(outside_.force, centre_.force);
+    outside_.torque_a = sum(outside_.torque_a, about_centre(arm_a_));
+    outside_.torque_b = difference(outside_.torque_b, about_centre(arm_b_));
+    const Vector3<double> torque = sum(outside_.torque_a, to_core(moments_.t1));
+    const Vector3<double> moment = difference(torque, cross(arm_a_, outside_.force));
+    const double share = force_share_.value;
     link_.commit(body_motion(a_), body_motion(b_),
-                 JointWrench<double>{.force = outside_.force / force_share_.value,
-                                     .moment = moment / force_share_.value},
-                 force_share_.value * dt);
+                 JointWrench<double>{.force = scaled(1 / share, outside_.force),
+                                     .moment = scaled(1 / share, moment)},
+                 share * dt);
     if (link_.broken()) let_go();
 }
 
@@ -164,9 +175,11 @@ DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment
 }
 
 DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {
-    const Vector3<double> force = sign * centre_.force, moment = sign * centre_.moment;
-    add_force(a_, force, arm_a_.cross(force) + moment);
-    if (b_ != nullptr) add_force(b_, -force, -arm_b_.cross(force) - moment);
+    const Vector3<double> force = scaled(sign, centre_.force);
+    const Vector3<double> moment = scaled(sign, centre_.moment);
+    add_force(a_, force, sum(cross(arm_a_, force), moment));
+    if (b_ == nullptr) return;
+    add_force(b_, scaled(-1, force), scaled(-1, sum(cross(arm_b_, force), moment)));
 }
 
 DUCTILE_INLINE void LinkConstraint::let_go() {

@@ -27,13 +27,12 @@
 #include <ode/ode.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
-#include "ductile/joint/pair.hpp"
-#include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile::ode {
 
@@ -48,9 +47,7 @@ struct PointRow {
 };
 
 /// s of a row with the diagonal A.
-[[nodiscard]] inline double row_scale(double diagonal) noexcept {
-    return diagonal > largest_diagonal ? 1 / std::sqrt(diagonal) : 1;
-}
+[[nodiscard]] double row_scale(double diagonal) noexcept;
 
 class PointRows {
   public:
@@ -62,45 +59,14 @@ class PointRows {
     /// Makes force rows on `a`, opposite on `b` (null: the static world), for the coming step.
     /// Directions at right angles to each other; rows without strength are left out.
     void make(dBodyID a, dBodyID b, const Vector3<double>& point,
-              const std::array<PointRow, 3>& rows) {
-        attach(a, b, rows, [&point](const PointRow& first, const PointRow* second) {
-            const Vector3<double> along = first.scale * first.direction;
-            const Vector3<double> other = second != nullptr
-                                              ? Vector3<double>(second->scale * second->direction)
-                                              : along.unitOrthogonal() * first.scale;
-            return contact(point, along, other);
-        });
-    }
+              const std::array<PointRow, 3>& rows);
     /// The same with moments about the directions.
-    void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows) {
-        attach(a, b, rows, [](const PointRow& first, const PointRow* second) {
-            const Vector3<double> about = first.direction;
-            const Vector3<double> other =
-                second != nullptr ? second->direction : about.unitOrthogonal();
-            const Vector3<double> normal = about.cross(other);
-            const double second_scale = second != nullptr ? second->scale : first.scale;
-            return contact(distance * normal, first.scale / distance * about.cross(normal),
-                           second_scale / distance * other.cross(normal));
-        });
-    }
+    void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows);
 
     /// What the rows did in the step, about the centres of mass; takes them away.
-    [[nodiscard]] OutsideForce collect() {
-        OutsideForce result;
-        for (const dJointFeedback& f : feedback_) {
-            result.force += to_core(f.f1);
-            result.torque_a += to_core(f.t1);
-            result.torque_b += to_core(f.t2);
-        }
-        clear();
-        return result;
-    }
+    [[nodiscard]] OutsideForce collect();
     /// Takes the rows away.
-    void clear() {
-        dJointGroupEmpty(group_);
-        feedback_ = {};
-        contacts_ = 0;
-    }
+    void clear();
 
   private:
     static constexpr double never = -1e15;   ///< [m/s]
@@ -108,48 +74,12 @@ class PointRows {
 
     /// Two rows along directions at right angles.
     static dContact contact(const Vector3<double>& point, const Vector3<double>& first,
-                            const Vector3<double>& second) {
-        // ODE's second friction direction is normal × first
-        const Vector3<double> normal = first.cross(second) / first.squaredNorm();
-        dContact result{};
-        result.surface.mode = dContactAxisDep | dContactFDir1 | dContactMotionN | dContactMotion1 |
-                              dContactMotion2 | dContactSlip1 | dContactSlip2;
-        for (int i = 0; i < 3; ++i) {
-            result.geom.pos[i] = dReal(point[i]);
-            result.geom.normal[i] = dReal(normal[i]);
-            result.fdir1[i] = dReal(first[i]);
-        }
-        result.surface.motionN = dReal(never);
-        return result;
-    }
+                            const Vector3<double>& second);
 
     /// One contact for two rows, `contact_of` the first and the second (null: there is none).
     template <class ContactOf>
     void attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows,
-                const ContactOf& contact_of) {
-        std::array<const PointRow*, 3> acting{};
-        std::size_t count = 0;
-        for (const PointRow& row : rows) {
-            if (row.row.strength > 0) acting[count++] = &row;
-        }
-        for (std::size_t i = 0; i < count; i += 2) {
-            const PointRow& first = *acting[i];
-            const PointRow* second = i + 1 < count ? acting[i + 1] : nullptr;
-            dContact contact = contact_of(first, second);
-            dSurfaceParameters& surface = contact.surface;
-            surface.mu = dReal(first.row.strength / first.scale);
-            surface.motion1 = dReal(first.row.velocity * first.scale);
-            surface.slip1 = dReal(first.row.cfm * first.scale * first.scale);
-            if (second != nullptr) {
-                surface.mu2 = dReal(second->row.strength / second->scale);
-                surface.motion2 = dReal(second->row.velocity * second->scale);
-                surface.slip2 = dReal(second->row.cfm * second->scale * second->scale);
-            }
-            const dJointID joint = dJointCreateContact(world_, group_, &contact);
-            dJointAttach(joint, a, b);
-            dJointSetFeedback(joint, &feedback_[contacts_++]);
-        }
-    }
+                const ContactOf& contact_of);
 
     dWorldID world_;
     dJointGroupID group_;
@@ -158,3 +88,7 @@ class PointRows {
 };
 
 } // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/point_rows.ipp"
+#endif

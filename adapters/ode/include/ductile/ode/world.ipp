@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "ductile/ode/force_share.hpp"
+#include "ductile/ode/precision_check.hpp"
 #include "ductile/ode/world.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -16,6 +17,7 @@ DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
     : SteppedWorld(parameters.effort, std::move(parameters.warn)),
       world_(world),
       solver_(parameters.solver) {
+    require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
     if (parameters.ledger) meter_.emplace(world_);
     if (parameters.leapfrog) start_leapfrog();

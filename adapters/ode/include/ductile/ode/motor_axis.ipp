@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of motor_axis.hpp.
+#pragma once
+
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "ductile/joint/rotation.hpp"
+#include "ductile/numeric/ldlt.hpp"
+#include "ductile/numeric/lu.hpp"
+#include "ductile/ode/motor_axis.hpp"
+#include "ductile/vocabulary/angle.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE Matrix3<double> MotorAxis::axes() const {
+    Matrix3<double> result = Matrix3<double>::Zero();
+    for (int i = 0; i < motors_; ++i) {
+        const Vector3<double> along = axis_of(i);
+        for (int j = 0; j < 3; ++j) result(j, i) = along[j];
+    }
+    return result;
+}
+
+DUCTILE_INLINE Vector3<double> MotorAxis::point() const {
+    dVector3 at;
+    switch (kind_) {
+        case dJointTypeHinge:
+            if (bodies_.reversed) {
+                dJointGetHingeAnchor2(joint_, at);
+            } else {
+                dJointGetHingeAnchor(joint_, at);
+            }
+            return to_core(at);
+        case dJointTypeUniversal:
+            dJointGetUniversalAnchor(joint_, at);
+            return to_core(at);
+        case dJointTypeHinge2:
+            dJointGetHinge2Anchor(joint_, at);
+            return to_core(at);
+        case dJointTypeAMotor:
+            if (const dJointID ball = pin()) {
+                dJointGetBallAnchor(ball, at);
+                return to_core(at);
+            }
+            return to_core(dBodyGetPosition(bodies_.a));
+        default:
+            break;
+    }
+    const Vector3<double> a = to_core(dBodyGetPosition(bodies_.a));
+    return bodies_.b == nullptr ? a : scaled(0.5, sum(a, to_core(dBodyGetPosition(bodies_.b))));
+}
+
+DUCTILE_INLINE double MotorAxis::measure(double predicted) const {
+    switch (kind_) {
+        case dJointTypeSlider:
+            return double(dJointGetSliderPosition(joint_));
+        case dJointTypeHinge: {
+            const double angle = double(dJointGetHingeAngle(joint_));
+            return unwrap(bodies_.reversed ? -angle : angle, predicted);
+        }
+        case dJointTypeUniversal:
+            return unwrap(double(number_ == 0 ? dJointGetUniversalAngle1(joint_)
+                                              : dJointGetUniversalAngle2(joint_)),
+                          predicted);
+        case dJointTypeHinge2:
+            return unwrap(double(number_ == 0 ? dJointGetHinge2Angle1(joint_)
+                                              : -dJointGetHinge2Angle2(joint_)),
+                          predicted);
+        default:
+            return predicted;
+    }
+}
+
+DUCTILE_INLINE Placement MotorAxis::placement() const {
+    Placement now;
+    now.position_a = to_core(dBodyGetPosition(bodies_.a));
+    now.rotation_a = matrix_to_core(dBodyGetRotation(bodies_.a));
+    if (bodies_.b == nullptr) return now;
+    now.position_b = to_core(dBodyGetPosition(bodies_.b));
+    now.rotation_b = matrix_to_core(dBodyGetRotation(bodies_.b));
+    return now;
+}
+
+DUCTILE_INLINE double MotorAxis::increment(const Placement& then, const Vector3<double>& axis_then,
+                                           const Vector3<double>& where) const {
+    const Placement now = placement();
+    const Matrix3<double> turn_a = times_transposed(now.rotation_a, then.rotation_a);
+    const Matrix3<double> turn_b = times_transposed(now.rotation_b, then.rotation_b);
+    const Vector3<double> mean = scaled(0.5, sum(axis_then, axis()));
+    if (turns()) return dot(mean, difference(rotation_vector(turn_a), rotation_vector(turn_b)));
+    const Vector3<double> a =
+        sum(now.position_a, times(turn_a, difference(where, then.position_a)));
+    const Vector3<double> b =
+        sum(now.position_b, times(turn_b, difference(where, then.position_b)));
+    return dot(mean, difference(a, b));
+}
+
+DUCTILE_INLINE double MotorAxis::force(const dJointFeedback& feedback, const Matrix3<double>& axes,
+                                       const Vector3<double>& arm) const {
+    Vector3<double> whole = to_core(feedback.f1);
+    if (turns()) whole = difference(to_core(feedback.t1), cross(arm, whole));
+    if (motors_ == 1) return dot(column(axes, 0), whole);
+    return numeric::Lu<double, 3>(gram(axes)).solve(transposed_times(axes, whole))[number_];
+}
+
+DUCTILE_INLINE double MotorAxis::velocity() const {
+    const auto& [a, b, reversed] = bodies_;
+    const Vector3<double> wa = angular_velocity(a), wb = angular_velocity(b);
+    if (turns()) return dot(axis(), difference(wa, wb));
+    const Placement now = placement();
+    const Vector3<double> at = point();
+    const Vector3<double> of_a = sum(linear_velocity(a), cross(wa, difference(at, now.position_a)));
+    const Vector3<double> of_b = sum(linear_velocity(b), cross(wb, difference(at, now.position_b)));
+    return dot(axis(), difference(of_a, of_b));
+}
+
+DUCTILE_INLINE Vector6<double> MotorAxis::response(const BodyAtJoint<double>& a,
+                                                   const BodyAtJoint<double>& b) const {
+    const Matrix6<double> k = inverse_mass_at_joint(a, b);
+    const Vector3<double> none(0, 0, 0);
+    const Vector6<double> row = turns() ? twist_of(none, axis()) : twist_of(axis(), none);
+    Matrix6<double> held = Matrix6<double>::Identity(); // first the pin
+    switch (kind_) {
+        case dJointTypeUniversal:
+        case dJointTypeHinge2: {
+            const Vector3<double> across = cross(axis_of(0), axis_of(1));
+            const double length = norm(across);
+            for (int i = 0; i < 3; ++i) held(3 + i, 3) = length > 0 ? across[i] / length : 0;
+            return axis_response(k, row, held, 4);
+        }
+        case dJointTypeAMotor:
+            return axis_response(k, row, held, pin() ? 3 : 0);
+        case dJointTypeLMotor:
+            return axis_response(k, row, held, 0);
+        default:
+            return numeric::solve_semidefinite(k, row);
+    }
+}
+
+DUCTILE_INLINE Vector3<double> MotorAxis::pin_error(const Vector3<double>& point) const {
+    dVector3 other;
+    switch (kind_) {
+        case dJointTypeHinge:
+            if (bodies_.reversed) {
+                dJointGetHingeAnchor(joint_, other);
+            } else {
+                dJointGetHingeAnchor2(joint_, other);
+            }
+            return difference(to_core(other), point);
+        case dJointTypeUniversal:
+            dJointGetUniversalAnchor2(joint_, other);
+            return bodies_.reversed ? difference(point, to_core(other))
+                                    : difference(to_core(other), point);
+        default:
+            return scaled(std::numeric_limits<double>::quiet_NaN(), point);
+    }
+}
+
+DUCTILE_INLINE void MotorAxis::require(bool right, const std::string& what) {
+    if (!right) throw std::invalid_argument("MotorAxis." + what);
+}
+
+DUCTILE_INLINE MotorAxis::MotorAxis(dJointID joint, dJointType kind, const char* name, int number,
+                                    int motors)
+    : joint_(joint), kind_(kind), number_(number), motors_(motors) {
+    require(joint != nullptr, "joint = null: must be a joint");
+    require(dJointGetType(joint) == kind, std::string("joint: must be ODE's ") + name);
+    require(number >= 0 && number < motors, "number = " + std::to_string(number) +
+                                                ": must be one of the joint's " +
+                                                std::to_string(motors) + " axes");
+    bodies_ = attached_bodies(joint);
+    require(bodies_.a != nullptr, "joint: must be attached to a body");
+}
+
+DUCTILE_INLINE Matrix3<double> MotorAxis::gram(const Matrix3<double>& axes) {
+    Matrix3<double> result = transposed_times(axes, axes);
+    for (int i = 0; i < 3; ++i) {
+        if (result(i, i) == 0) result(i, i) = 1;
+    }
+    return result;
+}
+
+DUCTILE_INLINE void MotorAxis::require_independent_axes() const {
+    constexpr double flat = 1e-6;
+    require(numeric::determinant(gram(axes())) > flat,
+            "joint: its axes must be independent, else the force of one cannot be told from "
+            "another");
+}
+
+DUCTILE_INLINE void MotorAxis::set_motor(int number, int parameter, double value) const {
+    const int p = parameter + dParamGroup * number;
+    switch (kind_) {
+        case dJointTypeHinge:
+            dJointSetHingeParam(joint_, p, dReal(value));
+            break;
+        case dJointTypeSlider:
+            dJointSetSliderParam(joint_, p, dReal(value));
+            break;
+        case dJointTypeUniversal:
+            dJointSetUniversalParam(joint_, p, dReal(value));
+            break;
+        case dJointTypeHinge2:
+            dJointSetHinge2Param(joint_, p, dReal(value));
+            break;
+        case dJointTypeAMotor:
+            dJointSetAMotorParam(joint_, p, dReal(value));
+            break;
+        default:
+            dJointSetLMotorParam(joint_, p, dReal(value));
+            break;
+    }
+}
+
+DUCTILE_INLINE double MotorAxis::get_motor(int number, int parameter) const {
+    const int p = parameter + dParamGroup * number;
+    switch (kind_) {
+        case dJointTypeHinge:
+            return double(dJointGetHingeParam(joint_, p));
+        case dJointTypeSlider:
+            return double(dJointGetSliderParam(joint_, p));
+        case dJointTypeUniversal:
+            return double(dJointGetUniversalParam(joint_, p));
+        case dJointTypeHinge2:
+            return double(dJointGetHinge2Param(joint_, p));
+        case dJointTypeAMotor:
+            return double(dJointGetAMotorParam(joint_, p));
+        default:
+            return double(dJointGetLMotorParam(joint_, p));
+    }
+}
+
+DUCTILE_INLINE Vector3<double> MotorAxis::axis_of(int number) const {
+    dVector3 result;
+    switch (kind_) {
+        case dJointTypeHinge:
+            dJointGetHingeAxis(joint_, result);
+            break;
+        case dJointTypeSlider:
+            dJointGetSliderAxis(joint_, result);
+            // the motor of a slider attached to (null, body), unlike that of a hinge, is turned
+            // round
+            if (bodies_.reversed) return scaled(-1, to_core(result));
+            break;
+        case dJointTypeUniversal:
+            number == 0 ? dJointGetUniversalAxis1(joint_, result)
+                        : dJointGetUniversalAxis2(joint_, result);
+            break;
+        case dJointTypeHinge2:
+            number == 0 ? dJointGetHinge2Axis1(joint_, result)
+                        : dJointGetHinge2Axis2(joint_, result);
+            break;
+        case dJointTypeAMotor:
+            dJointGetAMotorAxis(joint_, number, result);
+            break;
+        default:
+            return linear_axis(number);
+    }
+    return to_core(result);
+}
+
+DUCTILE_INLINE Vector3<double> MotorAxis::linear_axis(int number) const {
+    dVector3 stored;
+    dJointGetLMotorAxis(joint_, number, stored);
+    const dBodyID frame = relative_to_ == 0 ? nullptr : relative_to_ == 1 ? bodies_.a : bodies_.b;
+    if (frame == nullptr) return to_core(stored);
+    return times(matrix_to_core(dBodyGetRotation(frame)), to_core(stored));
+}
+
+DUCTILE_INLINE dJointID MotorAxis::pin() const {
+    for (int i = 0; i < dBodyGetNumJoints(bodies_.a); ++i) {
+        const dJointID other = dBodyGetJoint(bodies_.a, i);
+        if (dJointGetType(other) != dJointTypeBall || dJointIsEnabled(other) == 0) continue;
+        const AttachedBodies pair = attached_bodies(other);
+        const bool same = pair.a == bodies_.a && pair.b == bodies_.b;
+        const bool swapped = pair.a == bodies_.b && pair.b == bodies_.a;
+        if (same || swapped) return other;
+    }
+    return nullptr;
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of motor_pose.hpp.
+#pragma once
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/motor_pose.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE void MotorPose::look(const MotorAxis& row) {
+    seen_a_ = Place(row.bodies().a);
+    seen_b_ = Place(row.bodies().b);
+    point_ = row.point();
+    axes_ = row.axes();
+    axis_ = column(axes_, row.number());
+    if (!row.measured()) placement_ = row.placement();
+    const auto& [a, b, reversed] = row.bodies();
+    arm_a_ = difference(point_, to_core(dBodyGetPosition(a)));
+    arm_b_ = {0, 0, 0};
+    if (b != nullptr) arm_b_ = difference(point_, to_core(dBodyGetPosition(b)));
+}
+
+DUCTILE_INLINE Vector6<double> MotorPose::twist(const MotorAxis& row) const {
+    const auto& [a, b, reversed] = row.bodies();
+    const Vector3<double> wa = angular_velocity(a), wb = angular_velocity(b);
+    const Vector3<double> of_a = sum(linear_velocity(a), cross(wa, arm_a_));
+    const Vector3<double> of_b = sum(linear_velocity(b), cross(wb, arm_b_));
+    return twist_of(difference(of_a, of_b), difference(wa, wb));
+}
+
+DUCTILE_INLINE double MotorPose::along(const MotorAxis& row, const Vector6<double>& twist) const {
+    return dot(axis_, row.turns() ? angular(twist) : linear(twist));
+}
+
+DUCTILE_INLINE double MotorPose::velocity(const MotorAxis& row) const {
+    if (!row.turns()) return along(row, twist(row));
+    const auto& [a, b, reversed] = row.bodies();
+    return dot(axis_, difference(angular_velocity(a), angular_velocity(b)));
+}
+
+} // namespace ductile::ode
