@@ -48,9 +48,9 @@ class Lu {
                 std::swap(order_[std::size_t(k)], order_[std::size_t(pivot)]);
                 for (int j = 0; j < N; ++j) std::swap(factors_(k, j), factors_(pivot, j));
             }
+            inverse_pivots_[k] = 1 / factors_(k, k);
             if (factors_(k, k) == 0) continue; // and so is all below it
-            const S inverse = 1 / factors_(k, k);
-            for (int i = k + 1; i < N; ++i) factors_(i, k) *= inverse;
+            for (int i = k + 1; i < N; ++i) factors_(i, k) *= inverse_pivots_[k];
         }
     }
 
@@ -63,7 +63,7 @@ class Lu {
         }
         for (int i = N - 1; i >= 0; --i) {
             for (int k = i + 1; k < N; ++k) x[i] -= factors_(i, k) * x[k];
-            x[i] /= factors_(i, i);
+            x[i] *= inverse_pivots_[i];
         }
         return x;
     }
@@ -89,6 +89,7 @@ class Lu {
 
   private:
     Matrix factors_;                        ///< L below the diagonal, U on and above it
+    Vector inverse_pivots_;                 ///< 1/u_ii
     std::array<int, std::size_t(N)> order_; ///< row i of Π A is this row of A
     bool odd_ = false;                      ///< Π swaps an odd number of rows
 };
