@@ -76,6 +76,24 @@ struct MeteredContact {
     Vector3<double> tangential{0, 0, 0}; ///< [N s]
 };
 
+namespace detail {
+
+/// Numbers addresses from 0 on, in the order in which they come.
+class AddressBook {
+  public:
+    static constexpr std::size_t unknown = std::size_t(-1);
+
+    /// The number of an address, given now where it had none.
+    std::size_t enter(const void* address);
+    [[nodiscard]] std::size_t find(const void* address) const;
+    void clear();
+
+  private:
+    std::unordered_map<const void*, std::size_t> numbers_;
+};
+
+} // namespace detail
+
 class EnergyMeter {
   public:
     EnergyMeter(const EnergyMeter&) = delete;
@@ -96,10 +114,7 @@ class EnergyMeter {
     ~EnergyMeter() = default;
 
     /// Energy that all rows of a joint took from the bodies since the meter was made [J].
-    [[nodiscard]] double taken_by_address(const void* joint) const {
-        const auto entry = taken_.find(joint);
-        return entry != taken_.end() ? entry->second : 0;
-    }
+    [[nodiscard]] double taken_by_address(const void* joint) const;
 
   private:
     // ---- what an engine answers
@@ -133,6 +148,8 @@ class EnergyMeter {
     };
 
     [[nodiscard]] Course* course_of(const void* body);
+    /// Null where it is no plastic joint of the step.
+    [[nodiscard]] const PlasticStart* start_of(const PairQueries* joint) const;
     void take_back(const void* body, const VelocityChange<double>& change);
     void undo_releases();
     void book_body(const Course& course, const MeteredBody& now, double dt, double share);
@@ -145,9 +162,10 @@ class EnergyMeter {
 
     Ledger<double> ledger_;
     HeldEnergy<double> last_;
-    std::unordered_map<const void*, Course> courses_;
-    std::unordered_map<const PairQueries*, PlasticStart> plastic_start_;
-    std::unordered_map<const void*, double> taken_;
+    detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
+    std::vector<Course> courses_;
+    std::vector<PlasticStart> plastic_start_;
+    std::vector<double> taken_;               ///< [J]
     mutable std::vector<MeteredBody> bodies_; ///< room that is used again, as are the next
     mutable std::vector<MeteredPlasticJoint> plastic_;
     std::vector<MeteredJoint> joints_;

@@ -16,6 +16,15 @@ DUCTILE_INLINE double kinetic_energy(const MeteredBody& body, const Vector3<doub
     return body.mass * dot(velocity, velocity) / 2 + dot(spin, times(body.inertia, spin)) / 2;
 }
 
+DUCTILE_INLINE std::size_t AddressBook::enter(const void* address) {
+    return numbers_.emplace(address, numbers_.size()).first->second;
+}
+DUCTILE_INLINE std::size_t AddressBook::find(const void* address) const {
+    const auto found = numbers_.find(address);
+    return found != numbers_.end() ? found->second : unknown;
+}
+DUCTILE_INLINE void AddressBook::clear() { numbers_.clear(); }
+
 } // namespace detail
 
 DUCTILE_INLINE void EnergyMeter::open() {
@@ -41,12 +50,18 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 DUCTILE_INLINE void EnergyMeter::before_step() {
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
+    course_numbers_.clear();
     courses_.clear();
-    for (const MeteredBody& body : bodies_) courses_.emplace(body.body, Course{.start = body});
+    for (const MeteredBody& body : bodies_) {
+        if (course_numbers_.enter(body.body) < courses_.size()) continue; // listed twice
+        courses_.emplace_back().start = body;
+    }
+    plastic_numbers_.clear();
     plastic_start_.clear();
     for (const auto& [joint, a, b] : plastic_) {
-        plastic_start_[joint] = {joint->absorbed_energy(), joint->stored_energy(),
-                                 joint->release().energy};
+        if (plastic_numbers_.enter(joint) < plastic_start_.size()) continue;
+        plastic_start_.push_back(
+            {joint->absorbed_energy(), joint->stored_energy(), joint->release().energy});
     }
     watch_step();
 }
@@ -81,8 +96,19 @@ DUCTILE_INLINE void EnergyMeter::after_step(double dt, double share) {
 }
 
 DUCTILE_INLINE EnergyMeter::Course* EnergyMeter::course_of(const void* body) {
-    const auto found = courses_.find(body);
-    return found != courses_.end() ? &found->second : nullptr;
+    const std::size_t number = course_numbers_.find(body);
+    return number != detail::AddressBook::unknown ? &courses_[number] : nullptr;
+}
+
+DUCTILE_INLINE const EnergyMeter::PlasticStart* EnergyMeter::start_of(
+    const PairQueries* joint) const {
+    const std::size_t number = plastic_numbers_.find(joint);
+    return number != detail::AddressBook::unknown ? &plastic_start_[number] : nullptr;
+}
+
+DUCTILE_INLINE double EnergyMeter::taken_by_address(const void* joint) const {
+    const std::size_t number = taken_numbers_.find(joint);
+    return number != detail::AddressBook::unknown ? taken_[number] : 0;
 }
 
 DUCTILE_INLINE void EnergyMeter::take_back(const void* body, const VelocityChange<double>& change) {
@@ -95,9 +121,9 @@ DUCTILE_INLINE void EnergyMeter::take_back(const void* body, const VelocityChang
 /// A break's release acted after the solve; the rows' work wants the velocities before it.
 DUCTILE_INLINE void EnergyMeter::undo_releases() {
     for (const auto& [joint, a, b] : plastic_) {
-        const auto start = plastic_start_.find(joint);
+        const PlasticStart* start = start_of(joint);
         const BreakRelease<double>& release = joint->release();
-        if (start == plastic_start_.end() || release.energy == start->second.released) continue;
+        if (start == nullptr || release.energy == start->released) continue;
         take_back(a, release.a);
         take_back(b, release.b);
     }
@@ -140,18 +166,18 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
     const double taken = -work(joint.a, joint.force_a, joint.torque_a, dt) -
                          work(joint.b, joint.force_b, joint.torque_b, dt);
     double named = 0;
-    const auto start = plastic_start_.find(joint.plastic);
-    if (start != plastic_start_.end()) {
-        const PlasticStart& before = start->second;
-        const double flow = joint.plastic->absorbed_energy() - before.absorbed;
+    if (const PlasticStart* before = start_of(joint.plastic)) {
+        const double flow = joint.plastic->absorbed_energy() - before->absorbed;
         ledger_.book(Account::plastic, flow);
         // what a break released was taken by the row and given back after the solve; what was
         // stored then is set free inside the part
-        named = flow + joint.plastic->stored_energy() - before.stored +
-                joint.plastic->release().energy - before.released;
+        named = flow + joint.plastic->stored_energy() - before->stored +
+                joint.plastic->release().energy - before->released;
     }
     ledger_.book(Account::joints, taken - named);
-    taken_[joint.joint] += taken;
+    const std::size_t number = taken_numbers_.enter(joint.joint);
+    if (number == taken_.size()) taken_.push_back(0);
+    taken_[number] += taken;
 }
 
 DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {

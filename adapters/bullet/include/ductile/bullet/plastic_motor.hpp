@@ -96,10 +96,10 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     AtBreak at_break_;
     bool motor_was_on_;
     btScalar velocity_was_, impulse_was_;
-    Vector3<double> axis_ = Vector3<double>::UnitZ(); ///< of the open tick, world
-    RowLimits<double> limits_;                        ///< of it
-    double tick_ = 0;                                 ///< [s]
-    double dt_ = 0;                                   ///< for which the row's moment acts in it [s]
+    Vector3<double> axis_{0, 0, 1}; ///< of the open tick, world
+    RowLimits<double> limits_;      ///< of it
+    double tick_ = 0;               ///< [s]
+    double dt_ = 0;                 ///< for which the row's moment acts in it [s]
     bool pending_ = false;
 };
 

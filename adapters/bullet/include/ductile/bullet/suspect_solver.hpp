@@ -18,7 +18,6 @@
 
 #include <memory>
 #include <mutex>
-#include <unordered_set>
 #include <vector>
 
 #include "ductile/bullet/soft_mlcp_solver.hpp"
@@ -37,8 +36,8 @@ class SuspectSolver final : public btConstraintSolver, public ProxySolver {
     [[nodiscard]] btConstraintSolver& usual() const noexcept override { return usual_; }
 
     /// From now on the constraint's island is solved directly. Only its address is kept.
-    void suspect(const void* constraint) { suspects_.insert(constraint); }
-    void trust(const void* constraint) { suspects_.erase(constraint); }
+    void suspect(const void* constraint);
+    void trust(const void* constraint);
     void trust_all() noexcept { suspects_.clear(); }
 
     /// Islands that a direct solver was given and did not solve: the iterative one took over.
@@ -66,15 +65,17 @@ class SuspectSolver final : public btConstraintSolver, public ProxySolver {
     struct Direct {
         btDantzigSolver dantzig;
         SoftMlcpSolver solver{dantzig, Answer::exact};
+        std::unique_ptr<Direct> next; ///< idle
     };
 
+    [[nodiscard]] bool is_suspect(const void* constraint) const;
     std::unique_ptr<Direct> borrow();
     void give_back(std::unique_ptr<Direct> direct);
 
     btConstraintSolver& usual_;
-    std::unordered_set<const void*> suspects_;
-    mutable std::mutex mutex_; ///< of idle_
-    std::vector<std::unique_ptr<Direct>> idle_;
+    std::vector<const void*> suspects_; ///< sorted
+    mutable std::mutex mutex_;          ///< of idle_
+    std::unique_ptr<Direct> idle_;      ///< the first of them
 };
 
 } // namespace ductile::bullet

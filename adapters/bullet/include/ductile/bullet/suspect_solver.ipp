@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "ductile/bullet/suspect_solver.hpp"
@@ -11,10 +12,28 @@
 
 namespace ductile::bullet {
 
+DUCTILE_INLINE void SuspectSolver::suspect(const void* constraint) {
+    const auto place =
+        std::lower_bound(suspects_.begin(), suspects_.end(), constraint, std::less<>());
+    if (place == suspects_.end() || *place != constraint) suspects_.insert(place, constraint);
+}
+
+DUCTILE_INLINE void SuspectSolver::trust(const void* constraint) {
+    const auto place =
+        std::lower_bound(suspects_.begin(), suspects_.end(), constraint, std::less<>());
+    if (place != suspects_.end() && *place == constraint) suspects_.erase(place);
+}
+
+DUCTILE_INLINE bool SuspectSolver::is_suspect(const void* constraint) const {
+    return std::binary_search(suspects_.begin(), suspects_.end(), constraint, std::less<>());
+}
+
 DUCTILE_INLINE int SuspectSolver::fallbacks() const {
     const std::lock_guard lock(mutex_);
     int sum = 0;
-    for (const auto& direct : idle_) sum += direct->solver.getNumFallbacks();
+    for (const Direct* direct = idle_.get(); direct != nullptr; direct = direct->next.get()) {
+        sum += direct->solver.getNumFallbacks();
+    }
     return sum;
 }
 
@@ -26,11 +45,10 @@ DUCTILE_INLINE btScalar SuspectSolver::solveGroup(
         return solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
                                  constraint_count, info, drawer, dispatcher);
     };
-    const bool has_suspect =
-        !suspects_.empty() && std::any_of(constraints, constraints + constraint_count,
-                                          [this](const btTypedConstraint* constraint) {
-                                              return suspects_.count(constraint) > 0;
-                                          });
+    bool has_suspect = false;
+    for (int i = 0; i < constraint_count && !has_suspect; ++i) {
+        has_suspect = is_suspect(constraints[i]);
+    }
     if (!has_suspect) return solve(usual_);
     auto direct = borrow();
     const btScalar result = solve(direct->solver);
@@ -40,20 +58,23 @@ DUCTILE_INLINE btScalar SuspectSolver::solveGroup(
 
 DUCTILE_INLINE void SuspectSolver::reset() {
     usual_.reset();
-    for (auto& direct : idle_) direct->solver.reset();
+    for (Direct* direct = idle_.get(); direct != nullptr; direct = direct->next.get()) {
+        direct->solver.reset();
+    }
 }
 
 DUCTILE_INLINE std::unique_ptr<SuspectSolver::Direct> SuspectSolver::borrow() {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<Direct>();
-    auto result = std::move(idle_.back());
-    idle_.pop_back();
+    if (idle_ == nullptr) return std::make_unique<Direct>();
+    auto result = std::move(idle_);
+    idle_ = std::move(result->next);
     return result;
 }
 
 DUCTILE_INLINE void SuspectSolver::give_back(std::unique_ptr<Direct> direct) {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(direct));
+    direct->next = std::move(idle_);
+    idle_ = std::move(direct);
 }
 
 } // namespace ductile::bullet

@@ -25,8 +25,8 @@ namespace ductile::ode {
 
 /// Where a hinge is, world axes, as the bodies are now.
 struct HingeFrame {
-    Vector3<double> anchor = Vector3<double>::Zero(); ///< [m]
-    Vector3<double> axis = Vector3<double>::UnitZ();  ///< direction, any length > 0
+    Vector3<double> anchor{0, 0, 0}; ///< [m]
+    Vector3<double> axis{0, 0, 1};   ///< direction, any length > 0
 };
 
 /// All but the joint's type.
@@ -49,7 +49,7 @@ class HingeConstraint : public OneAxisConstraint {
     /// ODE pulls the axes together as it does the pin.
     [[nodiscard]] DUCTILE_INLINE Vector6<double> rigid_target(double dt) const override;
 
-    Vector3<double> axis_in_b_ = Vector3<double>::UnitZ();
+    Vector3<double> axis_in_b_{0, 0, 1};
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
