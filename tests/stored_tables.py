@@ -70,6 +70,12 @@ def fixed_steps(path):
                         for step in dict.fromkeys(step for _, step in found)])
 
 
+def misses(path):
+    """Of the Charpy test's runs with our joints: how many are off by more than 1 %, and how many there are."""
+    ours = [row for row in rows_of(path) if is_ours(row)]
+    return [sum(row["right"] == "no" for row in ours), len(ours)]
+
+
 def at_game_step(path):
     """The best errors at 1/60 s, and what 1 % costs with steps that are fixed and of first order."""
     rows = [row for row in rows_of(path) if row["quantity"] != "absorbed_energy"]
