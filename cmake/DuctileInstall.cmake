@@ -3,7 +3,7 @@
 include(CMakePackageConfigHelpers)
 
 install(DIRECTORY include/ adapters/bullet/include/ adapters/ode/include/
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp" PATTERN "*.ipp")
 
 # ---- the CMake package -----------------------------------------------------------------------------
 install(TARGETS ductile EXPORT ductileTargets)

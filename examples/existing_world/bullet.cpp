@@ -8,6 +8,7 @@
 //   lamp post yielded at 0.001 s
 //   lamp post broke at 0.047 s
 //   took 5892.4 J
+#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdio>

@@ -11,7 +11,7 @@
 
 #include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/link_types.hpp"
-#include "ductile/joint/pair.hpp"
+#include "ductile/joint/inverse_mass.hpp"
 
 namespace ductile::bullet {
 
