@@ -75,12 +75,12 @@ class AnyLink {
     /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
     /// out of what it is shown.
     [[nodiscard]] bool reads_mass() const noexcept {
-        return axes().size() == 1 ? !all_rigid() : mass_at_ != pose_.rest_changes();
+        return one_axis_ ? !all_rigid_ : mass_at_ != pose_.rest_changes();
     }
     /// True where M only serves to predict forces: that of the rest position will do there for as
     /// long as the joint does not flow.
     [[nodiscard]] bool takes_mass_at_rest() const noexcept {
-        return axes().size() > 1 && all_rigid() && !totals().flowing;
+        return !one_axis_ && all_rigid_ && !totals().flowing;
     }
     /// K at the rest position (inverse_mass_along_b): used until that changes.
     void set_inverse_mass_at_rest(const Matrix6<S>& k) noexcept {
@@ -174,17 +174,20 @@ class AnyLink {
     }
 
   protected:
-    AnyLink(const JointFrame<S>& in_a, const JointFrame<S>& in_b) : pose_(in_a, in_b) {}
+    /// What the joint's parameters allow a row to be off by.
+    struct Allowed {
+        S absolute_residual, relative_residual;
+    };
+    /// `all_rigid`: no plastic row is elastic below yield.
+    AnyLink(const JointFrame<S>& in_a, const JointFrame<S>& in_b, bool one_axis, bool all_rigid,
+            const Allowed& allowed)
+        : pose_(in_a, in_b), one_axis_(one_axis), all_rigid_(all_rigid), allowed_(allowed) {}
     AnyLink(const AnyLink&) = default;
     AnyLink(AnyLink&&) = default;
     AnyLink& operator=(const AnyLink&) = default;
     AnyLink& operator=(AnyLink&&) = default;
     ~AnyLink() = default;
 
-    /// What the joint's parameters allow a row to be off by.
-    struct Allowed {
-        S absolute_residual, relative_residual;
-    };
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept;
     /// Turns the rest orientation by what flowed about the plastic axes [rad].
@@ -198,9 +201,6 @@ class AnyLink {
   private:
     // ---- what the joint does; six-vectors in the order of JointAxis, zero for what is not its own
 
-    /// No plastic row is elastic below yield.
-    [[nodiscard]] virtual bool all_rigid() const noexcept = 0;
-    [[nodiscard]] virtual Allowed allowed() const noexcept = 0;
     [[nodiscard]] virtual Vector6<S> offset() const noexcept = 0; ///< q_p
     virtual void set_offset(const Vector6<S>& offset) noexcept = 0;
     [[nodiscard]] virtual Vector6<S> flow() const noexcept = 0; ///< direction of the last flow
@@ -220,6 +220,9 @@ class AnyLink {
     unsigned mass_at_ = std::numeric_limits<unsigned>::max();
     S rigid_residual_ = 0;
     bool rigid_unsolved_ = false;
+    bool one_axis_;
+    bool all_rigid_;
+    Allowed allowed_;
 };
 
 template <std::floating_point S>
@@ -300,7 +303,7 @@ JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
 }
 
 template <std::floating_point S>
-Vector6<S> AnyLink<S>::strain() const noexcept {
+inline Vector6<S> AnyLink<S>::strain() const noexcept {
     Vector6<S> result = twist_of(pose_.displacement(), pose_.elastic_rotation());
     const Vector6<S> rest = offset();
     for (int i = 0; i < 3; ++i) result[i] -= rest[i];
@@ -308,7 +311,8 @@ Vector6<S> AnyLink<S>::strain() const noexcept {
 }
 
 template <std::floating_point S>
-void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept {
+inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
+                                           const Vector6<S>& velocity) noexcept {
     std::array<S, 2> worst{}; // of translations and rotations
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         if (plastic_[i]) continue;
@@ -316,7 +320,7 @@ void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& vel
         worst[i / 3] = std::max(worst[i / 3], residual);
     }
     rigid_residual_ = std::max(worst[0], worst[1]);
-    const Allowed allow = allowed();
+    const Allowed& allow = allowed_;
     rigid_unsolved_ =
         rigid_residual_ > allow.absolute_residual &&
         (worst[0] > allow.absolute_residual + allow.relative_residual * pose_.speed_of_a(a) ||
@@ -324,7 +328,7 @@ void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& vel
 }
 
 template <std::floating_point S>
-void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
+inline void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
     Vector3<S> turn = Vector3<S>::Zero();
     for (int i = 0; i < 3; ++i) {
         if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];

@@ -49,7 +49,10 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     /// `axes`: which axis of the link each row of the joint is, none twice; the others are rigid.
     /// @throws std::invalid_argument where an axis is given twice.
     Link(Joint joint, const Axes& axes, const JointFrame<S>& in_a, const JointFrame<S>& in_b)
-        : AnyLink<S>(in_a, in_b), joint_(std::move(joint)), axes_(axes) {
+        : AnyLink<S>(in_a, in_b, one_axis, all_rigid(joint),
+                     {joint.parameters().absolute_residual, joint.parameters().relative_residual}),
+          joint_(std::move(joint)),
+          axes_(axes) {
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             if (plastic_[index(axes_[i])]) {
                 throw std::invalid_argument("Link.axes[" + std::to_string(i) +
@@ -94,20 +97,17 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     using Base::plastic_;
     using Base::pose_;
 
-    [[nodiscard]] bool all_rigid() const noexcept override {
+    [[nodiscard]] static bool all_rigid(const Joint& joint) noexcept {
         constexpr S rigid = std::numeric_limits<S>::infinity();
         if constexpr (one_axis) {
-            return joint_.parameters().stiffness == rigid;
+            return joint.parameters().stiffness == rigid;
         } else {
             bool all = true;
             for (int k = 0; k < dimension; ++k) {
-                all = all && joint_.parameters().stiffness[k] == rigid;
+                all = all && joint.parameters().stiffness[k] == rigid;
             }
             return all;
         }
-    }
-    [[nodiscard]] typename Base::Allowed allowed() const noexcept override {
-        return {joint_.parameters().absolute_residual, joint_.parameters().relative_residual};
     }
     [[nodiscard]] Vector6<S> offset() const noexcept override { return from_joint(joint_offset()); }
     void set_offset(const Vector6<S>& six) noexcept override {
