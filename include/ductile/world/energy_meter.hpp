@@ -8,15 +8,13 @@
 // The update of an engine is v' = v + M⁻¹ Σ impulses, so each impulse's work is impulse × (u +
 // u')/2 at its point, and the sum is the change of kinetic energy to round-off. Booked:
 //   plastic      what every plastic joint says it absorbed
-//   joints       work of all joints, less the plastic part and what elastic ones store, which the
-//   world
-//                holds, and what a break gave back
+//   joints       work of all joints, less the plastic part, what elastic ones store, which the
+//                world holds, and what a break gave back
 //   contact      normal impulses
 //   friction     tangential impulses
-//   integration  gravity's work against the change of potential energy; damping; gyroscopic torque
-//   and
-//                the turning of inertia tensors; motion that ends because the engine puts a body to
-//                sleep
+//   integration  gravity's work against the change of potential energy; damping; gyroscopic
+//                torque and the turning of inertia tensors; motion that ends because the engine
+//                puts a body to sleep
 // What the engine does not tell stays unexplained.
 //
 // Cost: O(bodies + joints + contacts) per step. Not thread-safe.

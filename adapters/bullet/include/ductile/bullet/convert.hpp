@@ -10,8 +10,8 @@
 #include <LinearMath/btVector3.h>
 
 #include "ductile/joint/decoupled_rows.hpp"
-#include "ductile/joint/link_types.hpp"
 #include "ductile/joint/inverse_mass.hpp"
+#include "ductile/joint/link_types.hpp"
 
 namespace ductile::bullet {
 

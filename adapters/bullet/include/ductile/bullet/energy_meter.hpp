@@ -46,12 +46,14 @@ class EnergyMeter final : public ductile::EnergyMeter {
 
   private:
     DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;
-    DUCTILE_INLINE void list_plastic_joints(std::vector<MeteredPlasticJoint>& joints) const override;
+    DUCTILE_INLINE void list_plastic_joints(
+        std::vector<MeteredPlasticJoint>& joints) const override;
     DUCTILE_INLINE void watch_step() override;
     DUCTILE_INLINE void list_joints(std::vector<MeteredJoint>& joints) const override;
-    DUCTILE_INLINE void list_contacts(double dt, std::vector<MeteredContact>& contacts) const override;
+    DUCTILE_INLINE void list_contacts(double dt,
+                                      std::vector<MeteredContact>& contacts) const override;
     [[nodiscard]] DUCTILE_INLINE Vector3<double> gyroscopic_impulse(const MeteredBody& body,
-                                                     double dt) const override;
+                                                                    double dt) const override;
     DUCTILE_INLINE void damp(MeteredBody& body, double dt) const override;
 
     btDiscreteDynamicsWorld& world_;

@@ -217,7 +217,8 @@ inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
         } else {
             const CombinedRow<double>& row = decoupled->rows()[i];
             limits.bias = dot(row.force, moving) + dot(row.moment, turning);
-            sweep.add(times(axes, row.force), times(axes, row.moment), limits);
+            // Eigen's own products, in packets: six rows a tick
+            sweep.add(axes * row.force, axes * row.moment, limits);
         }
     }
     if (dimension > 1) sweep.join_last(dimension);

@@ -22,13 +22,12 @@
 //     joint speeds cut at 100 rad/s or m/s, sleep after 2 s below 0.22 rad/s. See `undamp`.
 //     (setMaxAppliedImpulse is not used by anything.)
 //   - Solvers. The iterative one sees every joint alone with all others of the chain free, the
-//   worst
-//     there is: chains of three and more hinges need a direct one. See multibody_solver.hpp. The
-//     matrix of a chain has a condition of N⁴: in single precision Dantzig's method pivots wrongly
-//     now and then from about ten hinges, which the certificate reports; build Bullet double.
+//     worst there is: chains of three and more hinges need a direct one. See multibody_solver.hpp.
+//     The matrix of a chain has a condition of N⁴: in single precision Dantzig's method pivots
+//     wrongly now and then from about ten hinges, which the certificate reports; build Bullet
+//     double.
 //   - Islands are solved together until they have m_minimumSolverBatchSize (128) constraints: with
-//   a
-//     direct solver set it to 1, as its cost grows with the third power.
+//     a direct solver set it to 1, as its cost grows with the third power.
 //   - A ball link turns by at most π/4 a step; faster spins than that are cut by Bullet.
 //   - Fixed joints between links must be setupFixed; links of a btMultiBody never carry rigid rows.
 //

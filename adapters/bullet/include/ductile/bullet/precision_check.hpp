@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// Refuses a program whose Bullet library was built for another precision than its headers are read in.
-// btScalar is float, or double where BT_USE_DOUBLE_PRECISION is defined, and nothing in Bullet notices
-// when the two differ: bodies have another size on either side of a call, and memory is overwritten.
+// Refuses a program whose Bullet library was built for another precision than its headers are read
+// in. btScalar is float, or double where BT_USE_DOUBLE_PRECISION is defined, and nothing in Bullet
+// notices when the two differ: bodies have another size on either side of a call, and memory is
+// overwritten.
 //
 // Where it is noticed, in the order of a build:
 //   compiler  the CMake target or .pc file of one precision, the macro of the other: #error
-//   linker    the library has no function that takes our btScalar: the function that misses it is named
-//             after what to do, "in function `...link_with_Bullet_built_for_double_precision...'"
-//   run time  both builds of the library are in the program, or another one was loaded than was linked:
-//             `require_matching_precision` throws
+//   linker    the library has no function that takes our btScalar: the function that misses it is
+//             named after what to do,
+//             "in function `...link_with_Bullet_built_for_double_precision...'"
+//   run time  both builds of the library are in the program, or another one was loaded than was
+//             linked: `require_matching_precision` throws
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -19,9 +21,11 @@
 
 #ifdef DUCTILE_BULLET_DOUBLE
 #if DUCTILE_BULLET_DOUBLE && !defined(BT_USE_DOUBLE_PRECISION)
-#error "ductile: ductile::bullet_float64 without BT_USE_DOUBLE_PRECISION; link ductile::bullet for single precision"
+#error \
+    "ductile: ductile::bullet_float64 without BT_USE_DOUBLE_PRECISION; link ductile::bullet for single precision"
 #elif !DUCTILE_BULLET_DOUBLE && defined(BT_USE_DOUBLE_PRECISION)
-#error "ductile: ductile::bullet with BT_USE_DOUBLE_PRECISION; link ductile::bullet_float64 for double precision"
+#error \
+    "ductile: ductile::bullet with BT_USE_DOUBLE_PRECISION; link ductile::bullet_float64 for double precision"
 #endif
 #endif
 
@@ -62,10 +66,10 @@ inline bool check_precision() {
     if (fixed.btRigidBody::calculateSerializeBufferSize() != ours) {
         throw std::logic_error(
             sizeof(btScalar) == sizeof(double)
-                ? "ductile: compiled for Bullet in double precision (BT_USE_DOUBLE_PRECISION), but the "
-                  "Bullet library in this program is built for single precision"
-                : "ductile: compiled for Bullet in single precision, but the Bullet library in this "
-                  "program is built for double precision; define BT_USE_DOUBLE_PRECISION");
+                ? "ductile: compiled for Bullet in double precision (BT_USE_DOUBLE_PRECISION), but "
+                  "the Bullet library in this program is built for single precision"
+                : "ductile: compiled for Bullet in single precision, but the Bullet library in "
+                  "this program is built for double precision; define BT_USE_DOUBLE_PRECISION");
     }
     // called through a pointer that the compiler cannot see through, so that the linker's complaint
     // names the function and not whatever it would be inlined into

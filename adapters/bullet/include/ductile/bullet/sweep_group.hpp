@@ -37,8 +37,8 @@ class ProxySolver {
     ~ProxySolver() = default;
 };
 
-/// True for Bullet's own sequential impulse and NNCG, alone or behind a ProxySolver: they call every
-/// constraint in each sweep. What derives from them may do otherwise.
+/// True for Bullet's own sequential impulse and NNCG, alone or behind a ProxySolver: they call
+/// every constraint in each sweep. What derives from them may do otherwise.
 [[nodiscard]] inline bool calls_in_each_sweep(const btConstraintSolver& solver) {
     if (typeid(solver) == typeid(btSequentialImpulseConstraintSolver) ||
         typeid(solver) == typeid(btNNCGConstraintSolver)) {

@@ -4,15 +4,15 @@
 // acts, how its position is measured, and which parameters rule it. Works on joints that somebody
 // else made; it owns nothing and never attaches or detaches anything.
 //
-//   kind            row                          position                           point of the
-//   force hinge           turns about the axis         ODE's angle                        - slider
-//   slides along the axis        ODE's position                     midway between bodies universal
-//   turns about axis 1 or 2      ODE's angle                        - hinge-2         turns about
-//   axis 1 or 2      ODE's angle where the axes are at  -
-//                                                right angles, else increments
-//   angular motor   turns about axis 0, 1 or 2   increments                         -
-//   linear motor    slides along axis 0, 1 or 2  increments                         midway between
-//   bodies
+//   kind           row                           position           point of the force
+//   hinge          turns about the axis          ODE's angle        -
+//   slider         slides along the axis         ODE's position     midway between bodies
+//   universal      turns about axis 1 or 2       ODE's angle        -
+//   hinge-2        turns about axis 1 or 2       ODE's angle (*)    -
+//   angular motor  turns about axis 0, 1 or 2    increments         -
+//   linear motor   slides along axis 0, 1 or 2   increments         midway between bodies
+//
+//   (*) where the axes are at right angles, else increments
 //
 // "Midway" is between the two centres of mass; a joint to the static world acts at the centre of
 // mass of its one body. "Increments": the bodies' turning or displacement along the axis over each
@@ -27,8 +27,7 @@
 // Traps of ODE 0.16 that this header deals with
 //   - Universal attached to (null, body): ODE swaps the axes and not the motors. Refused.
 //   - The axis of a linear motor is returned in the frame it was given relative to, and nobody can
-//   ask
-//     which: `linear_motor_axis` wants to know.
+//     ask which: `linear_motor_axis` wants to know.
 //   - Angular motors in Euler mode have axes that are not of unit length: refused.
 //
 // Cost: O(1), no allocation. Not thread-safe.
