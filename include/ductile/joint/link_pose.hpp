@@ -8,9 +8,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 
 #include "ductile/joint/inverse_mass.hpp"
@@ -108,12 +108,8 @@ class LinkPose {
         Matrix3<S> orientation = Matrix3<S>::Zero();
 
         [[nodiscard]] bool is(const BodyState<S>& body) const noexcept {
-            S off = 0; // without a branch for each entry
-            for (int i = 0; i < 3; ++i) off += std::abs(position[i] - body.position[i]);
-            for (int i = 0; i < 9; ++i) {
-                off += std::abs(orientation.data()[i] - body.orientation.data()[i]);
-            }
-            return off == 0;
+            return std::memcmp(position.data(), body.position.data(), 3 * sizeof(S)) == 0 &&
+                   std::memcmp(orientation.data(), body.orientation.data(), 9 * sizeof(S)) == 0;
         }
     };
 

@@ -99,10 +99,8 @@ class RowSweep {
   private:
     void set(int i, const Vector3<S>& along, const Vector3<S>& about,
              const RowLimits<S>& limits) noexcept {
-        for (int j = 0; j < 3; ++j) {
-            directions_(j, i) = along[j];
-            directions_(3 + j, i) = about[j];
-        }
+        directions_.template block<3, 1>(0, i) = along;
+        directions_.template block<3, 1>(3, i) = about;
         bias_[i] = limits.bias;
         lower_[i] = limits.lower;
         upper_[i] = limits.upper;
@@ -156,17 +154,13 @@ SweptVelocities<S> RowSweep<S>::sweep(const SweptVelocities<S>& now, Impulses& i
     const Vector3<S> on_a = sum(now.linear_a, cross(now.angular_a, a_.arm));
     const Vector3<S> on_b = sum(now.linear_b, cross(now.angular_b, b_.arm));
     const Vector6<S> w = twist_of(difference(on_a, on_b), difference(now.angular_a, now.angular_b));
-    Vector6<S> missing;
-    bool at_rest = true;
-    for (int i = 0; i < 6; ++i) {
-        missing[i] = bias_[i] - compliance_[i] * impulses[i];
-        for (int j = 0; j < 6; ++j) missing[i] -= directions_(j, i) * w[j];
-        at_rest = at_rest && missing[i] == 0;
-    }
+    // Eigen's own product here, which is the sweep's work: it uses packets
+    Vector6<S> missing = bias_ - compliance_.cwiseProduct(impulses);
+    missing.noalias() -= directions_.transpose() * w;
 
     asked = 0;
     if (!has_mass_) {
-        if (at_rest && within_bounds(impulses)) return {};
+        if (missing.isZero(0) && within_bounds(impulses)) return {};
         find_mass();
     }
     const Impulses before = impulses;
@@ -183,11 +177,8 @@ SweptVelocities<S> RowSweep<S>::sweep(const SweptVelocities<S>& now, Impulses& i
     asked = std::max(asked, of_block);
     swept_ = true;
     if (asked == 0) return {};
-    Vector6<S> given = Vector6<S>::Zero();
-    for (int i = 0; i < 6; ++i) {
-        const S change = impulses[i] - before[i];
-        for (int j = 0; j < 6; ++j) given[j] += directions_(j, i) * change;
-    }
+    const Vector6<S> change = impulses - before;
+    const Vector6<S> given = directions_ * change;
     const auto moved = [](const SweptBody<S>& body, const Vector3<S>& force) {
         return Vector3<S>(body.inverse_mass[0] * force[0], body.inverse_mass[1] * force[1],
                           body.inverse_mass[2] * force[2]);

@@ -26,7 +26,7 @@ using Matrix6 = Eigen::Matrix<S, 6, 6>;
 // expression costs whoever includes this library some hundredths of a second.
 
 template <std::floating_point S>
-[[nodiscard]] inline S dot(const Vector3<S>& a, const Vector3<S>& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline S dot(const Vector3<S>& a, const Vector3<S>& b) noexcept {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 template <std::floating_point S>
@@ -34,20 +34,23 @@ template <std::floating_point S>
     return std::sqrt(dot(v, v));
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> sum(const Vector3<S>& a, const Vector3<S>& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> sum(const Vector3<S>& a,
+                                                        const Vector3<S>& b) noexcept {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> difference(const Vector3<S>& a, const Vector3<S>& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> difference(const Vector3<S>& a,
+                                                               const Vector3<S>& b) noexcept {
     return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> scaled(std::type_identity_t<S> factor,
-                                       const Vector3<S>& v) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> scaled(std::type_identity_t<S> factor,
+                                                           const Vector3<S>& v) noexcept {
     return {factor * v[0], factor * v[1], factor * v[2]};
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> cross(const Vector3<S>& a, const Vector3<S>& b) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> cross(const Vector3<S>& a,
+                                                          const Vector3<S>& b) noexcept {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 template <std::floating_point S>
@@ -61,20 +64,21 @@ template <std::floating_point S>
 
 /// Column i of m.
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> column(const Matrix3<S>& m, int i) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> column(const Matrix3<S>& m, int i) noexcept {
     return {m(0, i), m(1, i), m(2, i)};
 }
 /// m v
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> times(const Matrix3<S>& m, const Vector3<S>& v) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> times(const Matrix3<S>& m,
+                                                          const Vector3<S>& v) noexcept {
     return {m(0, 0) * v[0] + m(0, 1) * v[1] + m(0, 2) * v[2],
             m(1, 0) * v[0] + m(1, 1) * v[1] + m(1, 2) * v[2],
             m(2, 0) * v[0] + m(2, 1) * v[1] + m(2, 2) * v[2]};
 }
 /// mᵀ v
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> transposed_times(const Matrix3<S>& m,
-                                                 const Vector3<S>& v) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> transposed_times(const Matrix3<S>& m,
+                                                                     const Vector3<S>& v) noexcept {
     return {m(0, 0) * v[0] + m(1, 0) * v[1] + m(2, 0) * v[2],
             m(0, 1) * v[0] + m(1, 1) * v[1] + m(2, 1) * v[2],
             m(0, 2) * v[0] + m(1, 2) * v[1] + m(2, 2) * v[2]};
@@ -171,16 +175,16 @@ template <std::floating_point S>
 
 /// First and last three of six: force and moment, velocity and turning.
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> linear(const Vector6<S>& six) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> linear(const Vector6<S>& six) noexcept {
     return {six[0], six[1], six[2]};
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector3<S> angular(const Vector6<S>& six) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector3<S> angular(const Vector6<S>& six) noexcept {
     return {six[3], six[4], six[5]};
 }
 template <std::floating_point S>
-[[nodiscard]] inline Vector6<S> twist_of(const Vector3<S>& linear,
-                                         const Vector3<S>& angular) noexcept {
+[[nodiscard, gnu::always_inline]] inline Vector6<S> twist_of(const Vector3<S>& linear,
+                                                             const Vector3<S>& angular) noexcept {
     Vector6<S> result;
     for (int i = 0; i < 3; ++i) {
         result[i] = linear[i];
