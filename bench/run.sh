@@ -33,11 +33,11 @@ fi
 cmake/install-packages.sh
 cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
 cmake --build --preset release --target \
-    {pareto,stability,scaling,joint_cost,detail}-{bullet-double,bullet-float,ode-double}
+    {pareto,stability,scaling,joint_cost,detail,instructions}-{bullet-double,bullet-float,ode-double}
 out=${out:-bench/results/$name}
 mkdir -p "$out"
 # the interpreter for which Debian packages matplotlib
-for question in detail pareto stability cost; do
+for question in detail pareto stability cost instructions; do
     /usr/bin/python3 bench/$question.py --bin build/release/bin --build build/release --out "$out" \
         ${quick[@]+"${quick[@]}"}
 done
