@@ -12,6 +12,7 @@
 #include <ductile/ode/plastic_joint.ipp>
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/world.ipp>
+#include <ductile/ode/world_life.ipp>
 
 namespace ductile::ode {
 

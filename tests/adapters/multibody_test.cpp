@@ -14,9 +14,11 @@
 
 #include "adapters/multibody_rig.hpp"
 #include "ductile/bullet/multibody_ball.hpp"
+#include "ductile/bullet/world.hpp"
 #include "ductile/law/linear.hpp"
 #include "reference/expect.hpp"
 #include "reference/problems/impact.hpp"
+#include "support/throws.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -644,4 +646,22 @@ TEST_CASE("what Bullet would never solve is refused or reported", "[multibody][l
     rig.step(1e-3);
     CHECK(hinge.outcome() == Outcome::elastic);
     hinge.remove_from(rig.world());
+}
+
+TEST_CASE("a joint of a multibody comes into a world once and leaves it when it ends",
+          "[multibody]") {
+    Rotors rig("si", {2});
+    bullet::World keeper(rig.world(), {.warn = nullptr});
+    {
+        Hinge hinge(rig.body(), 0, joint(40));
+        hinge.add_to(rig.world());
+        CHECK(message_of([&] { hinge.add_to(rig.world()); }) ==
+              "MultiBodyPlasticConstraint.add_to.world: must not be given while the constraint is "
+              "in a world: remove_from that one first");
+        keeper.add(hinge);
+        CHECK(rig.world().getNumMultiBodyConstraints() == 1);
+        keeper.step(1e-3);
+    }
+    CHECK(rig.world().getNumMultiBodyConstraints() == 0);
+    keeper.step(1e-3);
 }

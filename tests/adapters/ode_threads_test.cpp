@@ -62,7 +62,8 @@ class LostImpulses {
             V3 impulse = dt * ode::mass(bodies_[i]) * weight_, turn = none;
             for (std::size_t m = 0; m < motors_.size(); ++m) {
                 if (!acting_[m]) continue;
-                const auto [a, b, reversed] = ode::attached_bodies(motors_[m]->id());
+                const auto [a, b, reversed] =
+                    motors_[m]->bodies(); // a break takes them from its joint
                 if (a != bodies_[i] && b != bodies_[i]) continue;
                 const bool first = a == bodies_[i];
                 const dJointFeedback& told = told_[m];

@@ -12,6 +12,7 @@
 // Not thread-safe.
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <span>
@@ -19,17 +20,15 @@
 #include <utility>
 
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/world/kept_joint.hpp"
 #include "ductile/world/leapfrog.hpp"
 #include "ductile/world/ledger.hpp"
 #include "ductile/world/supervisor.hpp"
 
 namespace ductile {
 
-class SteppedWorld {
+class SteppedWorld : private JointKeeper {
   public:
-    SteppedWorld(const SteppedWorld&) = delete;
-    SteppedWorld& operator=(const SteppedWorld&) = delete;
-
     // ---- stepping
 
     /// One step of `dt` > 0 [s].
@@ -104,6 +103,9 @@ class SteppedWorld {
     ~SteppedWorld() = default;
 
     [[nodiscard]] Supervisor& supervisor() noexcept { return supervisor_; }
+    /// Around what an adapter keeps of a joint.
+    using JointKeeper::keep;
+    using JointKeeper::let_go;
     /// From the next step on forces act from the middle of one step to the middle of the next.
     void start_leapfrog() { leapfrog_.emplace(); }
     [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
@@ -142,6 +144,23 @@ class SteppedWorld {
         int usual_;
     };
 
+    /// A part may throw.
+    struct Stepping {
+        explicit Stepping(bool& flag) : flag_(flag) { flag_ = true; }
+        ~Stepping() { flag_ = false; }
+        Stepping(const Stepping&) = delete;
+        Stepping& operator=(const Stepping&) = delete;
+        bool& flag_;
+    };
+
+    void joint_stepped() final {
+        if (!stepping_ && !told_of_engine_.exchange(true)) {
+            supervisor_.say(
+                "ductile: the engine was stepped beside World::step, which clock, events and "
+                "ledger miss; step through World::step or World::advance alone");
+        }
+    }
+
     void do_step(double dt, double end) {
         const Effort effort = supervisor_.effort();
         const double start = time(), part = dt / effort.parts;
@@ -150,7 +169,10 @@ class SteppedWorld {
         for (int i = 1; i <= effort.parts; ++i) {
             require_possible(part);
             if (i > 1) apply_held_forces();
-            do_part(part, leapfrog_ ? leapfrog_->next(part) : ForceShare{}, effort);
+            {
+                const Stepping guard(stepping_);
+                do_part(part, leapfrog_ ? leapfrog_->next(part) : ForceShare{}, effort);
+            }
             supervisor_.look(i < effort.parts ? start + i * part : end,
                              [this](const void* joint) { suspect(joint); });
         }
@@ -159,6 +181,8 @@ class SteppedWorld {
 
     Supervisor supervisor_;
     std::optional<Leapfrog> leapfrog_;
+    bool stepping_ = false;
+    std::atomic<bool> told_of_engine_ = false; ///< that it is stepped by others
 };
 
 } // namespace ductile

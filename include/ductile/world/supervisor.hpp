@@ -116,6 +116,10 @@ class Supervisor {
     void on_event(Listener listener) { listener_ = std::move(listener); }
     [[nodiscard]] const Effort& effort() const noexcept { return effort_.effort(); }
     [[nodiscard]] double time() const noexcept { return time_; }
+    /// One line of its own.
+    void say(const std::string& line) const {
+        if (warn_) warn_(line);
+    }
 
     // ---- around a step
 

@@ -18,6 +18,7 @@ namespace ductile::bullet {
 DUCTILE_INLINE EnergyMeter::EnergyMeter(btDiscreteDynamicsWorld& world) : world_(world) { open(); }
 
 DUCTILE_INLINE EnergyMeter::~EnergyMeter() {
+    if (lent_.empty()) return; // nothing to ask of a world that may have ended
     for (int i = 0; i < world_.getNumConstraints(); ++i) forget(*world_.getConstraint(i));
 }
 

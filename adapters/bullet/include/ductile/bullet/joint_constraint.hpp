@@ -45,11 +45,6 @@ enum class Feedback {
 
 class JointConstraint : public PlasticConstraint, public LinkQueries {
   public:
-    using PlasticConstraint::add_to;
-    void add_to(btDynamicsWorld& world, bool disable_collisions_between_bodies) {
-        enter(world, disable_collisions_between_bodies);
-    }
-
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
     [[nodiscard]] DUCTILE_INLINE JointView view() const override;
 

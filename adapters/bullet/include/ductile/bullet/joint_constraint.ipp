@@ -18,7 +18,7 @@ struct JointConstraint::Reading {
 
 DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBody& a,
                                                 btRigidBody& b, Feedback feedback)
-    : PlasticConstraint(a, b, true),
+    : PlasticConstraint(a, b),
       LinkQueries(link),
       feedback_(feedback),
       order_(rigid_rotations_first(link.axes())) {
@@ -49,7 +49,7 @@ DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
     open_ = Open::nothing;
     release_ = {};
     link_.look(body_motion(m_rbA), body_motion(m_rbB));
-    if (link_.broken() != was_broken) setEnabled(was_broken);
+    if (link_.broken() != was_broken) was_broken ? hold_again() : let_go();
 }
 
 // ---- Bullet's side
@@ -111,6 +111,7 @@ DUCTILE_INLINE btScalar JointConstraint::getParam(int num, int /*axis*/) const {
 // ---- a tick
 
 DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
+    tell_keepers_of_step();
     dt_ = force_share_.value * tick;
     tick_share_ = force_share_.value;
     if (!one_axis()) mass_at_rest_.tell(link_, m_rbA, m_rbB);
@@ -138,7 +139,7 @@ DUCTILE_INLINE void JointConstraint::settle() const {
 DUCTILE_INLINE void JointConstraint::settle(const BodyState<double>& a, const BodyState<double>& b,
                                             bool in_solver) {
     const Open was = std::exchange(open_, Open::nothing);
-    if (was == Open::hand_back) setEnabled(false);
+    if (was == Open::hand_back) let_go();
     if (was != Open::tick) return;
     if (link_.commit_rows(a, b, reaction(), dt_).outcome != Outcome::broken) return;
     const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
@@ -148,7 +149,7 @@ DUCTILE_INLINE void JointConstraint::settle(const BodyState<double>& a, const Bo
         open_ = Open::hand_back;
         return;
     }
-    setEnabled(false);
+    let_go();
     if (release_.energy > 0) {
         apply(m_rbA, release_.a);
         apply(m_rbB, release_.b);

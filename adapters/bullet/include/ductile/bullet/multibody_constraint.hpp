@@ -49,6 +49,7 @@
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_report.hpp"
+#include "ductile/world/kept_joint.hpp"
 
 namespace ductile::bullet {
 
@@ -66,17 +67,16 @@ struct MultiBodyRelease {
 };
 
 /// Base is protected so that nobody adds the constraint to a world without its action.
-class MultiBodyPlasticConstraint : protected btMultiBodyConstraint {
+class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJoint {
   public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
 
-    MultiBodyPlasticConstraint(const MultiBodyPlasticConstraint&) = delete;
-    MultiBodyPlasticConstraint& operator=(const MultiBodyPlasticConstraint&) = delete;
-    ~MultiBodyPlasticConstraint() override = default;
+    DUCTILE_INLINE ~MultiBodyPlasticConstraint() override;
 
-    /// Adds the constraint and its end-of-tick commit to a world. The multibody and its colliders
-    /// must be in the world.
-    /// @throws std::invalid_argument where Bullet would never solve it.
+    /// Adds the constraint and its end-of-tick commit to a world, which has to outlive it: one that
+    /// ends leaves its world. The multibody and its colliders must be in the world.
+    /// @throws std::invalid_argument where Bullet would never solve it, or it is in a world
+    /// already.
     void add_to(btMultiBodyDynamicsWorld& world);
     void remove_from(btMultiBodyDynamicsWorld& world);
 

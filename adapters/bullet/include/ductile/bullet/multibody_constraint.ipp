@@ -38,7 +38,17 @@ DUCTILE_INLINE int MultiBodyPlasticConstraint::checked(const btMultiBody& body, 
     return link;
 }
 
+DUCTILE_INLINE MultiBodyPlasticConstraint::~MultiBodyPlasticConstraint() {
+    leave_keepers();
+    if (world_ != nullptr) remove_from(*world_);
+}
+
 DUCTILE_INLINE void MultiBodyPlasticConstraint::add_to(btMultiBodyDynamicsWorld& world) {
+    if (world_ != nullptr) {
+        throw std::invalid_argument(
+            "MultiBodyPlasticConstraint.add_to.world: must not be given while the constraint is in "
+            "a world: remove_from that one first");
+    }
     if (collider() == nullptr) {
         throw std::invalid_argument(
             "MultiBodyPlasticConstraint.body: must have a collider that is not static, or "
@@ -115,6 +125,7 @@ DUCTILE_INLINE int MultiBodyPlasticConstraint::getIslandIdA() const {
 DUCTILE_INLINE void MultiBodyPlasticConstraint::createConstraintRows(
     btMultiBodyConstraintArray& rows, btMultiBodyJacobianData& data,
     const btContactSolverInfo& info) {
+    tell_keepers_of_step();
     if (m_jacSizeA != 6 + m_bodyA->getNumDofs()) finalizeMultiDof();
     phase_ = Phase::asked;
     if (broken()) return;

@@ -9,6 +9,12 @@
 // which the bodies slept, or the constraint was disabled, was not solved and is not booked.
 //   Only with `add_to` may bodies be moved by hand (not only given velocities) between a tick and
 //   what comes first.
+//
+// Collisions. As with Bullet's own joints the two bodies collide with each other, unless add_to or
+// addConstraint was told that they do not; a break ends that, and they collide from then on.
+//
+// Ends. A constraint that ends leaves Bullet's world, and every World that looks after it: so
+// Bullet's world has to outlive it, or it has to be removed before.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
@@ -21,26 +27,31 @@
 #include "ductile/bullet/soft_rows.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
+#include "ductile/world/kept_joint.hpp"
 #include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
 /// Everything but the joint.
-class PlasticConstraint : public btTypedConstraint, public SoftRows, public SelfSolvedRows {
+class PlasticConstraint : public btTypedConstraint,
+                          public SoftRows,
+                          public SelfSolvedRows,
+                          public KeptJoint {
   public:
-    PlasticConstraint(const PlasticConstraint&) = delete;
-    PlasticConstraint& operator=(const PlasticConstraint&) = delete;
-    ~PlasticConstraint() override = default;
+    DUCTILE_INLINE ~PlasticConstraint() override;
 
-    /// Adds the constraint and its booking at the end of each tick to a world.
-    void add_to(btDynamicsWorld& world) { enter(world, parts_bodies_); }
+    /// Adds the constraint and its booking at the end of each tick to a world; only the booking
+    /// where Bullet's own addConstraint was called before.
+    /// `disable_collisions_between_bodies`: until it breaks or leaves.
+    /// @throws std::invalid_argument where it is in a world already.
+    void add_to(btDynamicsWorld& world, bool disable_collisions_between_bodies = false);
     void remove_from(btDynamicsWorld& world);
 
     [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
     [[nodiscard]] virtual JointView view() const = 0;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
-    /// True from add_to to remove_from.
+    /// True from add_to to remove_from, whoever else took the constraint out.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
 
     /// Bullet's own: sequential impulse calls it in each sweep.
@@ -49,11 +60,12 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows, public Self
     }
 
   protected:
-    /// `parts_bodies`: they do not collide with each other while the constraint is in a world.
-    PlasticConstraint(btRigidBody& a, btRigidBody& b, bool parts_bodies);
-    void enter(btDynamicsWorld& world, bool disable_collisions_between_bodies);
+    PlasticConstraint(btRigidBody& a, btRigidBody& b);
     /// False where the last tick left the constraint out.
     [[nodiscard]] bool is_awake() const;
+    /// Switches the constraint, and what Bullet was told of its bodies' collisions, off or on.
+    void let_go();
+    void hold_again();
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
     ForceShare force_share_;
@@ -61,6 +73,9 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows, public Self
   private:
     /// Books the open tick at its end, with the bodies as they are.
     virtual void end_tick() = 0;
+    [[nodiscard]] bool is_among_constraints_of(const btDynamicsWorld& world) const;
+    /// Where it ends: its bodies may have ended before.
+    void abandon_world();
 
     struct EndOfTick final : btActionInterface {
         explicit EndOfTick(PlasticConstraint& owner) : owner_(owner) {}
@@ -69,7 +84,7 @@ class PlasticConstraint : public btTypedConstraint, public SoftRows, public Self
         PlasticConstraint& owner_;
     };
     EndOfTick end_of_tick_{*this};
-    bool parts_bodies_;
+    bool parts_bodies_ = false; ///< let_go has to be undone by hold_again
 };
 
 /// At the constraint's own size of drawing (setDbgDrawSize); see draw.hpp.

@@ -3,6 +3,12 @@
 // Bodies of plastic_constraint.hpp.
 #pragma once
 
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <mutex>
+#include <stdexcept>
+#include <utility>
+
 #include "ductile/bullet/draw.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/precision_check.hpp"
@@ -10,17 +16,69 @@
 
 namespace ductile::bullet {
 
+namespace detail {
+
+/// Bullet's own array is not public, and removeConstraint reads the bodies.
+struct ConstraintArray : btDiscreteDynamicsWorld {
+    static auto& of(btDiscreteDynamicsWorld& world) {
+        return world.*(&ConstraintArray::m_constraints);
+    }
+};
+
+/// Told to Bullet that the constraint's bodies do not collide. A break may come in any of its
+/// threads, and one body may have many constraints.
+DUCTILE_INLINE bool parts(btRigidBody& body, btTypedConstraint& constraint) {
+    for (int i = 0; i < body.getNumConstraintRefs(); ++i) {
+        if (body.getConstraintRef(i) == &constraint) return true;
+    }
+    return false;
+}
+/// True where bodies that did not collide do so from now on.
+DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+    const bool parted = parts(a, constraint) || parts(b, constraint);
+    a.removeConstraintRef(&constraint);
+    b.removeConstraintRef(&constraint);
+    return parted;
+}
+
+} // namespace detail
+
 // no built-in type: Bullet casts by type, e.g. when it draws
-DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b,
-                                                    bool parts_bodies)
-    : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b), parts_bodies_(parts_bodies) {
+DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b)
+    : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b) {
     require_matching_precision();
 }
 
-DUCTILE_INLINE void PlasticConstraint::enter(btDynamicsWorld& world,
-                                             bool disable_collisions_between_bodies) {
+DUCTILE_INLINE PlasticConstraint::~PlasticConstraint() {
+    leave_keepers();
+    if (world_ != nullptr) abandon_world();
+}
+
+DUCTILE_INLINE bool PlasticConstraint::is_among_constraints_of(const btDynamicsWorld& world) const {
+    for (int i = world.getNumConstraints() - 1; i >= 0; --i) {
+        if (world.getConstraint(i) == this) return true;
+    }
+    return false;
+}
+
+DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
+                                              bool disable_collisions_between_bodies) {
+    const bool is_there = is_among_constraints_of(world);
+    if (world_ != nullptr && (world_ != &world || is_there)) {
+        throw std::invalid_argument(
+            "PlasticConstraint.add_to.world: must not be given while the constraint is in a world: "
+            "remove_from that one first");
+    }
     join(world);
-    world.addConstraint(this, disable_collisions_between_bodies);
+    if (!is_there) world.addConstraint(this);
+    if (disable_collisions_between_bodies) {
+        m_rbA.addConstraintRef(this);
+        m_rbB.addConstraintRef(this);
+    }
+    world.removeAction(&end_of_tick_); // is there still after Bullet's own removeConstraint
     world.addAction(&end_of_tick_);
     world_ = &world;
 }
@@ -29,8 +87,34 @@ DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
     (void)queries().release(); // books what is open
     world.removeAction(&end_of_tick_);
     world.removeConstraint(this);
+    if (world_ != &world) return;
     world_ = nullptr;
     leave();
+}
+
+DUCTILE_INLINE void PlasticConstraint::abandon_world() {
+    world_->removeAction(&end_of_tick_);
+    auto* world = dynamic_cast<btDiscreteDynamicsWorld*>(world_);
+    if (world == nullptr) return;
+    detail::ConstraintArray::of(*world).remove(this);
+    const auto& objects = world->getCollisionObjectArray();
+    for (btRigidBody* body : {&m_rbA, &m_rbB}) {
+        const bool is_alive =
+            body == &getFixedBody() || objects.findLinearSearch(body) < objects.size();
+        if (is_alive) body->removeConstraintRef(this);
+    }
+}
+
+DUCTILE_INLINE void PlasticConstraint::let_go() {
+    setEnabled(false);
+    parts_bodies_ = detail::let_collide(*this);
+}
+
+DUCTILE_INLINE void PlasticConstraint::hold_again() {
+    setEnabled(true);
+    if (!std::exchange(parts_bodies_, false)) return;
+    m_rbA.addConstraintRef(this);
+    m_rbB.addConstraintRef(this);
 }
 
 DUCTILE_INLINE bool PlasticConstraint::is_awake() const {

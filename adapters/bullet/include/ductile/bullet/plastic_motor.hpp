@@ -33,7 +33,7 @@ namespace ductile::bullet {
 
 /// What happens to Bullet's hinge when the row beside it breaks.
 enum class AtBreak {
-    disable_joint, ///< the whole hinge lets go
+    disable_joint, ///< the whole hinge lets go, and its bodies collide from then on
     release_axis   ///< only the row does: the hinge turns freely
 };
 

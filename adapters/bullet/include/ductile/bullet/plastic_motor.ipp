@@ -18,7 +18,7 @@ namespace ductile::bullet {
 
 DUCTILE_INLINE MotorConstraint::MotorConstraint(AxisJoint& joint, btHingeConstraint& hinge,
                                                 AtBreak at_break)
-    : PlasticConstraint(hinge.getRigidBodyA(), hinge.getRigidBodyB(), false),
+    : PlasticConstraint(hinge.getRigidBodyA(), hinge.getRigidBodyB()),
       AxisQueries(joint),
       hinge_(hinge),
       at_break_(at_break),
@@ -125,6 +125,7 @@ DUCTILE_INLINE double MotorConstraint::moment_alone() const {
 // ---- a tick
 
 DUCTILE_INLINE void MotorConstraint::prepare() {
+    tell_keepers_of_step();
     tick_ = double(world_->getSolverInfo().m_timeStep);
     dt_ = force_share_.value * tick_;
     axis_ = column(axes(), 2);
@@ -148,7 +149,11 @@ DUCTILE_INLINE void MotorConstraint::settle_tick() {
     position_ = measure(position_ + speed * tick_);
     const Step<double>& step = joint_.commit({force_, speed, position_}, dt_);
     if (step.outcome != Outcome::broken) return;
-    if (at_break_ == AtBreak::disable_joint) hinge_.setEnabled(false);
+    if (at_break_ == AtBreak::disable_joint) {
+        hinge_.setEnabled(false);
+        detail::let_collide(hinge_);
+        detail::let_collide(*this);
+    }
     if (step.release > 0) hand_back();
 }
 

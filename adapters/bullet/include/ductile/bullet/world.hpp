@@ -37,6 +37,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_set>
 
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/held_forces.hpp"
@@ -58,7 +59,8 @@ struct WorldParameters {
 
 class World final : public SteppedWorld {
   public:
-    /// `world` must outlive this.
+    /// `world` must outlive this, but for one that holds no constraint any more and whose solver
+    /// was not exchanged.
     /// @throws std::invalid_argument where a parameter is out of range or the solver of this world
     /// cannot be exchanged.
     explicit World(btDiscreteDynamicsWorld& world, WorldParameters parameters = {});
@@ -67,8 +69,9 @@ class World final : public SteppedWorld {
 
     [[nodiscard]] btDiscreteDynamicsWorld& engine() const noexcept { return world_; }
 
-    /// Looks after a joint, and puts it into Bullet's world where it is in none yet. It has to be
-    /// removed before it is destroyed. An empty `name`: "joint" and its number.
+    /// Looks after a joint until that ends, and puts it into Bullet's world where it is in none
+    /// yet, with collisions between its bodies as by Bullet's default. An empty `name`: "joint" and
+    /// its number.
     /// @throws std::invalid_argument where it is here already.
     void add(PlasticConstraint& joint, std::string name = {});
     void add(MultiBodyPlasticConstraint& joint, std::string name = {});
@@ -77,6 +80,9 @@ class World final : public SteppedWorld {
     void remove(MultiBodyPlasticConstraint& joint);
 
   private:
+    void forget(PlasticConstraint& joint);
+    /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
+    void share(const ForceShare& how);
     void require_exchangeable_solver() const;
     void require_leapfrog() const;
     [[nodiscard]] bool holds_multibodies() const noexcept;
@@ -98,6 +104,7 @@ class World final : public SteppedWorld {
     std::unique_ptr<SuspectSolver> suspect_solver_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
+    std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's
     int told_ = -1; ///< how many constraints know that forces act for the whole step
 };
 

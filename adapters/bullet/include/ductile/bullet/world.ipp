@@ -62,7 +62,7 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
 }
 
 DUCTILE_INLINE World::~World() {
-    if (leapfrogs()) share_forces(world_, {});
+    for (PlasticConstraint* joint : sharing_) joint->set_force_share({});
     if (suspect_solver_ != nullptr && world_.getConstraintSolver() == suspect_solver_.get()) {
         world_.setConstraintSolver(&suspect_solver_->usual());
     }
@@ -72,28 +72,46 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     detail::look_after(
         supervisor(), joint, std::move(name), [&joint] { return joint.queries().report(); },
         [&] { joint.add_to(world_); });
+    keep(joint, [this, &joint] { forget(joint); });
     told_ = -1;
 }
 DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
     detail::look_after(
         supervisor(), joint, std::move(name), [&joint] { return joint.report(); },
         [&] { joint.add_to(world_of_multibodies()); });
+    keep(joint, [this, &joint] { supervisor().remove(detail::address(joint)); });
 }
 
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
-    const void* address = detail::address(joint);
-    if (!supervisor().knows(address)) return;
-    supervisor().remove(address);
-    if (suspect_solver_ != nullptr) suspect_solver_->trust(address);
-    if (meter_) meter_->forget(joint);
+    if (!supervisor().knows(detail::address(joint))) return;
+    let_go(joint);
+    forget(joint);
     joint.set_force_share({});
     if (joint.in_world()) joint.remove_from(world_);
 }
 DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
-    const void* address = detail::address(joint);
-    if (!supervisor().knows(address)) return;
-    supervisor().remove(address);
+    if (!supervisor().knows(detail::address(joint))) return;
+    let_go(joint);
+    supervisor().remove(detail::address(joint));
     if (joint.in_world()) joint.remove_from(world_of_multibodies());
+}
+
+DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
+    supervisor().remove(detail::address(joint));
+    if (suspect_solver_ != nullptr) suspect_solver_->trust(detail::address(joint));
+    if (meter_) meter_->forget(joint);
+    sharing_.erase(&joint);
+}
+
+DUCTILE_INLINE void World::share(const ForceShare& how) {
+    share_forces(world_, how);
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        auto* joint = dynamic_cast<PlasticConstraint*>(world_.getConstraint(i));
+        if (joint == nullptr || !sharing_.insert(joint).second) continue;
+        if (!supervisor().knows(detail::address(*joint))) {
+            keep(*joint, [this, joint] { forget(*joint); });
+        }
+    }
 }
 
 DUCTILE_INLINE void World::require_exchangeable_solver() const {
@@ -141,7 +159,7 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
     const bool keeps_ledger = meter_ && !holds_multibodies();
     if (keeps_ledger) meter_->before_step();
     const bool told = how.value == 1 && told_ == world_.getNumConstraints();
-    if (leapfrogs() && !told) share_forces(world_, how);
+    if (leapfrogs() && !told) share(how);
     told_ = how.value == 1 ? world_.getNumConstraints() : -1;
     world_.stepSimulation(btScalar(dt), 0);
     if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.value);

@@ -52,6 +52,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// A joint's feedback in this step.
     struct WatchedJoint {
         dJointID id;
+        AttachedBodies bodies; ///< that a break may take from it
         const dJointFeedback* feedback;
         bool lent;
     };

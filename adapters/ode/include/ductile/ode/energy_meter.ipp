@@ -33,7 +33,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
 DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
     std::vector<MeteredPlasticJoint>& joints) const {
     for (const PlasticConstraint* constraint : plastic_) {
-        const auto [a, b, reversed] = attached_bodies(constraint->id());
+        const auto [a, b, reversed] = constraint->bodies();
         joints.push_back({&constraint->queries(), a, b});
     }
 }
@@ -51,21 +51,20 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
             if (dJointIsEnabled(id) == 0 || !seen_.insert(id).second) continue;
             const bool lend = dJointGetFeedback(id) == nullptr;
             if (lend) dJointSetFeedback(id, &feedback_[lent++]);
-            watched_.push_back({id, dJointGetFeedback(id), lend});
+            watched_.push_back({id, attached_bodies(id), dJointGetFeedback(id), lend});
         }
     }
 }
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
-    for (const auto& [id, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent] : watched_) {
         if (contacts_.count(id) > 0) continue;
-        const auto [a, b, reversed] = attached_bodies(id);
-        joints.push_back({id, a, b, to_core(feedback->f1), to_core(feedback->t1),
+        joints.push_back({id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
                           to_core(feedback->f2), to_core(feedback->t2), nullptr});
     }
     for (const PlasticConstraint* constraint : plastic_) {
         if (seen_.count(constraint->id()) == 0) continue;
-        const auto [a, b, reversed] = attached_bodies(constraint->id());
+        const auto [a, b, reversed] = constraint->bodies();
         const OutsideForce& outside = constraint->outside_force();
         joints.push_back({constraint->id(), a, b, outside.force, outside.torque_a,
                           scaled(-1, outside.force), outside.torque_b, &constraint->queries()});
@@ -74,10 +73,10 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
                                                std::vector<MeteredContact>& contacts) const {
-    for (const auto& [id, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent] : watched_) {
         const auto contact = contacts_.find(id);
         if (contact == contacts_.end()) continue;
-        const auto [a, b, reversed] = attached_bodies(id);
+        const auto& [a, b, reversed] = bodies;
         const Vector3<double> point = to_core(contact->second.pos);
         const Vector3<double> normal = to_core(contact->second.normal);
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
@@ -92,7 +91,7 @@ DUCTILE_INLINE void EnergyMeter::end_watch() {
 }
 
 DUCTILE_INLINE void EnergyMeter::take_feedback_back() {
-    for (const auto& [id, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent] : watched_) {
         if (lent) dJointSetFeedback(id, nullptr);
     }
     watched_.clear();

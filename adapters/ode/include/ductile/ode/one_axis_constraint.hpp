@@ -17,6 +17,10 @@
 // do meanwhile, and what somebody moves by hand between two steps, is no deformation: the rest
 // position goes along, and what is stored stays stored. A broken joint stays broken.
 //
+// A joint that lets go at its break is attached to nothing, so that dAreConnected, by which
+// programs decide whether two bodies collide, no longer finds it. ODE's world may be destroyed
+// before this.
+//
 // Traps of ODE 0.16 that this header deals with
 //   - A motor together with an active stop becomes an outside force: a stop on the axis is refused.
 //   - Feedback sums all rows of a joint in world axes about the centre of mass, and keeps its old
@@ -31,6 +35,7 @@
 
 #include <ode/ode.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -38,6 +43,7 @@
 #include "ductile/ode/motor_pose.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/axis_constraint.hpp"
 #include "ductile/world/axis_queries.hpp"
@@ -47,9 +53,6 @@ namespace ductile::ode {
 /// All but the joint's type.
 class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
   public:
-    OneAxisConstraint(const OneAxisConstraint&) = delete;
-    OneAxisConstraint& operator=(const OneAxisConstraint&) = delete;
-
     void add_to(World& world, std::string name = {}) { world.add(*this, std::move(name)); }
     void remove_from(World& world) { world.remove(*this); }
 
@@ -60,6 +63,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] const OutsideForce& outside_force() const override { return outside_; }
     /// ODE's joint.
     [[nodiscard]] dJointID id() const override { return row_.joint(); }
+    [[nodiscard]] AttachedBodies bodies() const override { return row_.bodies(); }
 
     /// @throws std::logic_error where somebody set a stop on the axis since it was taken over.
     DUCTILE_INLINE void check() const override;
@@ -76,6 +80,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     DUCTILE_INLINE ~OneAxisConstraint() override;
 
     [[nodiscard]] const MotorAxis& row() const noexcept { return row_; }
+    [[nodiscard]] bool world_goes_on() const { return life_->goes_on(); }
     [[nodiscard]] const MotorPose& pose() const noexcept { return pose_; }
     /// The joint was given a saved state.
     void restored(double position);
@@ -125,6 +130,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     void hand_back(double energy);
 
     MotorAxis row_;
+    std::shared_ptr<const WorldLife> life_;
     AtBreak at_break_;
     bool owned_;
     dJointFeedback feedback_{};

@@ -27,7 +27,11 @@ inline constexpr const char* stop_refused =
 
 DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const MotorAxis& row,
                                                     AtBreak at_break, bool owned)
-    : AxisQueries(joint), row_(row), at_break_(at_break), owned_(owned) {
+    : AxisQueries(joint),
+      row_(row),
+      life_(WorldLife::of(dBodyGetWorld(row.bodies().a))),
+      at_break_(at_break),
+      owned_(owned) {
     require_matching_precision();
     if (has_stop(row_)) throw std::invalid_argument(detail::stop_refused);
     position_ = row_.measure(0);
@@ -35,6 +39,7 @@ DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const Moto
 }
 
 DUCTILE_INLINE OneAxisConstraint::~OneAxisConstraint() {
+    if (!world_goes_on()) return;
     if (dJointGetFeedback(row_.joint()) == &feedback_) dJointSetFeedback(row_.joint(), nullptr);
     if (owned_) dJointDestroy(row_.joint());
 }
@@ -89,7 +94,9 @@ DUCTILE_INLINE void OneAxisConstraint::follow_teleport() {
 
 DUCTILE_INLINE void OneAxisConstraint::part() {
     row_.set(dParamFMax, 0);
-    if (at_break_ == AtBreak::disable_joint) dJointDisable(id());
+    if (at_break_ != AtBreak::disable_joint) return;
+    dJointDisable(id());
+    dJointAttach(id(), nullptr, nullptr);
 }
 
 // ---- a step
@@ -97,10 +104,10 @@ DUCTILE_INLINE void OneAxisConstraint::part() {
 DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
     acting_ = false;
     outside_ = {};
-    detached_ = !row_.attached();
+    detached_ = !joint_.broken() && !row_.attached();
     if (joint_.broken()) {
         force_ = 0;
-        if (!detached_) part();
+        if (row_.attached()) part();
         return;
     }
     if (!may_act()) {
@@ -138,8 +145,8 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     pose_.look(row_);
     joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
     if (step.outcome == Outcome::broken) {
-        part();
         if (step.release > 0) hand_back(step.release);
+        part();
     }
 }
 

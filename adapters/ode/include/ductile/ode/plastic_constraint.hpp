@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ductile/ode/convert.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_queries.hpp"
@@ -23,15 +24,19 @@ struct OutsideForce {
 
 class PlasticConstraint : public SteppedConstraint {
   public:
+    ~PlasticConstraint() override { leave_keepers(); }
+
     [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
     /// Of the last step.
     [[nodiscard]] virtual const OutsideForce& outside_force() const = 0;
     [[nodiscard]] virtual dJointID id() const = 0;
+    /// Also once it is broken and its joint attached to nothing.
+    [[nodiscard]] virtual AttachedBodies bodies() const = 0;
 };
 
 /// What happens to ODE's joint when its plastic row breaks.
 enum class AtBreak {
-    disable_joint, ///< the whole joint lets go
+    disable_joint, ///< the whole joint lets go: it is disabled, and attached to nothing
     release_axis   ///< only the row does: its motor is switched off
 };
 

@@ -28,7 +28,8 @@
 // one of the bodies is destroyed. What its bodies do meanwhile, and what somebody moves by hand
 // between two steps, is no deformation: the plastic axes keep their strain, their rest position
 // goes along. Rigid axes are pulled together again. A broken joint stays broken; its angular motor
-// is disabled, so the user may let the two bodies collide again.
+// is disabled and attached to nothing, so that dAreConnected, by which programs decide whether two
+// bodies collide, no longer finds it. ODE's world may be destroyed before the joint.
 //
 // Bodies turn by ODE's first-order rule unless dBodySetFiniteRotationMode(body, 1) is set, which
 // loses (ω dt)³/12 rad a step: set it where plastic rotations per step are large.
@@ -38,6 +39,7 @@
 
 #include <ode/ode.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -46,6 +48,7 @@
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/point_rows.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
@@ -55,9 +58,6 @@ namespace ductile::ode {
 /// All but the joint's type.
 class LinkConstraint : public PlasticConstraint, public LinkQueries {
   public:
-    LinkConstraint(const LinkConstraint&) = delete;
-    LinkConstraint& operator=(const LinkConstraint&) = delete;
-
     void add_to(World& world, std::string name = {}) { world.add(*this, std::move(name)); }
     void remove_from(World& world) { world.remove(*this); }
 
@@ -68,6 +68,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] const OutsideForce& outside_force() const override { return outside_; }
     /// The angular motor; owned by this object, as is its feedback.
     [[nodiscard]] dJointID id() const override { return id_; }
+    [[nodiscard]] AttachedBodies bodies() const override { return {a_, b_, false}; }
 
     /// Sets the rows for a step of `dt` [s]. Called by World::step.
     DUCTILE_INLINE void prepare(double dt) override;
@@ -79,7 +80,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
 
     /// The plastic axes start unstrained where the bodies are now.
     LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a, dBodyID b);
-    ~LinkConstraint() override { dJointDestroy(id_); }
+    DUCTILE_INLINE ~LinkConstraint() override;
 
     /// The link was given a saved state.
     void restored(bool was_broken);
@@ -99,10 +100,12 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     void set_motor(int number, const PointRow& moment, bool on);
     /// The centres of the rows' bounds as an outside force on both bodies.
     void add_centre(double sign);
+    void hand_back();
     void let_go();
 
     dBodyID a_;
     dBodyID b_;
+    std::shared_ptr<const WorldLife> life_;
     PointRows forces_;
     dJointID id_;
     dJointFeedback moments_{};

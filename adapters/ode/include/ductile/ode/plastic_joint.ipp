@@ -34,12 +34,21 @@ DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<doub
 
 DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
                                               dBodyID b)
-    : LinkQueries(link), a_(a), b_(b), forces_(world), id_(dJointCreateAMotor(world, nullptr)) {
+    : LinkQueries(link),
+      a_(a),
+      b_(b),
+      life_(WorldLife::of(world)),
+      forces_(world),
+      id_(dJointCreateAMotor(world, nullptr)) {
     require_matching_precision();
     dJointAttach(id_, a_, b_);
     dJointSetAMotorNumAxes(id_, 3);
     dJointSetFeedback(id_, &moments_);
     link_.start(body_motion(a_), body_motion(b_));
+}
+
+DUCTILE_INLINE LinkConstraint::~LinkConstraint() {
+    if (life_->goes_on()) dJointDestroy(id_);
 }
 
 DUCTILE_INLINE dBodyID LinkConstraint::require_bodies(dBodyID a, dBodyID b) {
@@ -76,16 +85,21 @@ DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const F
             .axes = transposed_times(at.orientation, world.axes)};
 }
 
-DUCTILE_INLINE void LinkConstraint::restored(bool) {
+DUCTILE_INLINE void LinkConstraint::restored(bool was_broken) {
     put_back_ = true;
     silent_ = link_.broken();
-    silent_ ? dJointDisable(id_) : dJointEnable(id_);
+    if (link_.broken()) {
+        let_go();
+        return;
+    }
+    dJointEnable(id_);
+    if (was_broken) dJointAttach(id_, a_, b_);
 }
 
 // ---- life
 
 DUCTILE_INLINE bool LinkConstraint::detached() const {
-    return dJointGetBody(id_, 0) != a_ || dJointGetBody(id_, 1) != b_;
+    return !link_.broken() && (dJointGetBody(id_, 0) != a_ || dJointGetBody(id_, 1) != b_);
 }
 DUCTILE_INLINE bool LinkConstraint::may_act() const {
     return !detached() && dJointIsEnabled(id_) != 0 && (can_move(a_) || can_move(b_));
@@ -161,7 +175,9 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
                  JointWrench<double>{.force = scaled(1 / share, outside_.force),
                                      .moment = scaled(1 / share, moment)},
                  share * dt);
-    if (link_.broken()) let_go();
+    if (!link_.broken()) return;
+    hand_back();
+    let_go();
 }
 
 DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment, bool on) {
@@ -184,6 +200,10 @@ DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {
 
 DUCTILE_INLINE void LinkConstraint::let_go() {
     dJointDisable(id_);
+    dJointAttach(id_, nullptr, nullptr);
+}
+
+DUCTILE_INLINE void LinkConstraint::hand_back() {
     release_ = link_.release(body_state(a_), body_state(b_));
     if (can_move(a_)) apply(a_, release_.a);
     if (can_move(b_)) apply(b_, release_.b);

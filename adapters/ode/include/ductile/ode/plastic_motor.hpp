@@ -14,7 +14,9 @@
 // What is the user's stays the user's: the joint is neither made, attached nor destroyed here;
 // velocity, strength and CFM of the motor are put back when this object ends (the strength of a
 // broken axis stays zero); a joint feedback that the user set, before or after, is only read, and
-// where there is none one is set while this object lives. The joint has to outlive this object.
+// where there is none one is set while this object lives. The joint has to outlive this object, but
+// for one that goes with its world. At a break it lets go of its bodies, unless told to release the
+// axis alone.
 #pragma once
 
 #include <ode/ode.h>
@@ -41,6 +43,7 @@ class PlasticMotor final : public AxisConstraint<Joint, OneAxisConstraint> {
           cfm_(axis.get(dParamCFM)) {}
 
     ~PlasticMotor() override {
+        if (!this->world_goes_on()) return;
         this->row().set(dParamVel, velocity_);
         this->row().set(dParamFMax, this->broken() ? 0 : strength_);
         this->row().set(dParamCFM, cfm_);

@@ -3,13 +3,15 @@
 // What takes part in a step of an ODE world beside ODE's own joints. World calls it.
 #pragma once
 
+#include "ductile/world/kept_joint.hpp"
 #include "ductile/world/leapfrog.hpp"
 
 namespace ductile::ode {
 
-class SteppedConstraint {
+/// Leaves every World when it ends.
+class SteppedConstraint : public KeptJoint {
   public:
-    virtual ~SteppedConstraint() = default;
+    virtual ~SteppedConstraint() { leave_keepers(); }
     /// Called for all before any is prepared.
     /// @throws what makes the step impossible; nothing has changed then.
     virtual void check() const {}
@@ -19,6 +21,8 @@ class SteppedConstraint {
     virtual void commit(double dt) = 0;
 
   protected:
+    SteppedConstraint() = default;
+
     ForceShare force_share_;
 };
 

@@ -25,7 +25,7 @@
 // all that move. Velocities are then those in the middle of the last step, and so is the joints'
 // clock.
 //
-// Not thread-safe. The world and the constraints must outlive this object, or be removed from it.
+// Not thread-safe. ODE's world must outlive every step; all else may end in any order.
 #pragma once
 
 #include <ode/ode.h>
@@ -64,13 +64,13 @@ class World final : public SteppedWorld {
 
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
-    /// Steps a joint and looks after it. An empty `name`: "joint" and its number.
+    /// Steps a joint and looks after it, until it ends. An empty `name`: "joint" and its number.
     /// @throws std::invalid_argument where it is here already.
     void add(PlasticConstraint& joint, std::string name = {});
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint);
-    /// Steps what is no plastic joint.
-    void add(SteppedConstraint& constraint) { constraints_.push_back(&constraint); }
+    /// Steps what is no plastic joint, until it ends.
+    void add(SteppedConstraint& constraint);
     void remove(SteppedConstraint& constraint);
 
     /// Tells of a dynamic body: ODE does not say which a world has.
@@ -101,6 +101,7 @@ class World final : public SteppedWorld {
         return meter_ ? &meter_->ledger() : nullptr;
     }
 
+    void forget(PlasticConstraint& joint);
     /// Gravity on a body that is not known would not leapfrog.
     void require_bodies();
 

@@ -32,15 +32,25 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     bodies_known_ = false;
     joint.set_force_share({});
     if (meter_) meter_->add(joint);
+    keep(joint, [this, &joint] { forget(joint); });
 }
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
+    let_go(joint);
+    forget(joint);
+    joint.set_force_share({});
+}
+DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(&joint);
     std::erase(constraints_, &joint);
     std::erase(plastic_, &joint);
-    joint.set_force_share({});
     if (meter_) meter_->remove(joint);
 }
+DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
+    constraints_.push_back(&constraint);
+    keep(constraint, [this, &constraint] { std::erase(constraints_, &constraint); });
+}
 DUCTILE_INLINE void World::remove(SteppedConstraint& constraint) {
+    let_go(constraint);
     std::erase(constraints_, &constraint);
     constraint.set_force_share({});
 }

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+//
+// Who looks after joints, and the joints that it looks after: whichever ends first, neither is left
+// with the address of the other.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+namespace ductile {
+
+class JointKeeper;
+
+/// What an engine's constraint is beside its joint. Not thread-safe.
+class KeptJoint {
+  public:
+    KeptJoint(const KeptJoint&) = delete;
+    KeptJoint& operator=(const KeptJoint&) = delete;
+
+  protected:
+    KeptJoint() = default;
+    ~KeptJoint() { leave_keepers(); }
+    /// For a destructor, while what its keepers read of the joint is there.
+    void leave_keepers();
+    /// The engine steps the joint now.
+    void tell_keepers_of_step() const;
+
+  private:
+    friend class JointKeeper;
+    struct Kept {
+        JointKeeper* keeper;
+        std::function<void()> forget;
+    };
+    std::vector<Kept> keepers_;
+};
+
+/// What the World of an adapter is beside its engine.
+class JointKeeper {
+  public:
+    JointKeeper(const JointKeeper&) = delete;
+    JointKeeper& operator=(const JointKeeper&) = delete;
+
+  protected:
+    JointKeeper() = default;
+    virtual ~JointKeeper() {
+        for (KeptJoint* joint : joints_) forget_me(*joint);
+    }
+    /// `forget` is called where the joint ends before `let_go`.
+    void keep(KeptJoint& joint, std::function<void()> forget) {
+        joint.keepers_.push_back({this, std::move(forget)});
+        joints_.push_back(&joint);
+    }
+    void let_go(KeptJoint& joint) {
+        forget_me(joint);
+        std::erase(joints_, &joint);
+    }
+
+  private:
+    friend class KeptJoint;
+
+    /// The engine steps a joint now, whoever asked for it. May come from any thread of the engine.
+    virtual void joint_stepped() {}
+
+    void forget_me(KeptJoint& joint) {
+        std::erase_if(joint.keepers_, [this](const auto& kept) { return kept.keeper == this; });
+    }
+
+    std::vector<KeptJoint*> joints_;
+};
+
+inline void KeptJoint::leave_keepers() {
+    for (auto& [keeper, forget] : std::exchange(keepers_, {})) {
+        std::erase(keeper->joints_, this);
+        forget();
+    }
+}
+
+inline void KeptJoint::tell_keepers_of_step() const {
+    for (const Kept& kept : keepers_) kept.keeper->joint_stepped();
+}
+
+} // namespace ductile

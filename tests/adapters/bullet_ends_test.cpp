@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+//
+// How joints, bodies and worlds of Bullet end: in which order they may, what a break leaves behind,
+// and joints that come into a world twice. Worth running under AddressSanitizer.
+#include <catch2/catch.hpp>
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "adapters/bullet_world.hpp"
+#include "support/throws.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+using Hinge = bullet::PlasticHinge<>;
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+const btTransform here = btTransform::getIdentity();
+
+OneAxisJoint<Perfect<double>> joint(double strength, double limit = unlimited) {
+    return OneAxisJoint(Perfect<double>({.strength = strength}),
+                        TravelLimit<double>({.limit = limit}));
+}
+
+/// Two boxes of 1 m, 1.1 m apart, that turn against each other and so break what joins them.
+class Halves {
+  public:
+    explicit Halves(btDiscreteDynamicsWorld& world) : world_(world) {
+        for (int i : {0, 1}) {
+            btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, &box_, {2, 2, 2});
+            info.m_startWorldTransform = BulletWorld::frame({1.1 * i, 0, 0});
+            body_[i].emplace(info);
+            body_[i]->setActivationState(DISABLE_DEACTIVATION);
+            body_[i]->setAngularVelocity({0, 0, btScalar(i == 0 ? 6 : -6)});
+            world_.addRigidBody(&*body_[i]);
+        }
+    }
+    ~Halves() {
+        for (auto& body : body_) world_.removeRigidBody(&*body);
+    }
+    Halves(const Halves&) = delete;
+    Halves& operator=(const Halves&) = delete;
+
+    btRigidBody& operator[](int i) { return *body_[i]; }
+    static btTransform pivot(int i) { return BulletWorld::frame({i == 0 ? 0.55 : -0.55, 0, 0}); }
+
+    /// Throws the first at the second, 3 m away: how fast the second is 2 s later.
+    double thrown() {
+        for (int i : {0, 1}) {
+            body_[i]->setWorldTransform(BulletWorld::frame({3.0 * i, 0, 0}));
+            body_[i]->setInterpolationWorldTransform(body_[i]->getWorldTransform());
+            body_[i]->setAngularVelocity({0, 0, 0});
+            body_[i]->setLinearVelocity({btScalar(i == 0 ? 4 : 0), 0, 0});
+        }
+        for (int i = 0; i < 480; ++i) world_.stepSimulation(btScalar(1. / 240), 0);
+        return double(body_[1]->getLinearVelocity().x());
+    }
+
+  private:
+    btDiscreteDynamicsWorld& world_;
+    btBoxShape box_{{0.5, 0.5, 0.5}};
+    std::optional<btRigidBody> body_[2];
+};
+
+/// Steps until the hinge breaks.
+void break_it(BulletWorld& world, const PairQueries& hinge) {
+    for (int i = 0; i < 200 && !hinge.broken(); ++i) world.step(1. / 240);
+    REQUIRE(hinge.broken());
+}
+
+bool collide(Halves& halves) {
+    return halves[0].checkCollideWith(&halves[1]) && halves[1].checkCollideWith(&halves[0]);
+}
+
+} // namespace
+
+TEST_CASE("two parts collide again once their joint has broken", "[bullet][ends]") {
+    const bool told = GENERATE(false, true); // that they do not collide while it holds
+    const bool by_engine = GENERATE(false, true);
+    INFO((told ? "parted" : "not parted") << (by_engine ? ", addConstraint" : ", add_to"));
+    BulletWorld world("si");
+    Halves halves(world.world());
+    Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64, 0.05));
+    by_engine ? world.world().addConstraint(&hinge, told) : hinge.add_to(world.world(), told);
+    CHECK(collide(halves) == !told); // as Bullet's own joints have it
+    break_it(world, hinge);
+    CHECK(collide(halves));
+    CHECK(halves.thrown() > 1);
+    world.world().removeConstraint(&hinge);
+}
+
+TEST_CASE("parts that were told not to collide do not once their joint is mended",
+          "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64, 0.05));
+    hinge.add_to(world.world(), true);
+    const auto whole = hinge.state();
+    break_it(world, hinge);
+    const auto broken = hinge.state();
+    hinge.restore(whole);
+    CHECK_FALSE(collide(halves));
+    hinge.restore(broken);
+    CHECK(collide(halves));
+    hinge.remove_from(world.world());
+    CHECK(halves[0].getNumConstraintRefs() == 0);
+}
+
+TEST_CASE("a hinge of Bullet's own that a motor breaks lets its parts collide", "[bullet][ends]") {
+    const auto at_break = GENERATE(bullet::AtBreak::disable_joint, bullet::AtBreak::release_axis);
+    BulletWorld world("si");
+    Halves halves(world.world());
+    btHingeConstraint own(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1));
+    world.world().addConstraint(&own, true);
+    {
+        bullet::PlasticMotor motor(own, joint(64, 0.05), at_break);
+        motor.add_to(world.world());
+        break_it(world, motor);
+        CHECK(collide(halves) == (at_break == bullet::AtBreak::disable_joint));
+    }
+    world.world().removeConstraint(&own);
+    CHECK(collide(halves));
+}
+
+TEST_CASE("a joint that ends leaves Bullet's world and every World", "[bullet][ends]") {
+    const bool looked_after = GENERATE(false, true), leapfrog = GENERATE(false, true);
+    const bool parted = GENERATE(false, true);
+    BulletWorld world("si");
+    Halves halves(world.world());
+    bullet::World keeper(world.world(), {.leapfrog = leapfrog, .warn = nullptr});
+    {
+        Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64));
+        hinge.add_to(world.world(), parted);
+        if (looked_after) keeper.add(hinge);
+        keeper.step(1e-3);
+    }
+    CHECK(world.world().getNumConstraints() == 0);
+    CHECK(collide(halves));
+    CHECK(halves[0].getNumConstraintRefs() == 0);
+    keeper.step(1e-3);
+    keeper.step(2e-3);
+    CHECK(keeper.worst().residual == 0);
+}
+
+TEST_CASE("a joint that Bullet's own call took out ends well", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody& body = world.body(1, 2);
+    {
+        Hinge hinge(body, here, joint(64));
+        hinge.add_to(world.world());
+        world.step(1e-3);
+        world.world().removeConstraint(&hinge);
+        world.step(1e-3);
+    }
+    world.step(1e-3);
+    CHECK(world.world().getNumConstraints() == 0);
+}
+
+TEST_CASE("a joint that Bullet's own call took out may be added again", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody& body = world.body(1, 2);
+    body.setAngularVelocity({0, 0, 10});
+    Hinge hinge(body, here, joint(64));
+    hinge.add_to(world.world());
+    world.world().removeConstraint(&hinge);
+    world.step(1e-3);
+    CHECK(hinge.absorbed_energy() == 0);
+    hinge.add_to(world.world());
+    world.step(1e-3, 400);
+    CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-4));
+}
+
+TEST_CASE("bodies and joints end in any order once the bodies have left the world",
+          "[bullet][ends]") {
+    BulletWorld world("si");
+    auto halves = std::make_unique<Halves>(world.world());
+    const bool parted = GENERATE(false, true);
+    auto hinge = std::make_unique<Hinge>((*halves)[0], (*halves)[1], Halves::pivot(0),
+                                         Halves::pivot(1), joint(64));
+    hinge->add_to(world.world(), parted);
+    world.step(1e-3);
+    halves.reset();
+    hinge.reset();
+    CHECK(world.world().getNumConstraints() == 0);
+    world.step(1e-3);
+}
+
+TEST_CASE("a World ends before its joints, and they go on", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody& body = world.body(1, 2);
+    body.setAngularVelocity({0, 0, 10});
+    Hinge hinge(body, here, joint(64));
+    {
+        bullet::World keeper(world.world(), {.leapfrog = true, .warn = nullptr});
+        keeper.add(hinge);
+        keeper.step(1e-3);
+    }
+    world.step(1e-3, 400);
+    CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-3));
+}
+
+TEST_CASE("Bullet's world ends before a World that has no joint left", "[bullet][ends]") {
+    auto world = std::make_unique<BulletWorld>("si");
+    btRigidBody& body = world->body(1, 2);
+    bullet::World keeper(world->world(), {.leapfrog = true, .warn = nullptr});
+    {
+        Hinge hinge(body, here, joint(64));
+        keeper.add(hinge);
+        keeper.step(1e-3);
+    }
+    keeper.step(1e-3);
+    world.reset();
+    CHECK(keeper.time() == Approx(2e-3));
+}
+
+TEST_CASE("a joint comes into a world once", "[bullet][ends]") {
+    BulletWorld world("si"), other("si");
+    btRigidBody& body = world.body(1, 2);
+    body.setAngularVelocity({0, 0, 10});
+    Hinge hinge(body, here, joint(64));
+    SECTION("added twice, or to two worlds") {
+        const char* refused =
+            "PlasticConstraint.add_to.world: must not be given while the constraint is in a world: "
+            "remove_from that one first";
+        hinge.add_to(world.world());
+        CHECK(message_of([&] { hinge.add_to(world.world()); }) == refused);
+        CHECK(message_of([&] { hinge.add_to(other.world()); }) == refused);
+    }
+    SECTION("added by Bullet's own call and then by ours") {
+        world.world().addConstraint(&hinge);
+        hinge.add_to(world.world());
+    }
+    SECTION("added by Bullet's own call and then to a World") {
+        world.world().addConstraint(&hinge);
+        bullet::World keeper(world.world());
+        keeper.add(hinge);
+    }
+    CHECK(world.world().getNumConstraints() == 1);
+    CHECK(other.world().getNumConstraints() == 0);
+    world.step(1e-3, 400);
+    CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-4));
+    hinge.remove_from(world.world());
+    CHECK(world.world().getNumConstraints() == 0);
+}

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+//
+// How joints, bodies and worlds of ODE end: in which order they may, and what a break leaves
+// behind. Worth running under AddressSanitizer.
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ductile/ode/ode.hpp"
+
+using namespace ductile;
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+OneAxisJoint<Perfect<double>> joint(double strength, double limit = unlimited) {
+    return OneAxisJoint(Perfect<double>({.strength = strength}),
+                        TravelLimit<double>({.limit = limit}));
+}
+
+/// ODE says where a world ends before a joint of a group.
+void say_nothing(int, const char*, va_list) {}
+
+struct Engine {
+    Engine() {
+        dInitODE2(0);
+        dSetMessageHandler(say_nothing);
+    }
+    ~Engine() {
+        end();
+        dSetMessageHandler(nullptr);
+        dCloseODE();
+    }
+    Engine(const Engine&) = delete;
+    Engine& operator=(const Engine&) = delete;
+
+    /// I = 2 kg m², spinning about z.
+    [[nodiscard]] dBodyID rotor(double spin) const {
+        const dBodyID body = dBodyCreate(id);
+        dMass m;
+        dMassSetParameters(&m, 1, 0, 0, 0, 2, 2, 2, 0, 0, 0);
+        dBodySetMass(body, &m);
+        dBodySetAngularVel(body, 0, 0, dReal(spin));
+        return body;
+    }
+    void end() {
+        if (id != nullptr) dWorldDestroy(id);
+        id = nullptr;
+    }
+
+    dWorldID id = dWorldCreate();
+};
+
+/// A joint about z of each kind between `a` and `b` (null: the static world).
+struct Kind {
+    const char* name;
+    std::unique_ptr<ode::PlasticConstraint> (*make)(dWorldID world, dBodyID a, dBodyID b,
+                                                    double limit);
+};
+
+const std::vector<Kind> kinds{
+    {"hinge",
+     [](dWorldID world, dBodyID a, dBodyID b,
+        double limit) -> std::unique_ptr<ode::PlasticConstraint> {
+         return std::make_unique<ode::PlasticHinge<>>(
+             world, a, b, ode::HingeFrame{.axis = {0, 0, 1}}, joint(64, limit));
+     }},
+    {"six axes",
+     [](dWorldID world, dBodyID a, dBodyID b,
+        double limit) -> std::unique_ptr<ode::PlasticConstraint> {
+         using One = OneAxisJoint<Perfect<double>>;
+         return std::make_unique<ode::PlasticJoint<One>>(
+             world, a, b, JointFrame<double>{}, joint(64, limit), std::array{JointAxis::torsion});
+     }},
+    {"motor",
+     [](dWorldID world, dBodyID a, dBodyID b,
+        double limit) -> std::unique_ptr<ode::PlasticConstraint> {
+         const dJointID hinge = dJointCreateHinge(world, nullptr);
+         dJointAttach(hinge, a, b);
+         dJointSetHingeAxis(hinge, 0, 0, 1);
+         return std::make_unique<ode::PlasticMotor<>>(ode::hinge_axis(hinge), joint(64, limit));
+     }},
+};
+
+} // namespace
+
+TEST_CASE("two parts are no longer connected once their joint has broken", "[ode][ends]") {
+    const Kind kind = GENERATE(from_range(kinds));
+    const bool to_ground = GENERATE(false, true);
+    INFO(kind.name << (to_ground ? " to the ground" : ""));
+    Engine engine;
+    const dBodyID a = engine.rotor(10), b = to_ground ? nullptr : engine.rotor(-10);
+    ode::World world(engine.id, ode::WorldParameters{.warn = nullptr});
+    world.add(a);
+    if (b != nullptr) world.add(b);
+    const auto constraint = kind.make(engine.id, a, b, 0.05);
+    world.add(*constraint);
+    CHECK(dAreConnectedExcluding(a, b, dJointTypeContact) == 1);
+    for (int i = 0; i < 100 && !constraint->queries().broken(); ++i) world.step(1. / 240);
+    REQUIRE(constraint->queries().broken());
+    CHECK(dAreConnectedExcluding(a, b, dJointTypeContact) == 0);
+    for (int i = 0; i < 10; ++i) world.step(1. / 240);
+    // 64 N m over 0.05 rad, and the ledger knows of the break
+    CHECK(constraint->queries().absorbed_energy() == Approx(3.2));
+    const double kinetic = to_ground ? 100 : 200;
+    CHECK(world.ledger().held().kinetic == Approx(kinetic - 3.2));
+    CHECK(std::abs(world.ledger().unexplained()) < 1e-9 * kinetic);
+}
+
+TEST_CASE("a joint of six axes that is mended connects its parts again", "[ode][ends]") {
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    ode::World world(engine.id);
+    ode::PlasticJoint constraint(engine.id, a, nullptr, JointFrame<double>{}, joint(64, 0.05),
+                                 {JointAxis::torsion});
+    constraint.add_to(world);
+    const auto whole = constraint.state();
+    for (int i = 0; i < 100 && !constraint.broken(); ++i) world.step(1. / 240);
+    REQUIRE(constraint.broken());
+    CHECK_FALSE(constraint.detached());
+    const dQuaternion start = {1, 0, 0, 0};
+    dBodySetQuaternion(a, start);
+    dBodySetAngularVel(a, 0, 0, 1);
+    constraint.restore(whole);
+    CHECK(dAreConnected(a, nullptr) == 1);
+    for (int i = 0; i < 100; ++i) world.step(1. / 240);
+    CHECK(constraint.absorbed_energy() == Approx(1)); // of 0.5 × 2 × 1²
+    CHECK(dBodyGetAngularVel(a)[2] == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("ODE's world ends before what is in it", "[ode][ends]") {
+    const Kind kind = GENERATE(from_range(kinds));
+    const bool broken = GENERATE(false, true), joint_first = GENERATE(false, true);
+    INFO(kind.name << (broken ? ", broken" : "") << (joint_first ? ", then the joint" : ""));
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    auto world = std::make_unique<ode::World>(engine.id, ode::WorldParameters{.warn = nullptr});
+    world->add(a);
+    auto constraint = kind.make(engine.id, a, nullptr, broken ? 0.05 : unlimited);
+    world->add(*constraint);
+    for (int i = 0; i < 10; ++i) world->step(1e-2);
+    const double absorbed = constraint->queries().absorbed_energy();
+    engine.end();
+    CHECK(constraint->queries().absorbed_energy() == absorbed);
+    if (joint_first) constraint.reset();
+    world.reset();
+}
+
+TEST_CASE("joints of a world that is gone leave a new one alone", "[ode][ends]") {
+    Engine engine;
+    const Kind kind = GENERATE(from_range(kinds));
+    INFO(kind.name);
+    auto old = kind.make(engine.id, engine.rotor(10), nullptr, unlimited);
+    engine.end();
+    engine.id = dWorldCreate(); // where the old one was, as often as not
+    const dBodyID a = engine.rotor(10);
+    ode::World world(engine.id);
+    auto constraint = kind.make(engine.id, a, nullptr, unlimited);
+    world.add(*constraint);
+    old.reset();
+    for (int i = 0; i < 100; ++i) world.step(1e-2);
+    CHECK(constraint->queries().absorbed_energy() == Approx(100));
+}
+
+TEST_CASE("a joint that ends leaves every World", "[ode][ends]") {
+    const Kind kind = GENERATE(from_range(kinds));
+    INFO(kind.name);
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    ode::World world(engine.id, ode::WorldParameters{.warn = nullptr});
+    ode::World other(engine.id);
+    world.add(a);
+    {
+        const auto constraint = kind.make(engine.id, a, nullptr, unlimited);
+        world.add(*constraint);
+        other.add(*constraint);
+        world.step(1e-2);
+    }
+    const double spin = double(dBodyGetAngularVel(a)[2]);
+    CHECK(spin == Approx(10 - 0.32));
+    world.step(1e-2);
+    other.step(1e-2);
+    if (std::string(kind.name) != "motor") {
+        CHECK(double(dBodyGetAngularVel(a)[2]) == spin);
+        CHECK(dBodyGetNumJoints(a) == 0);
+    }
+    CHECK(std::abs(world.ledger().unexplained()) < 1e-9);
+}
+
+TEST_CASE("a joint ends in a listener", "[ode][ends]") {
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    ode::World world(engine.id, ode::WorldParameters{.warn = nullptr});
+    auto constraint = kinds[0].make(engine.id, a, nullptr, 0.05);
+    world.add(*constraint);
+    world.on_event([&](const JointEvent<double>& event) {
+        if (event.kind == EventKind::broke) constraint.reset();
+    });
+    for (int i = 0; i < 10; ++i) world.step(1e-2);
+    CHECK(constraint == nullptr);
+}
+
+TEST_CASE("a World ends before its joints, and another steps them", "[ode][ends]") {
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    const auto constraint = kinds[0].make(engine.id, a, nullptr, unlimited);
+    {
+        ode::World first(engine.id);
+        first.add(*constraint);
+        first.step(1e-2);
+    }
+    ode::World second(engine.id);
+    second.add(*constraint);
+    for (int i = 0; i < 100; ++i) second.step(1e-2);
+    CHECK(constraint->queries().absorbed_energy() == Approx(100));
+}
