@@ -4,8 +4,11 @@
 // and joints that come into a world twice. Worth running under AddressSanitizer.
 #include <catch2/catch.hpp>
 
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include "adapters/bullet_world.hpp"
@@ -102,7 +105,7 @@ TEST_CASE("parts that were told not to collide do not once their joint is mended
     break_it(world, hinge);
     const auto broken = hinge.state();
     hinge.restore(whole);
-    CHECK_FALSE(collide(halves));
+    for (int i : {0, 1}) CHECK_FALSE(halves[i].checkCollideWith(&halves[1 - i]));
     hinge.restore(broken);
     CHECK(collide(halves));
     hinge.remove_from(world.world());
@@ -176,13 +179,15 @@ TEST_CASE("a joint that Bullet's own call took out may be added again", "[bullet
 TEST_CASE("bodies and joints end in any order once the bodies have left the world",
           "[bullet][ends]") {
     BulletWorld world("si");
-    auto halves = std::make_unique<Halves>(world.world());
+    alignas(Halves) std::byte storage[sizeof(Halves)];
+    auto* halves = new (storage) Halves(world.world());
     const bool parted = GENERATE(false, true);
     auto hinge = std::make_unique<Hinge>((*halves)[0], (*halves)[1], Halves::pivot(0),
                                          Halves::pivot(1), joint(64));
     hinge->add_to(world.world(), parted);
     world.step(1e-3);
-    halves.reset();
+    halves->~Halves();
+    std::memset(storage, 0xA5, sizeof storage); // whoever reads it falls
     hinge.reset();
     CHECK(world.world().getNumConstraints() == 0);
     world.step(1e-3);
