@@ -239,7 +239,8 @@ class OneAxisBatch {
                 .half_dt = dt / 2,
                 .drift_rate = 1 / std::max(parameters_.drift_time, 5 * dt),
                 .absolute_residual = parameters_.absolute_residual,
-                .relative_residual = parameters_.relative_residual};
+                .relative_residual = parameters_.relative_residual,
+                .least_travel = parameters_.least_travel};
     }
 
     Law law_;

@@ -17,6 +17,7 @@
 #include <type_traits>
 
 #include "ductile/batch/status.hpp"
+#include "ductile/joint/step_end.hpp"
 
 namespace ductile::batch_detail {
 
@@ -65,6 +66,7 @@ struct StepNumbers {
     S drift_rate; ///< 1/drift_time, which is not shorter than five steps [1/s]
     S absolute_residual;
     S relative_residual;
+    S least_travel;
 };
 
 /// Strength of one joint.
@@ -173,8 +175,13 @@ template <std::floating_point S>
     const S too_slow = only(~at_upper, -excess);
     const S residual = only(intact, larger(too_fast, too_slow));
     const S speed = larger(start_speed, std::abs(velocity));
+    const S other_work = old.other_work + only(intact, other);
+    const S taken = old.plastic_work + plastic + strength * step.least_travel;
+    const S owed = allowed_gain<S> * taken + strength * speed * step.dt;
+    const Mask<S> gains = mask<S>(-other > noticed_gain<S> * -other_work) &
+                          mask<S>(other_work < 0) & mask<S>(-other_work > owed);
     const Mask<S> unreliable =
-        mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
+        gains | mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
     const Mask<S> yields = flows & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
     // elastic 0, yielding 1, broken 2, unreliable 3
@@ -187,7 +194,7 @@ template <std::floating_point S>
     return {.state = {.offset = select(intact & (at_bound | flows), position, old.offset),
                       .travel = old.travel + travel,
                       .plastic_work = old.plastic_work + plastic,
-                      .other_work = old.other_work + only(intact, other),
+                      .other_work = other_work,
                       .velocity = select(intact, velocity, old.velocity),
                       .residual_max = larger(old.residual_max, residual),
                       .status = (intact & status) |

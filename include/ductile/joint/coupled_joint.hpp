@@ -229,9 +229,8 @@ class CoupledJoint {
     }
 
     /// That of the parameters, or the equivalent of the elastic rows' energy at yield.
-    [[nodiscard]] Scalar least_travel(const StepError<Scalar>& error) const noexcept {
-        const bool rest = !(state_.misplaced + error.flow + error.swing > 0);
-        if (all_rigid_ || rest) return parameters_.least_travel;
+    [[nodiscard]] Scalar least_travel() const noexcept {
+        if (all_rigid_) return parameters_.least_travel;
         Scalar energy = 0;
         for (int i = 0; i < dimension; ++i) {
             const Scalar bound = std::max(upper_[i], -lower_[i]);
@@ -390,10 +389,11 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
                                    .allowed_residual = allowed_residual(reaction.velocity),
                                    .error = taken.error,
                                    .strength = first_strength_ * grown_,
-                                   .least_travel = least_travel(taken.error),
+                                   .largest_force = upper_.cwiseMax(-lower_),
                                    .allowed_step_error = parameters_.allowed_step_error,
                                    .dt = dt,
-                                   .at_bound = taken.at_bound.any()});
+                                   .at_bound = taken.at_bound.any()},
+           [this]() noexcept { return least_travel(); });
     return step;
 }
 

@@ -55,6 +55,15 @@ template <std::floating_point S>
     return {.lower = given, .upper = given};
 }
 
+/// Share of a flow's account that its work gives, the geometry giving the rest, for a law whose range
+/// moves: θ where the slip is within `range`, half of that between the two yield points, and 1 far
+/// beyond it, where a row with θ > 0 acts with the strength of its midpoint [-].
+template <std::floating_point S>
+[[nodiscard]] constexpr S work_share(S implicit, S range, S slipped) noexcept {
+    if (!(implicit > 0)) return 0;
+    return 1 - (1 - implicit) * std::min(S(1), range / std::abs(slipped));
+}
+
 /// Flow that brings a spring's force back to the law's, k (trial - slip) = fade × resistance(slip),
 /// signed; zero inside the elastic range [m | rad]. `trial` is q_e as if nothing had flowed, `fade`
 /// what the law's strength is multiplied by. A few Newton steps; one where the law is linear.

@@ -38,8 +38,8 @@
 // was stored in the part is set free inside it: Step::lost.
 //
 // Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at the
-// lower one. The violation of that is the residual; a step whose residual is large is reported as
-// Outcome::unreliable. (A closed energy ledger proves nothing: it closes in unconverged solves too.)
+// lower one. The violation of that is the residual; where it is large the step is unreliable, and so is
+// one that gives energy never taken (step_end.hpp). (A closed ledger proves nothing: it closes in both.)
 //
 // Source: work-conjugate account and break derived here; row bounds as Nikula (2017), section 2.8.
 #pragma once
@@ -54,6 +54,7 @@
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/fracture/travel_limit.hpp"
 #include "ductile/joint/elastic_row.hpp"
+#include "ductile/joint/flow_range.hpp"
 #include "ductile/joint/one_axis_state.hpp"
 #include "ductile/joint/remaining_travel.hpp"
 #include "ductile/joint/step_end.hpp"
@@ -139,30 +140,32 @@ class OneAxisJoint {
         return rigid() ? Scalar(0) : 1 / (implicit_ * parameters_.stiffness * dt * dt);
     }
 
+    [[nodiscard]] Scalar cap(Scalar sign) const noexcept {
+        return criterion_.force_cap(state_.criterion, sign);
+    }
+
     /// The bounds of the row's force for this step.
     void bound(Scalar dt) noexcept {
         const Scalar ahead = start_ * dt;
         fade_ = criterion_.strength_factor(state_.criterion, std::abs(ahead) / 2);
         const ForceRange<Scalar> range = law_.prepare(state_.law, ahead);
-        flow_lower_ = range.lower * fade_;
-        flow_upper_ = range.upper * fade_;
+        flow_ = {{range.lower * fade_, range.upper * fade_}};
         const Scalar direction = std::copysign(Scalar(1), start_);
-        left_ = criterion_.remaining(state_.criterion, resistance(direction), direction);
+        Scalar loss = flow_.resistance(direction); // per travel
+        if constexpr (!StrengthLaw<Law>) {
+            const Scalar travel = std::max(std::abs(ahead), parameters_.absolute_residual * dt);
+            loss = fade_ * dissipation(law_, state_.law, direction * travel);
+        }
+        left_ = criterion_.remaining(state_.criterion, loss, direction);
         if constexpr (StrengthLaw<Law>) { // until a softening law has faded to nothing
             const Scalar fading = exhaustion(law_.law()) - state_.plastic_travel;
             left_ = std::min(left_, std::max(fading, Scalar(0)));
         }
-        const Scalar share = unspent_share(left_, std::abs(start_), std::abs(state_.start_velocity),
-                                           state_.flowing, dt);
-        upper_ = std::min(-flow_lower_ * share, criterion_.force_cap(state_.criterion, Scalar(1)));
-        lower_ = std::max(-flow_upper_ * share, -criterion_.force_cap(state_.criterion, Scalar(-1)));
-        share_ = share;
+        share_ = unspent_share(left_, std::abs(start_), std::abs(state_.start_velocity),
+                               state_.flowing, dt);
+        upper_ = std::min(-flow_.lower * share_, cap(1));
+        lower_ = std::max(-flow_.upper * share_, -cap(-1));
         tolerance_ = bound_tolerance * std::max(std::abs(upper_), std::abs(lower_));
-    }
-
-    /// |force| that resists flow towards `direction` in this step [N | N m].
-    [[nodiscard]] Scalar resistance(Scalar direction) const noexcept {
-        return std::abs(direction < 0 ? flow_lower_ : flow_upper_);
     }
 
     /// True where somebody changed the velocity between the steps, well above solver noise.
@@ -194,7 +197,7 @@ class OneAxisJoint {
                                    .predicted = jumped() ? Scalar(0) : predicted_.change,
                                    .midway = predicted_.midway,
                                    .noise = parameters_.absolute_residual,
-                                   .strength = resistance(taken.travel),
+                                   .strength = flow_.resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
                                    .implicit = implicit_,
                                    .other_work = step.other_work,
@@ -203,14 +206,12 @@ class OneAxisJoint {
     /// That of the parameters; of a spring the travel that takes the energy it holds at yield.
     [[nodiscard]] Scalar least_travel() const noexcept {
         if (rigid()) return parameters_.least_travel;
-        return std::max(resistance(1), resistance(-1)) / (2 * parameters_.stiffness);
+        return std::max(flow_.resistance(1), flow_.resistance(-1)) / (2 * parameters_.stiffness);
     }
 
     /// True where the force reached a cap before the row could yield.
     [[nodiscard]] bool brittle(const Taken& taken) const noexcept {
-        const Scalar upper = criterion_.force_cap(state_.criterion, Scalar(1));
-        const Scalar lower = -criterion_.force_cap(state_.criterion, Scalar(-1));
-        return (taken.at_upper && upper_ == upper) || (taken.at_lower && lower_ == lower);
+        return (taken.at_upper && upper_ == cap(1)) || (taken.at_lower && lower_ == -cap(-1));
     }
 
     /// Breaks without flow: what the row took beyond its elastic energy is handed back.
@@ -231,7 +232,7 @@ class OneAxisJoint {
         if (flows_with_bound(taken)) {
             flow(step, taken, taken.work, taken.travel * share_);
         } else if (stops) {
-            flow(step, taken, taken.work, direction * taken.work / resistance(direction));
+            flow(step, taken, taken.work, direction * taken.work / flow_.resistance(direction));
         } else {
             step.other_work = taken.work;
         }
@@ -252,14 +253,18 @@ class OneAxisJoint {
         step.elastic = k * (strained * strained - elastic_ * elastic_) / 2;
         const Scalar rest = taken.work - step.elastic;
         const Scalar direction = std::copysign(Scalar(1), slipped != 0 ? slipped : taken.travel);
-        const Scalar strength = resistance(direction);
+        const Scalar strength = flow_.resistance(direction);
         if (slipped != 0) {
             // the geometry of a symplectic row is second order, the work of an implicit one is the
             // better account, in between as the row itself; a law that rests by itself has its own
             state_.plastic_offset += slipped;
-            const Scalar share = RestsByItself<Cyclic> ? Scalar(0) : implicit_;
-            const Scalar by_work = strength > tolerance_ ? std::max(rest / strength, Scalar(0))
-                                                         : std::abs(slipped);
+            Scalar share = RestsByItself<Cyclic> ? Scalar(0) : implicit_;
+            if constexpr (!StrengthLaw<Law> && !RestsByItself<Cyclic>) {
+                share = work_share(implicit_, (flow_.upper - flow_.lower) / (2 * k), slipped);
+            }
+            const Scalar moved = taken.travel - (strained - elastic_); // what the spring left
+            const bool told = flow_.told_by_work(direction, tolerance_);
+            const Scalar by_work = std::max(told ? rest / strength : direction * moved, Scalar(0));
             flow(step, taken, rest,
                  direction * ((1 - share) * std::abs(slipped) + share * by_work));
         } else if (stopped_in_step(taken)) {
@@ -321,17 +326,11 @@ class OneAxisJoint {
     State state_;
 
     // between prepare and commit
-    Scalar bias_ = 0, start_ = 0; ///< b, u
-    Scalar elastic_ = 0;    ///< q_e at the start
-    Scalar flow_lower_ = 0; ///< force along the flow at which it flows back and forth
-    Scalar flow_upper_ = 0;
-    Scalar lower_ = 0; ///< bounds of the row's force
-    Scalar upper_ = 0;
-    Scalar tolerance_ = 0;
-    Scalar fade_ = 1;  ///< strength factor of the criterion
-    Scalar left_ = 0;  ///< travel left before a break
-    Scalar share_ = 1; ///< of the strength that the bounds allow
-    Scalar implicit_ = 1; ///< θ of an elastic row
+    Scalar bias_ = 0, start_ = 0, elastic_ = 0; ///< b, u, q_e at the start
+    FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
+    Scalar lower_ = 0, upper_ = 0, tolerance_ = 0; ///< bounds of the row's force, how near is at them
+    Scalar fade_ = 1, implicit_ = 1; ///< strength factor of the criterion; θ of an elastic row
+    Scalar left_ = 0, share_ = 1; ///< travel left before a break; of the strength, what bounds allow
     Predicted<Scalar> predicted_{};
 };
 
@@ -387,11 +386,12 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scal
                                    .absolute_residual = parameters_.absolute_residual,
                                    .allowed_residual = allowed_residual(reaction.velocity),
                                    .error = error_of(step, taken),
-                                   .strength = resistance(taken.travel),
-                                   .least_travel = least_travel(),
+                                   .strength = flow_.resistance(taken.travel),
+                                   .largest_force = flow_.resistance(taken.travel),
                                    .allowed_step_error = parameters_.allowed_step_error,
                                    .dt = dt,
-                                   .at_bound = taken.at_bound()});
+                                   .at_bound = taken.at_bound()},
+           [this]() noexcept { return least_travel(); });
     if (state_.broken) [[unlikely]]
         place_break(step, taken);
     return step;

@@ -101,15 +101,16 @@ template <std::floating_point S>
     return {.swing = std::abs(row.force) + swing > row.strength ? lost : S(0)};
 }
 
-/// Says whether the steps of a flow that ends, or a swing, were too long. `end`: StepEnd.
-template <class State, class Step, class End>
-void judge_step(State& state, Step& step, const End& end) noexcept {
+/// Says whether the steps of a flow that ends, or a swing, were too long. `end`, `least_travel`: as
+/// settle of step_end.hpp.
+template <class State, class Step, class End, class LeastTravel>
+void judge_step(State& state, Step& step, const End& end, LeastTravel&& least_travel) noexcept {
     using S = decltype(end.strength);
     if (!(state.misplaced + end.error.flow + end.error.swing > 0)) return;
     const S per_work = end.strength > 0 ? 1 / end.strength : S(0);
     state.misplaced += end.error.flow * per_work;
     step.step_error =
-        (state.misplaced + end.error.swing * per_work) / (state.plastic_travel + end.least_travel);
+        (state.misplaced + end.error.swing * per_work) / (state.plastic_travel + least_travel());
     const bool moved = state.flowing || end.error.flow > 0 || end.error.swing > 0;
     const bool ends = !end.at_bound || state.broken;
     step.coarse = moved && ends && step.step_error > end.allowed_step_error;

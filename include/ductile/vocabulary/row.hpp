@@ -57,8 +57,9 @@ struct Reaction {
     Scalar position = 0; ///< q after the engine moved the bodies, not wrapped [m | rad]
 };
 
-/// State of a joint after a step. `unreliable` says that the solver left the row unsolved, so that
-/// neither motion nor force of this step should be believed.
+/// State of a joint after a step. `unreliable` says that the solver left the row unsolved, or that
+/// the joint gives its bodies energy it never took: neither motion nor force of this step should be
+/// believed.
 enum class Outcome { elastic, yielding, broken, unreliable };
 
 [[nodiscard]] constexpr std::string_view to_string(Outcome outcome) noexcept {

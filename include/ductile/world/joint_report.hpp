@@ -20,6 +20,7 @@ struct JointReport {
     bool first_yield = false; ///< it flowed in this step for the first time
     bool coarse = false;      ///< the flow that ended had steps too long for it: step_error.hpp
     S residual = 0;           ///< worst violation of any of its rows, >= 0 [m/s | rad/s]
+    S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
     S plastic_travel = 0;     ///< p [m | rad]
     S absorbed_energy = 0;    ///< D [J]
     S step_error = 0;         ///< share of p that the steps so far may have misplaced [-]
@@ -40,6 +41,7 @@ template <std::floating_point S>
             .first_yield = last.first_yield,
             .coarse = last.coarse,
             .residual = std::max(last.residual, rigid_residual),
+            .gained = last.gained,
             .plastic_travel = totals.plastic_travel,
             .absorbed_energy = totals.plastic_work,
             .step_error = last.step_error,
@@ -51,6 +53,7 @@ template <std::floating_point S>
 template <std::floating_point S>
 [[nodiscard]] JointReport<S> idle_report(JointReport<S> last) noexcept {
     last.residual = 0;
+    last.gained = 0;
     last.coarse = false;
     if (last.outcome == Outcome::broken) return last;
     last.first_yield = false;

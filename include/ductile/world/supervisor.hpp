@@ -34,12 +34,17 @@ using Warn = std::function<void(const std::string&)>;
 
 inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
-/// What a world says of a joint when it is first left unsolved.
+/// What a world says of a joint that is first unreliable.
 [[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
     std::ostringstream line;
-    line << "ductile: joint \"" << event.name
-         << "\" was left unsolved by the solver at t = " << event.time << " s (off by "
+    line << "ductile: joint \"" << event.name << "\" ";
+    if (event.report.gained > 0) {
+        line << "has given its bodies " << event.report.gained
+             << " J more than it took, at t = " << event.time << " s";
+    } else {
+        line << "was left unsolved by the solver at t = " << event.time << " s (off by "
          << event.report.residual << " m/s or rad/s)";
+    }
     return line.str();
 }
 
