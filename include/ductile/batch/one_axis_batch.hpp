@@ -13,7 +13,7 @@
 // Bytes per joint, with s = sizeof(S) and shared parameters; a PerJoint parameter adds s to the
 // reads of each call:
 //
-//   prepare   reads 5 s + 1    writes 4 s        float  21 + 16, double  41 + 32
+//   prepare   reads 6 s + 1    writes 4 s        float  25 + 16, double  49 + 32
 //   commit    reads 13 s + 1   writes 8 s + 1    float  53 + 33, double 105 + 65
 //
 // A call is O(n), about 25 instructions per joint and step in float on registers of 32 bytes, which
@@ -73,10 +73,11 @@ struct PrepareRow {
     /// Joint i, its status in entry n of the block.
     [[gnu::always_inline]] void operator()(std::size_t i, std::size_t n, const S* position,
                                            const S* velocity, const S* offset, const S* travel,
-                                           const Mask<S>* status, S* start, S* lower, S* upper,
-                                           S* bias) const noexcept {
-        const Prepared<S> now = prepare_row<S>(row_law<S>(law, i), step, position[i], velocity[i],
-                                               offset[i], travel[i], start[i], status[n]);
+                                           const S* last_velocity, const Mask<S>* status, S* start,
+                                           S* lower, S* upper, S* bias) const noexcept {
+        const Prepared<S> now =
+            prepare_row<S>(row_law<S>(law, i), step, position[i], velocity[i], offset[i], travel[i],
+                           start[i], last_velocity[i], status[n]);
         lower[i] = now.lower;
         upper[i] = now.upper;
         bias[i] = now.bias;
@@ -150,7 +151,8 @@ class OneAxisBatch {
             batch_detail::widen<Scalar>(state.status.data() + from, joints, status);
             batch_detail::each_joint(rule, from, joints, motion.position.data(),
                                      motion.velocity.data(), state.plastic_offset.data(),
-                                     state.plastic_travel.data(), status.data(),
+                                     state.plastic_travel.data(), state.velocity.data(),
+                                     status.data(),
                                      state.start_velocity.data(), rows.lower.data(),
                                      rows.upper.data(), rows.bias.data());
         }

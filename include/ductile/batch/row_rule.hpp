@@ -17,7 +17,9 @@
 #include <type_traits>
 
 #include "ductile/batch/status.hpp"
+#include "ductile/fracture/fracture.hpp"
 #include "ductile/joint/step_end.hpp"
+#include "ductile/vocabulary/leftover.hpp"
 
 namespace ductile::batch_detail {
 
@@ -89,9 +91,11 @@ struct RowLaw {
 /// A force this close to its bound, as a share of the larger one, is at it.
 template <std::floating_point S>
 inline constexpr S bound_tolerance = S(4e-6);
-/// Less travel than this share of what is left counts as all of it.
+/// This share of what a step may use up counts as all of it, and of a limit as the limit.
 template <std::floating_point S>
-inline constexpr S used_up_share = 1 - 16 * std::numeric_limits<S>::epsilon();
+inline constexpr S used_up_share = 1 - leftover_share<S>;
+template <std::floating_point S>
+inline constexpr S exhausted = 1 - exhausted_share<S>;
 
 template <std::floating_point S>
 struct Prepared {
@@ -102,10 +106,10 @@ template <std::floating_point S>
 [[gnu::always_inline]] inline Prepared<S> prepare_row(const RowLaw<S>& law,
                                                       const StepNumbers<S>& step, S position,
                                                       S velocity, S offset, S travel, S start,
-                                                      Mask<S> status) noexcept {
+                                                      S last_velocity, Mask<S> status) noexcept {
     const Mask<S> intact = ~broken<S>(status);
     const S speed = std::abs(velocity);
-    const S lost = larger(std::abs(start) - speed, S(0));
+    const S lost = larger(std::abs(start) - std::abs(last_velocity), S(0));
     const S slowed = only(flowing<S>(status), larger(speed - lost, S(0)));
     const S ahead = (speed + slowed) * step.half_dt;
     const S left = law.remaining(travel);
@@ -164,7 +168,7 @@ template <std::floating_point S>
     const S wanted = only(flows, std::abs(bounded * moved) / strength);
     const Mask<S> used_up = mask<S>(wanted >= left * used_up_share<S>);
     const S travel = select(flows & used_up, left, wanted);
-    const Mask<S> breaks = flows & mask<S>(old.travel + travel >= law.limit * used_up_share<S>);
+    const Mask<S> breaks = flows & mask<S>(old.travel + travel >= law.limit * exhausted<S>);
     const S plastic = (behind + law.hardening / 2 * travel) * travel;
     const S rest = work - plastic; // without flow no travel, and all work is other work
     const S release = only(breaks, larger(rest, S(0)));

@@ -97,7 +97,7 @@ class LowCycleFatigue : public WithoutForceCap<typename Life::Scalar>,
         const S step = std::abs(increment.plastic);
         if (state.broken || !(step > 0)) return;
         if (state.rainflow.turns(increment.plastic)) turn(state);
-        state.broken = step >= onward(state) * (1 - exhausted_share<S>);
+        state.broken = step >= onward(state) - exhausted_share<S> * first_range_;
         if (state.broken) return;
         const std::size_t depth = state.rainflow.depth();
         const S range = state.rainflow.running();

@@ -104,11 +104,13 @@ class CoupledJoint {
 
     /// γ of the last step's forces on the present surface: 1 where it flows [-].
     [[nodiscard]] Scalar utilisation() const noexcept {
-        return surface_.value(state_.force) / growth(0);
+        return state_.broken ? Scalar(0) : surface_.value(state_.force) / growth(0);
     }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
-        return criterion_.governing(state_.criterion);
+        return state_.broken && faded(law_, state_.plastic_travel)
+                   ? CriterionKind::exhausted_strength
+                                        : criterion_.governing(state_.criterion);
     }
     /// How the joint broke; nothing while it is intact. The axis is the one that did most of the
     /// breaking step's plastic work, or in a brittle break has the largest share of γ; the travel
@@ -146,22 +148,18 @@ class CoupledJoint {
         return parameters_.stiffness[i] == std::numeric_limits<Scalar>::infinity();
     }
 
-    /// R(p + ahead)/R(0), softened by the criterion.
+    /// R/R(0) of a step of the travel `ahead`, or of what is left of it, softened by the criterion.
     [[nodiscard]] Scalar growth(Scalar ahead) const noexcept {
-        return law_.value(state_.plastic_travel + ahead) / first_strength_ *
-               criterion_.strength_factor(state_.criterion, ahead);
-    }
-
-    [[nodiscard]] Impedance<Scalar, dimension> impedance_of(const Matrix& mass,
-                                                            Scalar dt) const noexcept {
-        if (all_rigid_) return {mass, dt};
-        Vector compliance;
-        for (int i = 0; i < dimension; ++i) compliance[i] = 1 / (parameters_.stiffness[i] * dt * dt);
-        return {mass, dt, compliance};
+        ahead = std::min(ahead, travel_to_nothing(law_, state_.plastic_travel));
+        const Scalar strength = strength_ahead(law_, state_.plastic_travel, ahead);
+        return strength / first_strength_ *
+               midway_factor(criterion_, state_.criterion, ahead, strength);
     }
 
     void bound(const Motion& motion, Scalar dt) noexcept {
-        const auto impedance = impedance_of(motion.mass, dt);
+        using Met = Impedance<Scalar, dimension>;
+        const Vector compliance = parameters_.stiffness.cwiseInverse() / (dt * dt);
+        const Met impedance = all_rigid_ ? Met(motion.mass, dt) : Met(motion.mass, dt, compliance);
         const Grown<Surface> now{surface_, growth(0)};
         // an elastic row starts from its spring: a resolved one acts a step late, and a box around
         // its last force would let it follow at half the rate
@@ -176,11 +174,14 @@ class CoupledJoint {
         const bool flows = use >= 1 - bound_tolerance;
         const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
         const Scalar power = std::abs(numeric::dot(predicted, start_));
-        grown_ = flows ? growth(power * rate / 2) : now.by; // at the midpoint of the travel ahead
-
         const Scalar before = std::abs(numeric::dot(predicted, state_.start_velocity));
+        const Scalar after = std::abs(numeric::dot(predicted, state_.velocity));
+        const Scalar least = travel_ahead(power, before, after, state_.flowing, rate);
+        const bool fades = ExhaustibleLaw<Law> && state_.flowing; // where a slope may be steep
+        grown_ = flows ? growth(fades ? least : power * rate) : now.by;
         left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
-        share_ = unspent_share(left_, power, before, state_.flowing, rate);
+        left_ = std::min(left_, travel_to_nothing(law_, state_.plastic_travel));
+        share_ = unspent_share(left_, least);
         cap_ = criterion_.force_cap(state_.criterion, 0) / first_strength_;
         const bool capped = cap_ <= grown_ * share_;
         if (capped) share_ = 1; // the cap is met before the travel left is used up
@@ -277,7 +278,7 @@ class CoupledJoint {
         }
         const Scalar strength = first_strength_ * grown_;
         Scalar travel = work / strength;
-        const bool last = travel >= left_ * (1 - exhausted_share<Scalar>);
+        const bool last = uses_up(travel, left_);
         if (last) travel = left_;
         step.plastic_work = strength * travel;
         state_.plastic_travel += travel;
@@ -286,7 +287,7 @@ class CoupledJoint {
                                  : strength;
         criterion_.update(state_.criterion,
                           {travel, state_.plastic_travel, force, step.plastic_work, dt});
-        state_.broken = last || criterion_.broken(state_.criterion);
+        state_.broken = last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         const Scalar rest = work - step.plastic_work;
         (state_.broken ? step.release : step.other_work) += rest;
         if (state_.broken) end_after(taken, reaction, travel, dt);
@@ -317,13 +318,10 @@ class CoupledJoint {
     Rows rows_{};
     Vector start_ = Vector::Zero();   ///< u
     Vector elastic_ = Vector::Zero(); ///< q_e at the start
-    Vector lower_ = Vector::Zero();
-    Vector upper_ = Vector::Zero();
+    Vector lower_ = Vector::Zero(), upper_ = Vector::Zero(); ///< bounds of the forces
     Vector implicit_ = Vector::Ones(); ///< θ of the elastic rows
-    Scalar grown_ = 1;                 ///< R/R(0) of this step
-    Scalar tolerance_ = 0;
-    Scalar left_ = 0;  ///< travel left before a break
-    Scalar share_ = 1; ///< of the strength that the bounds allow
+    Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it
+    Scalar left_ = 0, share_ = 1; ///< travel left before a break; of the strength, what bounds allow
     Scalar cap_ = 0;   ///< γ of a brittle break
     Predicted<Vector> predicted_{Vector::Zero()};
 };

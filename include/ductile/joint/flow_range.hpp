@@ -12,6 +12,7 @@
 #include <concepts>
 
 #include "ductile/law/cyclic.hpp"
+#include "ductile/law/law.hpp"
 
 namespace ductile {
 
@@ -31,12 +32,15 @@ struct FlowRange : ForceRange<S> {
     }
 };
 
-/// What flow by the signed `increment` != 0 dissipates per travel: what resists it, without what a
-/// back force keeps or gives [N | N m].
-template <CyclicLaw Law>
-[[nodiscard]] typename Law::Scalar dissipation(const Law& law, typename Law::State state,
-                                               typename Law::Scalar increment) noexcept {
-    return law.commit(state, increment).dissipated / std::abs(increment);
+/// What flow by the signed `increment` != 0 dissipates per travel: the `resistance`, without what a
+/// back force keeps or gives [N | N m]. `cyclic`: the cyclic form of Law.
+template <class Law, CyclicLaw Cyclic>
+[[nodiscard]] typename Cyclic::Scalar dissipation(const Cyclic& cyclic,
+                                                  typename Cyclic::State state,
+                                                  typename Cyclic::Scalar increment,
+                                                  typename Cyclic::Scalar resistance) noexcept {
+    if constexpr (StrengthLaw<Law>) return resistance;
+    return cyclic.commit(state, increment).dissipated / std::abs(increment);
 }
 
 } // namespace ductile

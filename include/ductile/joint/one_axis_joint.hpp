@@ -101,9 +101,9 @@ class OneAxisJoint {
     }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
-        return state_.broken && !criterion_.broken(state_.criterion)
+        return state_.broken && faded(law_, state_.plastic_travel)
                    ? CriterionKind::exhausted_strength
-                   : criterion_.governing(state_.criterion);
+                                        : criterion_.governing(state_.criterion);
     }
     /// How the joint broke; nothing while it is intact.
     [[nodiscard]] std::optional<FractureEvent<Scalar>> fracture() const noexcept {
@@ -146,23 +146,20 @@ class OneAxisJoint {
 
     /// The bounds of the row's force for this step.
     void bound(Scalar dt) noexcept {
-        const Scalar ahead = start_ * dt;
-        fade_ = criterion_.strength_factor(state_.criterion, std::abs(ahead) / 2);
-        const ForceRange<Scalar> range = law_.prepare(state_.law, ahead);
-        flow_ = {{range.lower * fade_, range.upper * fade_}};
-        const Scalar direction = std::copysign(Scalar(1), start_);
-        Scalar loss = flow_.resistance(direction); // per travel
-        if constexpr (!StrengthLaw<Law>) {
-            const Scalar travel = std::max(std::abs(ahead), parameters_.absolute_residual * dt);
-            loss = fade_ * dissipation(law_, state_.law, direction * travel);
-        }
-        left_ = criterion_.remaining(state_.criterion, loss, direction);
-        if constexpr (StrengthLaw<Law>) { // until a softening law has faded to nothing
-            const Scalar fading = exhaustion(law_.law()) - state_.plastic_travel;
-            left_ = std::min(left_, std::max(fading, Scalar(0)));
-        }
-        share_ = unspent_share(left_, std::abs(start_), std::abs(state_.start_velocity),
-                               state_.flowing, dt);
+        const Scalar fading = travel_to_nothing(law_, state_.plastic_travel);
+        const Scalar direction = std::copysign(Scalar(1), start_), speed = std::abs(start_);
+        const Scalar least = travel_ahead(speed, std::abs(state_.start_velocity),
+                                          std::abs(state_.velocity), state_.flowing, dt);
+        const bool fades = ExhaustibleLaw<Law> && state_.flowing; // where a slope may be steep
+        const Scalar ahead = std::min(fades ? least : speed * dt, fading);
+        flow_ = {law_.prepare(state_.law, direction * ahead)};
+        const Scalar strength = flow_.resistance(direction);
+        fade_ = midway_factor(criterion_, state_.criterion, ahead, strength);
+        flow_ = {{flow_.lower * fade_, flow_.upper * fade_}};
+        const Scalar travel = std::max(ahead, parameters_.absolute_residual * dt);
+        const Scalar loss = dissipation<Law>(law_, state_.law, direction * travel, strength) * fade_;
+        left_ = std::min(criterion_.remaining(state_.criterion, loss, direction), fading);
+        share_ = unspent_share(left_, least);
         upper_ = std::min(-flow_.lower * share_, cap(1));
         lower_ = std::max(-flow_.upper * share_, -cap(-1));
         tolerance_ = bound_tolerance * std::max(std::abs(upper_), std::abs(lower_));
@@ -291,7 +288,7 @@ class OneAxisJoint {
             step.other_work = work;
             return;
         }
-        const bool last = std::abs(travel) >= left_ * (1 - exhausted_share<Scalar>);
+        const bool last = uses_up(std::abs(travel), left_);
         if (last) travel = std::copysign(left_, travel);
         const FlowWork<Scalar> done = law_.commit(state_.law, travel);
         step.plastic_work = done.dissipated * fade_;
@@ -300,7 +297,7 @@ class OneAxisJoint {
         criterion_.update(state_.criterion,
                           {travel, state_.plastic_travel, taken.force, step.plastic_work, taken.dt});
         const Scalar rest = work - step.plastic_work - done.stored * fade_;
-        state_.broken = last || criterion_.broken(state_.criterion);
+        state_.broken = last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         if (state_.broken) step.release = std::max(rest, Scalar(0));
         step.other_work = rest - step.release;
     }

@@ -19,18 +19,53 @@
 #include <cmath>
 #include <concepts>
 
+#include "ductile/fracture/fracture.hpp"
+#include "ductile/law/law.hpp"
+#include "ductile/vocabulary/leftover.hpp"
+
 namespace ductile {
 
-/// Share of the full strength that uses up the travel `left` in a step that starts at `speed`, in
-/// (0, 1]. The travel of the step is predicted from below, so that a step that can break does
-/// break: with the deceleration since the start of the last step, at `before`, where the joint
-/// flowed in it, else with a stop inside this one. All along the motion [m | rad, m/s | rad/s].
+/// Strength factor of a criterion midway through the travel `ahead` >= 0 [m | rad], or through what
+/// it leaves of it: beyond its end there is no strength to take [-]. `strength` without it [N | N m].
+template <FractureCriterion Criterion>
+[[nodiscard]] typename Criterion::Scalar midway_factor(
+    const Criterion& criterion, const typename Criterion::State& state,
+    typename Criterion::Scalar ahead, typename Criterion::Scalar strength) noexcept {
+    using S = typename Criterion::Scalar;
+    const S factor = criterion.strength_factor(state, ahead / 2);
+    if (!(factor < 1)) return factor;
+    const S left = criterion.remaining(state, strength * factor, S(0));
+    return left < ahead ? criterion.strength_factor(state, left / 2) : factor;
+}
+
+/// Travel of a step that starts at `speed`, predicted from below, so that a step that can break does
+/// break: with the speed that the last step took, `before` less `after`, where the joint flowed in
+/// it, else with a stop inside this one. What somebody gave back between the steps, a driver or a
+/// kick, is not in it. All along the motion [m | rad, m/s | rad/s].
 template <std::floating_point S>
-[[nodiscard]] S unspent_share(S left, S speed, S before, bool flowing, S dt) noexcept {
-    const S lost = std::max(before - speed, S(0));
+[[nodiscard]] S travel_ahead(S speed, S before, S after, bool flowing, S dt) noexcept {
+    const S lost = std::max(before - after, S(0));
     const S slowed = flowing ? std::max(speed - lost, S(0)) : S(0);
-    const S travel = (speed + slowed) / 2 * dt;
-    return left < travel ? left / travel : S(1);
+    return (speed + slowed) / 2 * dt;
+}
+
+/// Share of the full strength that uses up the travel `left` in a step of the travel `ahead`, in
+/// (0, 1].
+template <std::floating_point S>
+[[nodiscard]] S unspent_share(S left, S ahead) noexcept {
+    return left < ahead ? left / ahead : S(1);
+}
+
+/// True where a law has faded to nothing after `travel`, but for the round-off of sums.
+template <class Law>
+[[nodiscard]] bool faded(const Law& law, typename Law::Scalar travel) noexcept {
+    return travel_to_nothing(law, travel) <= leftover_share<typename Law::Scalar> * travel;
+}
+
+/// True where `travel` uses up what is `left` of a life, but for the round-off of sums.
+template <std::floating_point S>
+[[nodiscard]] bool uses_up(S travel, S left) noexcept {
+    return travel >= left * (1 - leftover_share<S>);
 }
 
 /// Time from the start of the step until `distance` x is run through, in [0, dt] [s]; u, u' along

@@ -24,6 +24,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 
 namespace ductile {
 
@@ -62,6 +63,13 @@ concept CyclicLaw = std::regular<typename T::State> &&
     { law.tangent(state, x, x) } noexcept -> std::same_as<typename T::Scalar>;
     { law.stored(state) } noexcept -> std::same_as<typename T::Scalar>;
 };
+
+/// Travel until the law has faded to nothing: infinity, but for those of hardening.hpp [m | rad].
+template <CyclicLaw Law>
+[[nodiscard]] constexpr typename Law::Scalar travel_to_nothing(
+    const Law& /*law*/, typename Law::Scalar /*travel*/) noexcept {
+    return std::numeric_limits<typename Law::Scalar>::infinity();
+}
 
 /// A CyclicLaw whose state says where the row rests, so that its flow must be that of the position.
 /// - `plastic_position(state)`: position at which the force would vanish [m | rad]

@@ -60,10 +60,11 @@ class Hardening {
 
     /// Range for a step with the predicted signed increment [m | rad].
     [[nodiscard]] ForceRange<Scalar> prepare(const State& state, Scalar predicted) const noexcept {
-        const Scalar half = std::abs(predicted) / 2;
-        const Scalar none = 0;
-        return {.lower = resistance(state, predicted < 0 ? half : none, Scalar(-1)),
-                .upper = resistance(state, predicted > 0 ? half : none, Scalar(1))};
+        const Scalar along = strength_ahead(law_, state.plastic_travel, std::abs(predicted));
+        const Scalar back = law_.value(state.plastic_travel); // against the flow: as it stands
+        const Scalar moved = back_.shifted(state.back_force, predicted / 2);
+        return {.lower = predicted < 0 ? moved - along : state.back_force - back,
+                .upper = predicted > 0 ? moved + along : state.back_force + back};
     }
 
     /// Flows by the signed increment [m | rad].
@@ -106,6 +107,13 @@ class Hardening {
 
 template <StrengthLaw Law>
 using IsotropicHardening = Hardening<Law>;
+
+/// As that of its strength: without a back force nothing is left beside it [m | rad].
+template <StrengthLaw Law>
+[[nodiscard]] typename Law::Scalar travel_to_nothing(const IsotropicHardening<Law>& law,
+                                                     typename Law::Scalar travel) noexcept {
+    return travel_to_nothing(law.law(), travel);
+}
 
 template <std::floating_point S>
 using KinematicHardening = Hardening<Perfect<S>, Prager<S>>;

@@ -20,6 +20,8 @@
 #include <concepts>
 #include <limits>
 
+#include "ductile/vocabulary/leftover.hpp"
+
 namespace ductile {
 
 /// `value(p)` is the strength R(p) >= 0 [N | N m], `slope(p)` its derivative [N/m | N m/rad] (the
@@ -65,6 +67,26 @@ template <StrengthLaw Law>
     } else {
         return std::numeric_limits<typename Law::Scalar>::infinity();
     }
+}
+
+/// Strength to act with over the coming `travel` >= 0: the mean for a law that fades, exact over its
+/// kinks and at its end, else that of the midpoint, of second order [N | N m].
+template <StrengthLaw Law>
+[[nodiscard]] typename Law::Scalar strength_ahead(const Law& law, typename Law::Scalar from,
+                                                  typename Law::Scalar travel) noexcept {
+    if constexpr (ExhaustibleLaw<Law>) {
+        return mean_strength(law, from, from + travel);
+    } else {
+        return law.value(from + travel / 2);
+    }
+}
+
+/// Travel until a law has faded to nothing, never negative; infinity for one that cannot [m | rad].
+template <StrengthLaw Law>
+[[nodiscard]] typename Law::Scalar travel_to_nothing(const Law& law,
+                                                     typename Law::Scalar travel) noexcept {
+    const typename Law::Scalar left = exhaustion(law) - travel;
+    return left > 0 ? left : 0;
 }
 
 } // namespace ductile

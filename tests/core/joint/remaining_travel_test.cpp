@@ -26,11 +26,15 @@ TEST_CASE("a step that would use up more than is left gets the share that uses i
           "[joint][break]") {
     const double dt = 0.1;
     // not flowing: predicted with a stop within the step, 2 m/s × dt/2
-    CHECK(unspent_share(0.025, 2.0, 2.0, false, dt) == Approx(0.25).epsilon(1e-14));
-    CHECK(unspent_share(0.1, 2.0, 2.0, false, dt) == 1);
+    CHECK(travel_ahead(2.0, 2.0, 2.0, false, dt) == Approx(0.1).epsilon(1e-14));
     // flowing: with the deceleration of the last step, from 2 to 1.5 m/s
-    CHECK(unspent_share(0.035, 2.0, 2.5, true, dt) == Approx(0.2).epsilon(1e-14));
-    CHECK(unspent_share(0.2, 2.0, 2.5, true, dt) == 1);
+    CHECK(travel_ahead(2.0, 2.5, 2.0, true, dt) == Approx(0.175).epsilon(1e-14));
+    // driven: the last step took 0.5 m/s, and somebody gave them back
+    CHECK(travel_ahead(2.0, 2.0, 1.5, true, dt) == Approx(0.175).epsilon(1e-14));
     // one that stops in this step for all that is known, from 2 to 0
-    CHECK(unspent_share(0.05, 2.0, 9.0, true, dt) == Approx(0.5).epsilon(1e-14));
+    CHECK(travel_ahead(2.0, 9.0, 2.0, true, dt) == Approx(0.1).epsilon(1e-14));
+
+    CHECK(unspent_share(0.025, 0.1) == Approx(0.25).epsilon(1e-14));
+    CHECK(unspent_share(0.1, 0.1) == 1);
+    CHECK(unspent_share(0.2, 0.1) == 1);
 }
