@@ -36,7 +36,7 @@ using SurfaceLaw = ductile::SectionJoint<double>;
 /// Section axes: x along the specimen's width, y against the blow, z along the specimen.
 [[nodiscard]] inline SurfaceLaw surface_law(const Scenario& s, bool notched) {
     const ductile::SectionJointParameters<double> parameters{
-        .length = s.joint_length(), .largest_rotation = s.max_plastic_rotation, .elastic = true};
+        .length = s.joint_length(), .largest_bending = s.max_plastic_rotation, .elastic = true};
     return notched ? ductile::section_joint(s.notched_section(), s.steel(), parameters)
                    : ductile::section_joint(s.full_section(), s.steel(), parameters);
 }

@@ -25,7 +25,7 @@ int main() {
             Box<double>(
                 {.width = 0.1, .height = 0.1, .web_thickness = 0.004, .flange_thickness = 0.004}),
             Material<double>(s355<double>()),
-            {.length = 0.2, .largest_rotation = 0.3, .elastic = true});
+            {.length = 0.2, .largest_bending = 0.3, .largest_twist = 0.6, .elastic = true});
         // the static world is null; the frame's z is along the member
         ode::PlasticJoint post(world_id, body, nullptr, {.origin = {0, 0, 0}}, bend);
 

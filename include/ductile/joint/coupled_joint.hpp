@@ -22,10 +22,10 @@
 //
 // Finite rotation: angular entries of q are sums of rotation increments (rotation.hpp), without wrap.
 //
-// Break. Life is counted by p. A step that would use up more than is left has its bounds lowered
-// before the solve; what it still did in excess is CoupledStep::release, to be handed back along its
-// direction. A criterion's cap on the force bounds the equivalent force γ R(0), in the unit of the
-// law; where it is met before yield, the joint breaks without flow and hands all back.
+// Break. Life is counted by p, and by the way along axes that have a limit (axis_life.hpp). A step
+// that would use up more than is left has its bounds lowered before the solve; what it still did in
+// excess is CoupledStep::release, to be handed back along its direction. A criterion's cap on the force
+// bounds the equivalent force γ R(0); where it is met before yield, the joint breaks without flow.
 //
 // Limit cases: one axis is OneAxisJoint; independent axes are as many of them with one life.
 #pragma once
@@ -42,6 +42,7 @@
 #include "ductile/fracture/event.hpp"
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/axis_life.hpp"
 #include "ductile/joint/coupled_row.hpp"
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
@@ -87,7 +88,8 @@ class CoupledJoint {
         : surface_(std::move(surface)),
           law_(std::move(law)),
           criterion_(std::move(criterion)),
-          parameters_(std::move(parameters)) {
+          parameters_(std::move(parameters)),
+          lives_(parameters_.largest_travel) {
         parameters_.validate();
         for (int i = 0; i < dimension; ++i) all_rigid_ = all_rigid_ && rigid(i);
         first_strength_ = check::positive("CoupledJoint.law.value(0)", law_.value(0), "N or N m");
@@ -108,9 +110,11 @@ class CoupledJoint {
     }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
-        return state_.broken && faded(law_, state_.plastic_travel)
-                   ? CriterionKind::exhausted_strength
-                                        : criterion_.governing(state_.criterion);
+        const bool ended = state_.broken && faded(law_, state_.plastic_travel);
+        if (ended) return CriterionKind::exhausted_strength;
+        return state_.life > criterion_.damage(state_.criterion)
+                   ? CriterionKind::plastic_travel
+                   : criterion_.governing(state_.criterion);
     }
     /// How the joint broke; nothing while it is intact. The axis is the one that did most of the
     /// breaking step's plastic work, or in a brittle break has the largest share of γ; the travel
@@ -144,9 +148,7 @@ class CoupledJoint {
 
     static constexpr Scalar bound_tolerance = Scalar(4e-6); // as OneAxisJoint
 
-    [[nodiscard]] bool rigid(int i) const noexcept {
-        return parameters_.stiffness[i] == std::numeric_limits<Scalar>::infinity();
-    }
+    [[nodiscard]] bool rigid(int i) const noexcept { return std::isinf(parameters_.stiffness[i]); }
 
     /// R/R(0) of a step of the travel `ahead`, or of what is left of it, softened by the criterion.
     [[nodiscard]] Scalar growth(Scalar ahead) const noexcept {
@@ -181,6 +183,10 @@ class CoupledJoint {
         grown_ = flows ? growth(fades ? least : power * rate) : now.by;
         left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
         left_ = std::min(left_, travel_to_nothing(law_, state_.plastic_travel));
+        if (flows && lives_.limited()) { // along the normal a travel of one has the work R
+            const Scalar life = lives_.of(first_strength_ * surface_.normal(predicted));
+            left_ = std::min(left_, travel_left(Scalar(1), life, state_.life));
+        }
         share_ = unspent_share(left_, least);
         cap_ = criterion_.force_cap(state_.criterion, 0) / first_strength_;
         const bool capped = cap_ <= grown_ * share_;
@@ -189,17 +195,14 @@ class CoupledJoint {
         const auto box = box_along(reached, Vector(predicted * (grown_ / now.by)));
         lower_ = box.lower * share_;
         upper_ = box.upper * share_;
-        tolerance_ =
-            bound_tolerance * std::max(numeric::largest(upper_), numeric::largest(lower_));
+        tolerance_ = bound_tolerance * std::max(numeric::largest(upper_), numeric::largest(lower_));
     }
 
     [[nodiscard]] RowLimits<Scalar> row(int i, Scalar mass, Scalar dt) noexcept {
-        RowLimits<Scalar> limits{.lower = lower_[i], .upper = upper_[i]};
-        const Scalar k = parameters_.stiffness[i];
         if (rigid(i)) {
-            limits.bias = -elastic_[i] / std::max(parameters_.drift_time, 5 * dt);
-            return limits;
+            return rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
         }
+        const Scalar k = parameters_.stiffness[i];
         implicit_[i] = implicit_share(k, mass, dt);
         return spring_row(k, elastic_[i], implicit_[i], lower_[i], upper_[i], dt);
     }
@@ -232,12 +235,7 @@ class CoupledJoint {
     /// That of the parameters, or the equivalent of the elastic rows' energy at yield.
     [[nodiscard]] Scalar least_travel() const noexcept {
         if (all_rigid_) return parameters_.least_travel;
-        Scalar energy = 0;
-        for (int i = 0; i < dimension; ++i) {
-            const Scalar bound = std::max(upper_[i], -lower_[i]);
-            energy = std::max(energy, bound * bound / (2 * parameters_.stiffness[i]));
-        }
-        return energy / (first_strength_ * grown_);
+        return parameters_.yield_energy(upper_.cwiseMax(-lower_)) / (first_strength_ * grown_);
     }
 
     /// True where the forces reached the cap, which need not be where a row reached its bound.
@@ -278,9 +276,12 @@ class CoupledJoint {
         }
         const Scalar strength = first_strength_ * grown_;
         Scalar travel = work / strength;
-        const bool last = uses_up(travel, left_);
-        if (last) travel = left_;
+        const Scalar life = lives_.of(step.direction) * share_;
+        const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
+        const bool last = uses_up(travel, left);
+        if (last) travel = left;
         step.plastic_work = strength * travel;
+        state_.life = std::min(state_.life + life * (step.plastic_work / work), Scalar(1));
         state_.plastic_travel += travel;
         const Scalar force = cap_ < std::numeric_limits<Scalar>::infinity() // below it: see brittle
                                  ? surface_.value(reaction.force) * first_strength_
@@ -310,14 +311,14 @@ class CoupledJoint {
     Law law_;
     Criterion criterion_;
     Parameters parameters_;
+    AxisLife<Scalar, dimension> lives_;
     Scalar first_strength_ = 0; ///< R(0)
     bool all_rigid_ = true;     ///< no row is elastic
     State state_;
 
     // between prepare and commit
     Rows rows_{};
-    Vector start_ = Vector::Zero();   ///< u
-    Vector elastic_ = Vector::Zero(); ///< q_e at the start
+    Vector start_ = Vector::Zero(), elastic_ = Vector::Zero(); ///< u, q_e at the start
     Vector lower_ = Vector::Zero(), upper_ = Vector::Zero(); ///< bounds of the forces
     Vector implicit_ = Vector::Ones(); ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it

@@ -49,6 +49,7 @@ struct CoupledState : JointTotals<S> {
     Eigen::Matrix<S, N, 1> start_velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u of the last step
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero();       ///< u' of the last step
     CriterionState criterion{};
+    S life = 0; ///< L, share that flow along the axes used up of their largest travel (axis_life.hpp)
     int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact
 
     bool operator==(const CoupledState&) const = default;
@@ -59,17 +60,28 @@ struct CoupledParameters {
     /// k of each axis [N/m | N m/rad], > 0; infinity: rigid below yield.
     Eigen::Matrix<S, N, 1> stiffness =
         Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
+    /// l of each axis, plastic travel along it alone at which the joint breaks [m | rad], > 0
+    /// (axis_life.hpp); infinity: never.
+    Eigen::Matrix<S, N, 1> largest_travel =
+        Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
     S drift_time = S(0.02);        ///< as OneAxisParameters [s], > 0
     S absolute_residual = S(1e-3); ///< [m/s | rad/s], > 0
     S relative_residual = S(1e-2); ///< [-], in [0, 1]
     S allowed_step_error = S(0.04); ///< as OneAxisParameters [-], > 0
     S least_travel = S(2e-3);       ///< as OneAxisParameters, equivalent travel [m | rad], > 0
 
+    /// The most that one elastic axis holds under these forces [J].
+    [[nodiscard]] S yield_energy(const Eigen::Matrix<S, N, 1>& force) const noexcept {
+        return (force.array().square() / (2 * stiffness.array())).maxCoeff();
+    }
+
     /// @throws std::invalid_argument where a parameter is out of range.
     void validate() const {
         for (int i = 0; i < N; ++i) {
             check::positive_or_infinite("CoupledJoint.stiffness[" + std::to_string(i) + "]",
                                         stiffness[i], "N/m or N m/rad");
+            check::positive_or_infinite("CoupledJoint.largest_travel[" + std::to_string(i) + "]",
+                                        largest_travel[i], "m or rad");
         }
         check::positive("CoupledJoint.drift_time", drift_time, "s");
         check::positive("CoupledJoint.absolute_residual", absolute_residual, "m/s or rad/s");

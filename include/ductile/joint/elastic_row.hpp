@@ -40,6 +40,14 @@ template <std::floating_point S>
     return std::clamp((a - resolved) / (stiff - resolved), S(0), S(1));
 }
 
+/// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or within
+/// five steps where that is longer.
+template <std::floating_point S>
+[[nodiscard]] constexpr RowLimits<S> rigid_row(S elastic, S lower, S upper, S drift_time,
+                                               S dt) noexcept {
+    return {.lower = lower, .upper = upper, .bias = -elastic / std::max(drift_time, 5 * dt)};
+}
+
 /// The row of a spring strained by `elastic` [m | rad] whose force stays within [lower, upper]
 /// [N | N m]; `implicit`: θ.
 template <std::floating_point S>

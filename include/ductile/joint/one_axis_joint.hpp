@@ -103,7 +103,7 @@ class OneAxisJoint {
     [[nodiscard]] CriterionKind governing() const noexcept {
         return state_.broken && faded(law_, state_.plastic_travel)
                    ? CriterionKind::exhausted_strength
-                                        : criterion_.governing(state_.criterion);
+                   : criterion_.governing(state_.criterion);
     }
     /// How the joint broke; nothing while it is intact.
     [[nodiscard]] std::optional<FractureEvent<Scalar>> fracture() const noexcept {

@@ -11,8 +11,10 @@
 // earlier, at m = 1 - n², where the ellipsoid is up to 2/√3 = 1.155 times too strong. Where that
 // matters build the CoupledJoint from the section's own surface (surface/).
 //
-// Life is counted in the equivalent rotation p = D/M_p with the plastic moment about x: in bending
-// about x alone it is the plastic rotation.
+// Life is counted in plastic rotations, bending by its path about both axes, twist by its own limit;
+// in both at once the squares of their shares add up (axis_life.hpp). Stretch and shear use up none.
+// The equivalent travel of the joint is D/M_p with the plastic moment about x: bending about x alone it
+// is the plastic rotation.
 //
 // Symbols
 //   L    length of member that the joint stands for [m]
@@ -39,8 +41,10 @@ namespace ductile {
 template <std::floating_point S>
 struct SectionJointParameters {
     S length = std::numeric_limits<S>::quiet_NaN(); ///< L [m], > 0
-    /// Equivalent plastic rotation at which it breaks [rad], > 0; infinity: never.
-    S largest_rotation = std::numeric_limits<S>::infinity();
+    /// Plastic rotation by bending alone at which it breaks [rad], > 0; infinity: never.
+    S largest_bending = std::numeric_limits<S>::infinity();
+    /// Plastic rotation by twist alone at which it breaks [rad], > 0; infinity: never.
+    S largest_twist = std::numeric_limits<S>::infinity();
     /// True: elastic with the stiffness of the length below yield; false: rigid.
     bool elastic = false;
     ShearYield shear_yield = ShearYield::von_mises;
@@ -64,14 +68,19 @@ template <FullSection T>
         capacity[i] = of.capacity[std::size_t(i)];
         if (parameters.elastic) rows.stiffness[i] = of.stiffness[std::size_t(i)];
     }
+    const S bending = check::positive_or_infinite("SectionJoint.largest_bending",
+                                                  parameters.largest_bending, "rad");
+    const S twist =
+        check::positive_or_infinite("SectionJoint.largest_twist", parameters.largest_twist, "rad");
+    rows.largest_travel.template tail<3>() << bending, bending, twist;
     return SectionJoint<S>(Ellipsoid<S, 6>({.capacity = capacity}),
                            Perfect<S>({.strength = plastic_moment(section, material)}),
-                           TravelLimit<S>({.limit = parameters.largest_rotation}), rows);
+                           TravelLimit<S>(), rows);
 }
 
 /// Bending about `axis` of the section.
-/// @throws std::invalid_argument where a parameter is out of range; a hinge that is rigid below
-/// yield needs no length.
+/// @throws std::invalid_argument where a parameter is out of range, or there is a limit for twist,
+/// which a hinge does not do; one that is rigid below yield needs no length.
 template <BiaxialSection T>
 [[nodiscard]] OneAxisJoint<Perfect<typename T::Scalar>> section_hinge(
     const T& section, const Material<typename T::Scalar>& material,
@@ -79,12 +88,16 @@ template <BiaxialSection T>
     SectionAxis axis = SectionAxis::x) {
     using S = typename T::Scalar;
     OneAxisParameters<S> row;
+    if (parameters.largest_twist != std::numeric_limits<S>::infinity()) {
+        check::fail("SectionHinge.largest_twist", parameters.largest_twist, "rad",
+                    "infinite: a hinge bends about one axis only");
+    }
     if (parameters.elastic) {
         const S length = check::positive("SectionHinge.length", parameters.length, "m");
         row.stiffness = material.youngs_modulus() * section.second_moment(axis) / length;
     }
     return OneAxisJoint(Perfect<S>({.strength = plastic_moment(section, material, axis)}),
-                        TravelLimit<S>({.limit = parameters.largest_rotation}), row);
+                        TravelLimit<S>({.limit = parameters.largest_bending}), row);
 }
 
 } // namespace ductile
