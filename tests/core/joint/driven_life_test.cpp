@@ -175,3 +175,13 @@ TEST_CASE("no criterion breaks a driven joint a step late", "[one_axis_joint][br
     late(wire, SofteningDamage<double>({.onset = 1, .failure = 3}), 3);
     late(wire, AnyOf(TravelLimit<double>({.limit = 9}), wire_life()), 4.72);
 }
+
+TEST_CASE("a fatigue life that is used by halves ends", "[fracture]") {
+    const auto life = wire_life();
+    LowCycleFatigue<CoffinManson<double>>::State state;
+    for (int i = 0; i < 100 && !life.broken(state); ++i) {
+        life.update(state, {.plastic = life.remaining(state, 1, 1) / 2});
+    }
+    CHECK(life.broken(state));
+    CHECK(life.damage(state) == 1);
+}

@@ -27,9 +27,9 @@ const Softening<double> softening({.strength = 10, .plateau = 0.1, .exhaustion =
 const Perfect<double> perfect({.strength = 10});
 const SofteningDamage<double> damage({.onset = 0.1, .failure = 1});
 
-/// 1 kg in the plane, each row solved exactly; speed after the break.
+/// 1 kg in the plane, each row solved exactly. `off`: of the energy [J] and of the speed after the break.
 template <class Law, class Criterion>
-void passes(Law law, Criterion criterion, double k, double across, double dt) {
+void passes(Law law, Criterion criterion, double k, double across, double dt, double off) {
     INFO("k = " << k << ", dt = 1/" << 1 / dt << ", across " << across);
     CoupledParameters<double, 2> parameters;
     parameters.stiffness.setConstant(k);
@@ -54,11 +54,11 @@ void passes(Law law, Criterion criterion, double k, double across, double dt) {
         released += step.release;
         velocity *= std::sqrt(1 + 2 * step.release / velocity.squaredNorm());
     }
-    const double begun = (25 + across * across) / 2, order = 60 * dt;
+    const double begun = (25 + across * across) / 2;
     CHECK(joint.state().broken);
     CHECK(joint.state().plastic_travel == Approx(1).epsilon(1e-9));
-    CHECK(joint.state().plastic_work == Approx(5.5).margin(5e-3 * order));
-    CHECK(velocity.norm() == Approx(std::sqrt(2 * (begun - 5.5))).margin(1e-2 * order));
+    CHECK(joint.state().plastic_work == Approx(5.5).margin(off));
+    CHECK(velocity.norm() == Approx(std::sqrt(2 * (begun - 5.5))).margin(off));
     CHECK(joint.utilisation() == 0);
 }
 
@@ -85,8 +85,9 @@ TEST_CASE("a coupled joint that fades to nothing breaks there and lets go", "[co
     const double k = GENERATE(2e5, 2e7, double(infinity));
     if (dt < 1e-2 && k < 1e6) return; // neither resolved nor stiff: the row's own account is off
     const double across = GENERATE(0.0, 0.5);
-    passes(softening, TravelLimit<double>(), k, across, dt);
-    passes(perfect, damage, k, across, dt);
+    const double order = 60 * dt, elastic = k < infinity ? 1e-4 : 0;
+    passes(softening, TravelLimit<double>(), k, across, dt, 1e-3 * std::pow(order, 3) + elastic);
+    passes(perfect, damage, k, across, dt, 5e-3 * order * order + elastic);
 }
 
 TEST_CASE("a coupled joint whose law ends names it", "[coupled_joint][break]") {
