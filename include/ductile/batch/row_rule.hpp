@@ -181,7 +181,7 @@ template <std::floating_point S>
     const S speed = larger(start_speed, std::abs(velocity));
     const S other_work = old.other_work + only(intact, other);
     const S taken = old.plastic_work + plastic + strength * step.least_travel;
-    const S owed = allowed_gain<S> * taken + strength * speed * step.dt;
+    const S owed = allowed_gain<S> * taken + owed_steps<S> * (strength * speed * step.dt);
     const Mask<S> gains = mask<S>(-other > noticed_gain<S> * -other_work) &
                           mask<S>(other_work < 0) & mask<S>(-other_work > owed);
     const Mask<S> unreliable =

@@ -52,6 +52,11 @@ template <class Axes, std::floating_point S>
     return numeric::dot(force, Axes(start.cwiseAbs().cwiseMax(end.cwiseAbs()))) * dt;
 }
 
+/// Steps whose largest work an account may lack: one that a spring acts late, one in which velocities
+/// are those of its middle [-].
+template <std::floating_point S>
+inline constexpr S owed_steps = 2;
+
 /// Share of a gain below which a step adds nothing to it but round-off [-].
 template <std::floating_point S>
 inline constexpr S noticed_gain = S(1e-4);
@@ -66,7 +71,7 @@ template <class State, std::floating_point S, class Axes, class LeastTravel>
     if (!(gained > allowed_gain<S> * taken) || !(given > noticed_gain<S> * gained)) return 0;
     const S unnoticed = allowed_gain<S> * (taken + end.strength * least_travel());
     const S owed = largest_work(end.largest_force, end.start, end.velocity, end.dt);
-    return gained > unnoticed + owed ? gained : S(0);
+    return gained > unnoticed + owed_steps<S> * owed ? gained : S(0);
 }
 
 /// Carries a step into the state, which says already whether this step broke the joint, and names

@@ -39,7 +39,7 @@ Reaction<double> driven(const RowLimits<double>& row) {
 
 TEST_CASE("a joint that gives energy it never took is unreliable though its rows are solved",
           "[one_axis_joint][coupled_joint][batch]") {
-    // 12 N at 0.08 to 0.1 m/s: about 10 mJ a step; told beyond a step of 20 N and what does not matter, 30 mJ
+    // 12 N at 0.08 to 0.1 m/s: about 10 mJ a step; told beyond two steps of 20 N and what does not matter, 50 mJ
     SECTION("one axis") {
         const double k = GENERATE(6e3, double(std::numeric_limits<double>::infinity()));
         OneAxisJoint joint(Perfect<double>({.strength = strength}), TravelLimit<double>(),
@@ -51,7 +51,7 @@ TEST_CASE("a joint that gives energy it never took is unreliable though its rows
             return last.outcome;
         });
         CHECK(told >= 3);
-        CHECK(told <= 4);
+        CHECK(told <= 7);
         CHECK(last.residual < 1e-12);
         CHECK(last.gained == Approx(-joint.state().other_work));
     }
@@ -76,7 +76,7 @@ TEST_CASE("a joint that gives energy it never took is unreliable though its rows
             return last.outcome;
         });
         CHECK(told >= 3);
-        CHECK(told <= 4);
+        CHECK(told <= 7);
         CHECK(last.gained == Approx(-joint.state().other_work));
     }
     SECTION("batch") {
@@ -94,7 +94,7 @@ TEST_CASE("a joint that gives energy it never took is unreliable though its rows
             return batch.outcome(0);
         });
         CHECK(told >= 3);
-        CHECK(told <= 4);
+        CHECK(told <= 7);
     }
 }
 
