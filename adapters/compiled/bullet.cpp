@@ -4,6 +4,7 @@
 #include <ductile/bullet/bullet.hpp>
 
 #include <ductile/bullet/draw.ipp>
+#include <ductile/bullet/driven_body.ipp>
 #include <ductile/bullet/energy_meter.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/kept_mass.ipp>

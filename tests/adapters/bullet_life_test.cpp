@@ -216,6 +216,122 @@ TEST_CASE("a body made kinematic drives its joint and takes no harm", "[bullet][
     hinge.remove_from(world.world());
 }
 
+TEST_CASE("a joint to a base that moves along holds still", "[bullet][life]") {
+    const auto solver = GENERATE(from_range(BulletWorld::solvers()));
+    const int kind = GENERATE(0, 1, 2, 3, 4);
+    const int ticks = GENERATE(1, 4);
+    const bool by_motion_state = GENERATE(false, true);
+    INFO(solver << ", kind " << kind << ", " << ticks << " ticks");
+    BulletWorld world(solver);
+    btRigidBody& base = world.body(0, 0.0);
+    base.setCollisionFlags(base.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    btDefaultMotionState place;
+    if (by_motion_state) base.setMotionState(&place);
+    btRigidBody& body = world.body(1, 2);
+    // float gives a turning kinematic body another velocity than it has
+    const btVector3 velocity(btScalar(0.3), btScalar(-0.2), btScalar(0.5));
+    const btVector3 spin(0, 0, btScalar(single ? 0 : 0.5));
+    body.setLinearVelocity(velocity);
+    body.setAngularVelocity(spin);
+
+    bullet::PlasticHinge hinge(body, base, here, here, one(40));
+    bullet::PlasticSlider slider(body, base, here, here, one(40));
+    bullet::PlasticJoint joint(body, base, here, here, six(capacities()));
+    btHingeConstraint own(body, base, here, here);
+    bullet::PlasticMotor motor(own, one(40));
+    if (kind == 0) hinge.add_to(world.world());
+    if (kind == 1) slider.add_to(world.world());
+    if (kind == 2) joint.add_to(world.world());
+    if (kind == 3) world.world().addConstraint(&own);
+    if (kind == 3) motor.add_to(world.world());
+    if (kind == 4 && ticks == 1) world.world().addConstraint(&hinge); // no booking at a tick's end
+    const PairQueries* const all[] = {&hinge, &slider, &joint, &motor, &hinge};
+    const PairQueries& asked = *all[kind];
+
+    const double dt = 1.0 / 60;
+    for (int i = 1; i <= 120; ++i) {
+        const btTransform next(btQuaternion(btVector3(0, 0, 1), btScalar(i * dt) * spin.z()),
+                               btScalar(i * dt) * velocity);
+        if (by_motion_state) {
+            place.setWorldTransform(next);
+        } else {
+            base.setWorldTransform(next);
+        }
+        world.world().stepSimulation(btScalar(dt), ticks == 1 ? 0 : 2 * ticks,
+                                     btScalar(dt / ticks));
+    }
+    const double still = single ? 2e-4 : 1e-9;
+    CHECK(asked.absorbed_energy() < still);
+    CHECK(asked.plastic_travel() < still);
+    CHECK(std::abs(hinge.rotation()) < still);
+    CHECK(std::abs(slider.elongation()) < still);
+    CHECK(std::abs(joint.position(JointAxis::shear_x)) < still);
+    CHECK(std::abs(motor.rotation()) < still);
+    const bool holds = kind != 4 || ticks == 1;
+    if (holds)
+        CHECK((body.getCenterOfMassPosition() - base.getCenterOfMassPosition()).length() <
+              (kind == 3 ? 0.02
+               : single  ? 1e-3
+                         : 1e-6)); // Bullet's hinge runs ahead
+    world.world().removeConstraint(&own);
+}
+
+TEST_CASE("a body turned by hand is turned, without work", "[bullet][life]") {
+    const double stiffness = GENERATE(as<double>{}, infinity, 2000.0);
+    const int kind = GENERATE(0, 1, 2);
+    const bool switched_off = GENERATE(false, true);
+    INFO("k = " << stiffness << ", kind " << kind << (switched_off ? ", switched off" : ""));
+    BulletWorld world;
+    btRigidBody& body = world.body(1, 2);
+    const One law(Perfect<double>({.strength = 64}), TravelLimit<double>(),
+                  {.stiffness = stiffness});
+    Vector6<double> each = Vector6<double>::Constant(stiffness);
+    bullet::PlasticHinge hinge(body, here, law);
+    bullet::PlasticJoint joint(
+        body, here,
+        Six(Ellipsoid<double, 6>({.capacity = capacities()}), Perfect<double>({.strength = 1}),
+            TravelLimit<double>(), {.stiffness = each}));
+    btHingeConstraint own(body, {0, 0, 0}, {0, 0, 1});
+    bullet::PlasticMotor motor(own, law);
+    bullet::PlasticConstraint* const all[] = {&hinge, &joint, &motor};
+    bullet::PlasticConstraint& turned = *all[kind];
+    if (kind == 2) world.world().addConstraint(&own);
+    turned.add_to(world.world());
+    body.applyTorque({0, 0, 5});
+    world.step(1e-2);
+    body.setAngularVelocity({0, 0, 0});
+    const double stored = turned.queries().stored_energy();
+    const auto set = [&](double angle) {
+        body.setWorldTransform(btTransform(btQuaternion(btVector3(0, 0, 1), btScalar(angle))));
+    };
+    const auto angle = [&] {
+        return kind == 0   ? hinge.rotation()
+               : kind == 1 ? joint.position(JointAxis::torsion)
+                           : motor.rotation();
+    };
+    const double before = angle();
+    if (switched_off) {
+        turned.setEnabled(false);
+        world.step(1e-2, 3);
+    }
+    set(before + 0.3);
+    turned.setEnabled(true);
+    double fastest = 0, held = 0;
+    for (int i = 0; i < 200; ++i) {
+        world.step(1e-2);
+        fastest = std::max(fastest, double(body.getAngularVelocity().length()));
+        held = std::max(held, turned.queries().stored_energy());
+    }
+    CHECK(turned.queries().absorbed_energy() < exact);
+    // what the spring held it gives, and no more but what its rule makes of it, k dt²/4m
+    constexpr double symplectic = 1 + 2000 * 1e-4 / (4 * 2);
+    CHECK(fastest <= symplectic * std::sqrt(2 * stored / 2) + (single ? 1e-4 : 1e-9));
+    CHECK(held <= symplectic * stored * (1 + 1e-2) + exact);
+    CHECK(angle() == Approx(before + 0.3).margin(stored > 0 ? 0.01 : single ? 1e-5 : 1e-9));
+    turned.remove_from(world.world());
+    world.world().removeConstraint(&own);
+}
+
 TEST_CASE("bodies moved by hand with their joint stay as bent as they were", "[bullet][life]") {
     BulletWorld world;
     btRigidBody& a = world.body(1, 2, {0.5, 0, 0});

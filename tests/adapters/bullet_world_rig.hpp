@@ -35,10 +35,9 @@ class WorldRig {
                             std::make_unique<btSequentialImpulseConstraintSolver>())
                       : std::make_unique<bullet::SoftMlcpSolver>(dantzig_, bullet::Answer::exact)),
           dynamics_(&dispatcher_, &broadphase_, solver_.get(), &configuration_),
-          world_(dynamics_, {.effort = effort,
-                           .ledger = ledger,
-                           .leapfrog = leapfrog,
-                           .warn = std::move(warn)}) {
+          world_(
+              dynamics_,
+              {.effort = effort, .ledger = ledger, .leapfrog = leapfrog, .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
     ~WorldRig() {
@@ -59,6 +58,17 @@ class WorldRig {
         b->setActivationState(DISABLE_DEACTIVATION);
         dynamics_.addRigidBody(b, 0, 0);
         return b;
+    }
+
+    /// Its motion is prescribed from now on.
+    static void prescribe(Body b) {
+        b->setMassProps(0, {0, 0, 0});
+        b->updateInertiaTensor(); // Bullet's solvers go on using the one of the world
+        b->setCollisionFlags(b->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+    }
+    /// Turns a prescribed body by `spin` dt about z in the coming step, to `angle` in all.
+    static void drive(Body b, double angle, double /*spin*/) {
+        b->getWorldTransform().setRotation(btQuaternion(btVector3(0, 0, 1), btScalar(angle)));
     }
 
     /// About z; null `b`: the static world.

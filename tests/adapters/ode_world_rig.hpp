@@ -60,6 +60,13 @@ class WorldRig {
         return b;
     }
 
+    /// Its motion is prescribed from now on.
+    static void prescribe(Body b) { dBodySetKinematic(b); }
+    /// Turns a prescribed body by `spin` dt about z in the coming step, to `angle` in all.
+    static void drive(Body b, double /*angle*/, double spin) {
+        dBodySetAngularVel(b, 0, 0, dReal(spin));
+    }
+
     /// About z; null `b`: the static world.
     Hinge& hinge(Body a, Body b, const V3& anchor, Joint joint, const std::string& name) {
         hinges_.push_back(std::make_unique<Hinge>(
@@ -70,13 +77,15 @@ class WorldRig {
 
     /// To the static world, axes along those of the world, z along the member.
     Six& six_axes(Body a, const V3& anchor, SixAxes joint) {
-        sixes_.push_back(std::make_unique<Six>(
-            id_, a, nullptr, Six::Frame{.origin = anchor}, std::move(joint)));
+        sixes_.push_back(
+            std::make_unique<Six>(id_, a, nullptr, Six::Frame{.origin = anchor}, std::move(joint)));
         world_.add(*sixes_.back());
         return *sixes_.back();
     }
 
-    void set_gravity(const V3& g) { dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z())); }
+    void set_gravity(const V3& g) {
+        dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
+    }
     static void apply_force(Body b, const V3& force) {
         dBodyAddForce(b, dReal(force.x()), dReal(force.y()), dReal(force.z()));
     }

@@ -85,7 +85,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     DUCTILE_INLINE void end_tick() override;
     /// Commits the open tick some time after it.
     void settle_late(bool in_solver);
-    void settle(const BodyState<double>& a, const BodyState<double>& b, bool in_solver);
+    void settle(bool late, bool in_solver);
     /// Forces of the six rows on A. With one plastic row its force is exact; the others are as
     /// exact as joint feedback, and zero where that is not read.
     [[nodiscard]] Vector6<double> reaction();

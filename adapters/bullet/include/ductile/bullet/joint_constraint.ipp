@@ -48,6 +48,7 @@ DUCTILE_INLINE Vector6<double> JointConstraint::velocities() const {
 DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
     open_ = Open::nothing;
     release_ = {};
+    find_driven();
     link_.look(body_motion(m_rbA), body_motion(m_rbB));
     if (link_.broken() != was_broken) was_broken ? hold_again() : let_go();
 }
@@ -84,7 +85,9 @@ DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
         return;
     }
     prepare(1 / double(info->fps), double(info->erp));
-    if (feedback_ == Feedback::all_rows) reading().arm = reaction_arm(m_rbA, m_rbB, link_.point());
+    if (feedback_ == Feedback::all_rows) {
+        reading().arm = reaction_arm(m_rbA, m_rbB, link_.pose().arm_a(), link_.pose().arm_b());
+    }
     if (decoupled_ && all_hard(link_)) {
         decoupled_->look(link_, order_, m_rbA, m_rbB);
         write_hard_rows(*info, link_, order_, decoupled_->rows(), dt_);
@@ -116,19 +119,23 @@ DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
     tick_share_ = force_share_.value;
     if (!one_axis()) mass_at_rest_.tell(link_, m_rbA, m_rbB);
     const bool masses = link_.reads_mass();
-    link_.prepare(masses ? body_state(m_rbA) : body_motion(m_rbA),
-                  masses ? body_state(m_rbB) : body_motion(m_rbB), dt_,
-                  (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, force_share_.midway);
+    const BodyState<double> a = at_start(0, tick, masses), b = at_start(1, tick, masses);
+    link_.teleport(a, b);
+    link_.prepare(a, b, dt_, (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick,
+                  force_share_.midway);
     open_ = Open::tick;
 }
 
 DUCTILE_INLINE void JointConstraint::end_tick() {
-    if (open_ != Open::nothing) settle(body_motion(m_rbA), body_motion(m_rbB), false);
+    if (open_ == Open::nothing) {
+        lose_driven();
+    } else {
+        settle(false, false);
+    }
 }
 
 DUCTILE_INLINE void JointConstraint::settle_late(bool in_solver) {
-    if (open_ == Open::nothing) return;
-    settle(body_motion_of_last_tick(m_rbA), body_motion_of_last_tick(m_rbB), in_solver);
+    if (open_ != Open::nothing) settle(true, in_solver);
 }
 
 DUCTILE_INLINE void JointConstraint::settle() const {
@@ -136,12 +143,13 @@ DUCTILE_INLINE void JointConstraint::settle() const {
     if (open_ != Open::nothing) const_cast<JointConstraint*>(this)->settle_late(false);
 }
 
-DUCTILE_INLINE void JointConstraint::settle(const BodyState<double>& a, const BodyState<double>& b,
-                                            bool in_solver) {
+DUCTILE_INLINE void JointConstraint::settle(bool late, bool in_solver) {
     const Open was = std::exchange(open_, Open::nothing);
     if (was == Open::hand_back) let_go();
     if (was != Open::tick) return;
-    if (link_.commit_rows(a, b, reaction(), dt_).outcome != Outcome::broken) return;
+    const Vector6<double> forces = reaction();
+    const BodyState<double> a = at_end(0, late), b = at_end(1, late);
+    if (link_.commit_rows(a, b, forces, dt_).outcome != Outcome::broken) return;
     const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
     release_ = link_.release(now_a, now_b);
     if (in_solver && release_.energy > 0) {

@@ -10,6 +10,11 @@
 //   Only with `add_to` may bodies be moved by hand (not only given velocities) between a tick and
 //   what comes first.
 //
+// Hands. What somebody moves by hand between two ticks, or while the constraint is switched off, is
+// no deformation: plastic axes keep their strain, their rest position goes along, and rigid axes
+// are pulled together again. A kinematic body is not moved by hand but along its way
+// (driven_body.hpp).
+//
 // Collisions. As with Bullet's own joints the two bodies collide with each other, unless add_to or
 // addConstraint was told that they do not; a break ends that, and they collide from then on.
 //
@@ -22,6 +27,10 @@
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <array>
+#include <memory>
+
+#include "ductile/bullet/driven_body.hpp"
 #include "ductile/bullet/joint_view.hpp"
 #include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/bullet/soft_rows.hpp"
@@ -61,6 +70,14 @@ class PlasticConstraint : public btTypedConstraint,
 
   protected:
     PlasticConstraint(btRigidBody& a, btRigidBody& b);
+    /// Body A (0) or B (1) as the joint has to see it at the start of a tick [s], and, once, at its
+    /// end; `late`: some time after it.
+    [[nodiscard]] BodyState<double> at_start(int side, double tick, bool with_mass);
+    [[nodiscard]] BodyState<double> at_end(int side, bool late);
+    /// This tick left the joint out.
+    void lose_driven();
+    /// The bodies were put where they are, by hand.
+    void find_driven();
     /// False where the last tick left the constraint out.
     [[nodiscard]] bool is_awake() const;
     /// Switches the constraint, and what Bullet was told of its bodies' collisions, off or on.
@@ -83,8 +100,11 @@ class PlasticConstraint : public btTypedConstraint,
         DUCTILE_INLINE void debugDraw(btIDebugDraw* drawer) override;
         PlasticConstraint& owner_;
     };
+    [[nodiscard]] btRigidBody& body(int side) const { return side == 0 ? m_rbA : m_rbB; }
+
     EndOfTick end_of_tick_{*this};
-    bool parts_bodies_ = false; ///< let_go has to be undone by hold_again
+    std::array<std::unique_ptr<DrivenBody>, 2> driven_; ///< of bodies that are kinematic
+    bool parts_bodies_ = false;                         ///< let_go has to be undone by hold_again
 };
 
 /// At the constraint's own size of drawing (setDbgDrawSize); see draw.hpp.

@@ -50,6 +50,7 @@ DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
 DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b)
     : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b) {
     require_matching_precision();
+    find_driven();
 }
 
 DUCTILE_INLINE PlasticConstraint::~PlasticConstraint() {
@@ -115,6 +116,40 @@ DUCTILE_INLINE void PlasticConstraint::hold_again() {
     if (!std::exchange(parts_bodies_, false)) return;
     m_rbA.addConstraintRef(this);
     m_rbB.addConstraintRef(this);
+}
+
+DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double tick,
+                                                             bool with_mass) {
+    const btRigidBody& body = this->body(side);
+    std::unique_ptr<DrivenBody>& driven = driven_[std::size_t(side)];
+    if (!body.isKinematicObject()) {
+        driven.reset();
+        return with_mass ? body_state(body) : body_motion(body);
+    }
+    if (driven == nullptr) driven = std::make_unique<DrivenBody>();
+    const bool counts_ticks = world_ != nullptr;
+    return driven->at_start(body, tick, !counts_ticks);
+}
+
+DUCTILE_INLINE BodyState<double> PlasticConstraint::at_end(int side, bool late) {
+    if (driven_[std::size_t(side)] != nullptr) return driven_[std::size_t(side)]->at_end();
+    return late ? body_motion_of_last_tick(body(side)) : body_motion(body(side));
+}
+
+DUCTILE_INLINE void PlasticConstraint::lose_driven() {
+    for (auto& driven : driven_) {
+        if (driven != nullptr) driven->lose();
+    }
+}
+
+DUCTILE_INLINE void PlasticConstraint::find_driven() {
+    for (const int side : {0, 1}) {
+        auto& driven = driven_[std::size_t(side)];
+        driven.reset();
+        if (!body(side).isKinematicObject()) continue;
+        driven = std::make_unique<DrivenBody>();
+        driven->find(body(side));
+    }
 }
 
 DUCTILE_INLINE bool PlasticConstraint::is_awake() const {

@@ -68,8 +68,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void restored(double position);
 
   private:
-    void end_tick() override { settle(); }
-    void settle_tick();
+    DUCTILE_INLINE void end_tick() override;
+    void settle_tick(bool late);
     [[nodiscard]] bool acts() const override { return is_awake() && hinge_.isEnabled(); }
     DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
@@ -78,8 +78,9 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// World [m].
     [[nodiscard]] Vector3<double> pivot() const;
     /// Of A minus B about the axis of this tick [rad/s].
-    [[nodiscard]] double turning() const;
-    [[nodiscard]] double measure(double predicted) const;
+    [[nodiscard]] double turning(const BodyState<double>& a, const BodyState<double>& b) const;
+    [[nodiscard]] double measure(const BodyState<double>& a, const BodyState<double>& b,
+                                 double predicted) const;
     /// K of the hinge, for rows along `axes`.
     [[nodiscard]] Matrix6<double> inverse_mass() const;
     /// Of A minus B at the pivot, world.
@@ -101,6 +102,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     double tick_ = 0;               ///< [s]
     double dt_ = 0;                 ///< for which the row's moment acts in it [s]
     bool pending_ = false;
+    bool restored_ = false; ///< the next position is measured, not compared
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>

@@ -26,7 +26,7 @@ DUCTILE_INLINE MotorConstraint::MotorConstraint(AxisJoint& joint, btHingeConstra
       velocity_was_(hinge.getMotorTargetVelocity()),
       impulse_was_(hinge.getMaxMotorImpulse()) {
     hinge_.enableMotor(false);
-    position_ = measure(0);
+    position_ = measure(body_motion(m_rbA), body_motion(m_rbB), 0);
     joint_.set_plastic_offset(position_);
 }
 
@@ -37,7 +37,9 @@ DUCTILE_INLINE MotorConstraint::~MotorConstraint() {
 DUCTILE_INLINE void MotorConstraint::restored(double position) {
     pending_ = false;
     position_ = position;
+    restored_ = true;
     release_ = {};
+    find_driven();
 }
 
 DUCTILE_INLINE JointView MotorConstraint::view() const {
@@ -88,17 +90,16 @@ DUCTILE_INLINE Matrix3<double> MotorConstraint::axes() const {
 DUCTILE_INLINE Vector3<double> MotorConstraint::pivot() const {
     return to_core(m_rbA.getCenterOfMassTransform() * hinge_.getAFrame().getOrigin());
 }
-DUCTILE_INLINE double MotorConstraint::turning() const {
-    return dot(axis_, difference(to_core(m_rbA.getAngularVelocity()),
-                                 to_core(m_rbB.getAngularVelocity())));
+DUCTILE_INLINE double MotorConstraint::turning(const BodyState<double>& a,
+                                               const BodyState<double>& b) const {
+    return dot(axis_, difference(a.spin, b.spin));
 }
-DUCTILE_INLINE double MotorConstraint::measure(double predicted) const {
-    const btMatrix3x3 a =
-        m_rbA.getCenterOfMassTransform().getBasis() * hinge_.getAFrame().getBasis();
-    const btMatrix3x3 b =
-        m_rbB.getCenterOfMassTransform().getBasis() * hinge_.getBFrame().getBasis();
-    const btMatrix3x3 relative = b.transposeTimes(a);
-    return unwrap(std::atan2(double(relative[1][0]), double(relative[0][0])), predicted);
+DUCTILE_INLINE double MotorConstraint::measure(const BodyState<double>& a,
+                                               const BodyState<double>& b, double predicted) const {
+    const Matrix3<double> of_a = times(a.orientation, to_core(hinge_.getAFrame().getBasis()));
+    const Matrix3<double> of_b = times(b.orientation, to_core(hinge_.getBFrame().getBasis()));
+    const Matrix3<double> relative = transposed_times(of_b, of_a);
+    return unwrap(std::atan2(relative(1, 0), relative(0, 0)), predicted);
 }
 DUCTILE_INLINE Matrix6<double> MotorConstraint::inverse_mass() const {
     return inverse_mass_of_rows(body_state(m_rbA), body_state(m_rbB), pivot(), axes());
@@ -128,25 +129,35 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     tell_keepers_of_step();
     tick_ = double(world_->getSolverInfo().m_timeStep);
     dt_ = force_share_.value * tick_;
-    axis_ = column(axes(), 2);
-    position_ = measure(position_);
+    const BodyState<double> a = at_start(0, tick_, false), b = at_start(1, tick_, false);
+    axis_ = column(times(a.orientation, to_core(hinge_.getAFrame().getBasis())), 2);
+    const double now = measure(a, b, position_);
+    // put elsewhere by hand, which is no deformation
+    const bool by_hand = !std::exchange(restored_, false) && now != position_;
+    if (by_hand) {
+        joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
+    }
+    position_ = now;
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
-    limits_ = joint_.prepare({position_, turning(), mass, force_share_.midway}, dt_);
+    limits_ = joint_.prepare({position_, turning(a, b), mass, force_share_.midway}, dt_);
     pending_ = true;
 }
 
 DUCTILE_INLINE void MotorConstraint::settle() const {
     // a question: what it books has happened already, and only the books change
-    if (pending_) const_cast<MotorConstraint*>(this)->settle_tick();
+    if (pending_) const_cast<MotorConstraint*>(this)->settle_tick(true);
 }
 
-DUCTILE_INLINE void MotorConstraint::settle_tick() {
+DUCTILE_INLINE void MotorConstraint::end_tick() { pending_ ? settle_tick(false) : lose_driven(); }
+
+DUCTILE_INLINE void MotorConstraint::settle_tick(bool late) {
     pending_ = false;
-    const double speed = turning();
+    const BodyState<double> a = at_end(0, late), b = at_end(1, late);
+    const double speed = turning(a, b);
     force_ = double(internalGetAppliedImpulse()) / dt_;
     if (is_open()) read_own_row();
-    position_ = measure(position_ + speed * tick_);
+    position_ = measure(a, b, position_ + speed * tick_);
     const Step<double>& step = joint_.commit({force_, speed, position_}, dt_);
     if (step.outcome != Outcome::broken) return;
     if (at_break_ == AtBreak::disable_joint) {

@@ -33,14 +33,13 @@ struct ReactionArm {
 };
 
 [[nodiscard]] inline ReactionArm reaction_arm(const btRigidBody& a, const btRigidBody& b,
-                                              const Vector3<double>& joint) noexcept {
+                                              const Vector3<double>& arm_a,
+                                              const Vector3<double>& arm_b) noexcept {
     // feedback is what a body felt: less than the row gave where its factors are not one
     const auto feels_all = [](const btRigidBody& body) {
         const btVector3 one(1, 1, 1);
         return body.getLinearFactor() == one && body.getAngularFactor() == one;
     };
-    const Vector3<double> arm_a = difference(joint, to_core(a.getCenterOfMassPosition()));
-    const Vector3<double> arm_b = difference(joint, to_core(b.getCenterOfMassPosition()));
     const bool from_b = feels_all(b) && (!feels_all(a) || dot(arm_b, arm_b) < dot(arm_a, arm_a));
     return {from_b, from_b ? arm_b : arm_a};
 }

@@ -116,6 +116,8 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] Vector6<double> direction() const;
     /// What the row moves while the joint's other rows hold [kg | kg m²]; 0: not known.
     [[nodiscard]] double mass() const;
+    /// u of a step of `dt` [s]: of the bodies as they start it [m/s | rad/s].
+    [[nodiscard]] double start_velocity(double dt) const;
     void set_motor(const RowLimits<double>& limits, double dt);
     void apply_centre();
     /// The step was not one for these bodies; ODE keeps what was applied for it.
@@ -139,6 +141,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     double rigid_residual_ = 0; ///< largest component [m/s | rad/s]
     bool rigid_unsolved_ = false;
     OutsideForce outside_;
+    DrivenPair driven_;
     double centre_ = 0;   ///< c [N | N m]
     double strength_ = 0; ///< h [N | N m]
     bool acting_ = false; ///< between prepare and commit: the row takes part in this step

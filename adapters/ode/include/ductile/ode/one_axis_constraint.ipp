@@ -47,6 +47,7 @@ DUCTILE_INLINE OneAxisConstraint::~OneAxisConstraint() {
 DUCTILE_INLINE void OneAxisConstraint::restored(double position) {
     position_ = position;
     restored_ = true;
+    driven_.forget();
     if (joint_.broken()) part(); // broken is broken, also when it was saved
 }
 
@@ -79,6 +80,7 @@ DUCTILE_INLINE bool OneAxisConstraint::solved() const {
 
 DUCTILE_INLINE void OneAxisConstraint::suspend() {
     joint_.pause();
+    driven_.forget();
     rigid_residual_ = 0;
     rigid_unsolved_ = false;
 }
@@ -120,7 +122,7 @@ DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
         pose_.look(row_);
         follow_teleport();
     }
-    Motion<double> motion{position_, pose_.velocity(row_), 0, force_share_.midway};
+    Motion<double> motion{position_, start_velocity(dt), 0, force_share_.midway};
     if (!joint_.rigid()) motion.mass = mass();
     set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
     rigid_target_ = rigid_target(dt);
@@ -135,6 +137,8 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     }
     const Vector6<double> twist = pose_.twist(row_);
     const double velocity = pose_.along(row_, twist);
+    driven_.booked(0, row_.bodies().a, dt);
+    driven_.booked(1, row_.bodies().b, dt);
     certify_rigid_rows(twist);
     force_ = row_force();
     position_ = row_.measured()
@@ -172,6 +176,21 @@ DUCTILE_INLINE double OneAxisConstraint::mass() const {
                                                    at_joint(row_.bodies().b, pose_.point()));
     const double result = dot(direction(), response);
     return std::isfinite(result) ? result : 0;
+}
+
+DUCTILE_INLINE double OneAxisConstraint::start_velocity(double dt) const {
+    double velocity = pose_.velocity(row_);
+    for (const int side : {0, 1}) {
+        const dBodyID body = side == 0 ? row_.bodies().a : row_.bodies().b;
+        if (!DrivenPair::is_driven(body)) continue;
+        const BodyState<double> now = body_motion(body);
+        const BodyState<double> then = driven_.at_start(side, body, now, dt);
+        const Vector3<double> turn = difference(then.spin, now.spin);
+        const Vector3<double>& arm = side == 0 ? pose_.arm_a() : pose_.arm_b();
+        const Vector3<double> move = sum(difference(then.velocity, now.velocity), cross(turn, arm));
+        velocity += (side == 0 ? 1 : -1) * dot(pose_.axis(), row_.turns() ? turn : move);
+    }
+    return velocity;
 }
 
 DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits, double dt) {

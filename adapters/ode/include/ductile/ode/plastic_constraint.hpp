@@ -5,12 +5,15 @@
 
 #include <ode/ode.h>
 
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/vector.hpp"
+#include "ductile/world/driven_velocity.hpp"
 #include "ductile/world/joint_queries.hpp"
 
 namespace ductile::ode {
@@ -20,6 +23,28 @@ struct OutsideForce {
     Vector3<double> force{0, 0, 0};    ///< on A; the opposite on B [N]
     Vector3<double> torque_a{0, 0, 0}; ///< [N m]
     Vector3<double> torque_b{0, 0, 0};
+};
+
+/// The two bodies of a constraint with the velocities that count for the start of a step: ODE moves
+/// a kinematic body after the solve, as all others, but its velocity is changed before.
+class DrivenPair {
+  public:
+    [[nodiscard]] BodyState<double> at_start(int side, dBodyID body, const BodyState<double>& now,
+                                             double dt) const {
+        return is_driven(body) ? velocity_[std::size_t(side)].at_start(now, dt) : now;
+    }
+    void booked(int side, dBodyID body, double dt) {
+        if (is_driven(body)) velocity_[std::size_t(side)].booked(body_motion(body), dt);
+    }
+    void forget() {
+        for (DrivenVelocity& velocity : velocity_) velocity.forget();
+    }
+    [[nodiscard]] static bool is_driven(dBodyID body) {
+        return body != nullptr && dBodyIsKinematic(body) != 0;
+    }
+
+  private:
+    std::array<DrivenVelocity, 2> velocity_;
 };
 
 class PlasticConstraint : public SteppedConstraint {

@@ -112,6 +112,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     Vector3<double> arm_a_ = Vector3<double>::Zero(); ///< joint minus centre of mass, world [m]
     Vector3<double> arm_b_ = Vector3<double>::Zero();
     JointWrench<double> centre_; ///< c of all rows
+    DrivenPair driven_;
     OutsideForce outside_;
     bool put_back_ = false; ///< a saved state, with which the bodies move back
     bool acting_ = false;   ///< between prepare and commit: the joint takes part in this step

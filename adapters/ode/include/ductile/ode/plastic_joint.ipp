@@ -87,6 +87,7 @@ DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const F
 
 DUCTILE_INLINE void LinkConstraint::restored(bool was_broken) {
     put_back_ = true;
+    driven_.forget();
     silent_ = link_.broken();
     if (link_.broken()) {
         let_go();
@@ -119,11 +120,13 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     outside_ = {};
     if (link_.broken() || !may_act()) {
         if (!link_.broken()) link_.pause();
+        driven_.forget();
         silent_ = true;
         return;
     }
     acting_ = true;
-    const BodyState<double> a = body_state(a_), b = body_state(b_);
+    const BodyState<double> a = driven_.at_start(0, a_, body_state(a_), dt);
+    const BodyState<double> b = driven_.at_start(1, b_, body_state(b_), dt);
     if (!put_back_) link_.teleport(a, b);
     put_back_ = false;
     const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
@@ -158,9 +161,12 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
         add_centre(-1);
         forces_.clear();
         link_.pause();
+        driven_.forget();
         return;
     }
     silent_ = false;
+    driven_.booked(0, a_, dt);
+    driven_.booked(1, b_, dt);
     outside_ = forces_.collect();
     const auto about_centre = [this](const Vector3<double>& arm) {
         return sum(cross(arm, centre_.force), centre_.moment);
