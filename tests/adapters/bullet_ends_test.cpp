@@ -4,12 +4,15 @@
 // and joints that come into a world twice. Worth running under AddressSanitizer.
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "adapters/bullet_world.hpp"
 #include "support/throws.hpp"
@@ -249,4 +252,83 @@ TEST_CASE("a joint comes into a world once", "[bullet][ends]") {
     CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-4));
     hinge.remove_from(world.world());
     CHECK(world.world().getNumConstraints() == 0);
+}
+
+TEST_CASE("what makes no joint is refused in words", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody &a = world.body(1, 2), &b = world.body(1, 2, {1, 0, 0});
+    btRigidBody &wall = world.body(0, 0.0), &floor = world.body(0, 0.0, {1, 0, 0});
+    const auto at = [](double x) { return BulletWorld::frame({x, 0, 0}); };
+    const auto refused = [&](btRigidBody& first, btRigidBody& second, const btTransform& in_first,
+                             const btTransform& in_second) {
+        return message_of([&] { Hinge(first, second, in_first, in_second, joint(64)); });
+    };
+    // 0.3 m between the halves of the pin, of arms of 0.9 m
+    CHECK(refused(a, b, at(0.5), at(-0.2)).find("axis shear_x, apart by = -0.3") !=
+          std::string::npos);
+    btTransform across = at(-0.5);
+    across.setRotation(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI));
+    CHECK(refused(a, b, at(0.5), across).find("axis bending_y, apart by = -1.57") !=
+          std::string::npos);
+    CHECK(refused(a, b, at(std::nan("")), at(-0.5)) ==
+          "JointConstraint.frame_in_a.origin: must be finite [m]");
+    const btTransform flat(btMatrix3x3(1, 0, 0, 1, 0, 0, 0, 0, 1), {-0.5, 0, 0});
+    CHECK(refused(a, b, at(0.5), flat) ==
+          "JointConstraint.frame_in_b.axes: must be three orthonormal columns, right-handed");
+    CHECK(refused(a, a, at(0.5), at(0.5)) == "PlasticConstraint.b: must not be body a itself");
+    CHECK(refused(wall, floor, at(0.5), at(-0.5)) ==
+          "PlasticConstraint.a, b: must not both be static, as no joint acts between such bodies");
+    // 2 cm and 3 degrees are pulled together
+    btTransform sloppy = at(-0.48);
+    sloppy.setRotation(btQuaternion(btVector3(0, 1, 0), btScalar(0.05)));
+    CHECK(refused(a, b, at(0.5), sloppy) == "nothing thrown");
+}
+
+TEST_CASE("a body that is in no world is missed at the first step", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody& body = world.body(1, 2);
+    Hinge hinge(body, here, joint(64));
+    world.world().removeRigidBody(&body);
+    const std::string missed =
+        "PlasticConstraint.a: must be in a world before the first step: addRigidBody it";
+    hinge.add_to(world.world()); // which of the two comes first does not matter
+    {
+        bullet::World keeper(world.world());
+        keeper.add(hinge);
+        CHECK_THROWS_WITH(keeper.step(1e-3), missed);
+        CHECK(keeper.time() == 0);
+    }
+    world.world().addRigidBody(&body, 0, 0);
+    world.step(1e-3);
+}
+
+TEST_CASE("a World says once where its engine is stepped beside it", "[bullet][ends]") {
+    BulletWorld world("si");
+    btRigidBody& body = world.body(1, 2);
+    Hinge hinge(body, here, joint(64));
+    std::vector<std::string> said;
+    bullet::World keeper(world.world(),
+                         {.warn = [&](const std::string& line) { said.push_back(line); }});
+    keeper.add(hinge);
+    keeper.step(1e-3);
+    CHECK(said.empty());
+    world.step(1e-3, 3);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find("stepped beside World::step") != std::string::npos);
+}
+
+TEST_CASE("a World says once of a joint that nobody added", "[bullet][ends]") {
+    BulletWorld world("si"), other("si");
+    btRigidBody &body = world.body(1, 2), &elsewhere = other.body(1, 2);
+    Hinge forgotten(body, here, joint(64)), added(body, here, joint(64)),
+        by_engine(body, here, joint(64)), not_mine(elsewhere, here, joint(64));
+    std::vector<std::string> said;
+    bullet::World keeper(world.world(),
+                         {.warn = [&](const std::string& line) { said.push_back(line); }});
+    keeper.add(added);
+    world.world().addConstraint(&by_engine);
+    for (int i = 0; i < 3; ++i) keeper.step(1e-3);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find("never added") != std::string::npos);
+    world.world().removeConstraint(&by_engine);
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ductile/ode/ode.hpp"
+#include "support/throws.hpp"
 
 using namespace ductile;
 
@@ -220,4 +221,48 @@ TEST_CASE("a World ends before its joints, and another steps them", "[ode][ends]
     second.add(*constraint);
     for (int i = 0; i < 100; ++i) second.step(1e-2);
     CHECK(constraint->queries().absorbed_energy() == Approx(100));
+}
+
+TEST_CASE("what makes no joint in ODE is refused in words", "[ode][ends]") {
+    Engine engine, other;
+    const dBodyID a = engine.rotor(0), b = engine.rotor(0), foreign = other.rotor(0);
+    dBodySetPosition(b, 1, 0, 0);
+    const auto hinge = [&](dBodyID first, dBodyID second, const ode::HingeFrame& frame) {
+        return test::message_of(
+            [&] { ode::PlasticHinge(engine.id, first, second, frame, joint(64)); });
+    };
+    CHECK(hinge(a, a, {}) == "PlasticHinge.b: must not be body a itself");
+    CHECK(hinge(a, foreign, {}) == "PlasticHinge.b: must be a body of the joint's world");
+    CHECK(hinge(a, b, {.axis = {0, 0, 0}}) ==
+          "PlasticHinge.frame.axis: must be finite and of a length > 0");
+    CHECK(hinge(a, b, {.anchor = {0, std::nan(""), 0}}) ==
+          "PlasticHinge.frame.anchor: must be finite [m]");
+    CHECK(test::message_of([&] {
+              ode::PlasticSlider(engine.id, a, b, Vector3<double>(0, std::nan(""), 1), joint(64));
+          }) == "PlasticSlider.axis: must be finite and of a length > 0");
+    CHECK(test::message_of([&] {
+              ode::PlasticJoint(engine.id, a, b, JointFrame<double>{.origin = {0.5, 0, 0}},
+                                JointFrame<double>{.origin = {-0.2, 0, 0}}, joint(64),
+                                std::array{JointAxis::torsion});
+          }).find("axis shear_x, apart by = -0.3") != std::string::npos);
+    CHECK(dBodyGetNumJoints(a) == 0);
+    ode::World world(other.id);
+    ode::PlasticHinge fine(engine.id, a, b, {.anchor = {0.5, 0, 0}}, joint(64));
+    CHECK(test::message_of([&] { world.add(fine); }) ==
+          "World.add.joint: must be one between bodies of this world");
+}
+
+TEST_CASE("a World of ODE says once of a joint that nobody added", "[ode][ends]") {
+    Engine engine;
+    const dBodyID a = engine.rotor(0);
+    ode::PlasticHinge forgotten(engine.id, a, nullptr, {}, joint(64)),
+        added(engine.id, a, nullptr, {}, joint(64));
+    std::vector<std::string> said;
+    ode::World world(engine.id, ode::WorldParameters{.warn = [&](const std::string& line) {
+                         said.push_back(line);
+                     }});
+    world.add(added);
+    for (int i = 0; i < 3; ++i) world.step(1e-3);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find("never added") != std::string::npos);
 }

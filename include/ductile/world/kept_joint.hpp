@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/world/waiting_joints.hpp"
+
 namespace ductile {
 
 class JointKeeper;
@@ -21,7 +23,18 @@ class KeptJoint {
 
   protected:
     KeptJoint() = default;
-    ~KeptJoint() { leave_keepers(); }
+    ~KeptJoint() {
+        came_into_world();
+        leave_keepers();
+    }
+    /// Until it comes into a world, Worlds that have one of the bodies may say that it is missing.
+    void wait_for_world(const void* a, const void* b) {
+        waits_ = true;
+        WaitingJoints::all().enter(this, {a, b});
+    }
+    void came_into_world() {
+        if (std::exchange(waits_, false)) WaitingJoints::all().leave(this);
+    }
     /// For a destructor, while what its keepers read of the joint is there.
     void leave_keepers();
     /// The engine steps the joint now.
@@ -34,6 +47,7 @@ class KeptJoint {
         std::function<void()> forget;
     };
     std::vector<Kept> keepers_;
+    bool waits_ = false;
 };
 
 /// What the World of an adapter is beside its engine.

@@ -13,6 +13,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <span>
@@ -125,6 +126,8 @@ class SteppedWorld : private JointKeeper {
     virtual void suspect(const void* /*joint*/) {}
     /// The step ended; the next one is done with `effort`.
     virtual void finish(const Effort& effort) = 0;
+    /// True where a body of this address is known to be in the engine's world; null is not.
+    [[nodiscard]] virtual bool has_body(const void* body) const = 0;
     /// Null: none is kept.
     [[nodiscard]] virtual const Ledger<double>* kept_ledger() const noexcept = 0;
 
@@ -177,6 +180,13 @@ class SteppedWorld : private JointKeeper {
                              [this](const void* joint) { suspect(joint); });
         }
         finish(supervisor_.close());
+        const auto forgotten =
+            WaitingJoints::all().take([this](const void* body) { return has_body(body); });
+        for (std::size_t i = 0; i < forgotten; ++i) {
+            supervisor_.say(
+                "ductile: a joint of a body of this world was never added, and does nothing: "
+                "World::add it");
+        }
     }
 
     Supervisor supervisor_;

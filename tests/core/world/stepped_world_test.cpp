@@ -47,10 +47,13 @@ struct Scribe final : SteppedWorld {
     void apply_held_forces() override { lines.emplace_back("apply"); }
     [[nodiscard]] int iterations() const override { return iterations_now; }
     void set_iterations(int n) override { iterations_now = n; }
-    void suspect(const void* joint) override { lines.emplace_back(joint == this ? "suspect" : "?"); }
+    void suspect(const void* joint) override {
+        lines.emplace_back(joint == this ? "suspect" : "?");
+    }
     void finish(const Effort& effort) override {
         lines.push_back("finish, next " + std::to_string(effort.parts) + " parts");
     }
+    [[nodiscard]] bool has_body(const void*) const override { return false; }
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
         return ledger_kept ? &book : nullptr;
     }

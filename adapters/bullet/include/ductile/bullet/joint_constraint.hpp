@@ -25,6 +25,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
@@ -32,6 +33,7 @@
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/any_link.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/joint_checks.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
 
@@ -117,11 +119,21 @@ class JointConstraintOf : public LinkJoint<Joint, JointConstraint> {
 
   protected:
     /// Frames are in the bodies' centre-of-mass frames, z along the member.
+    /// @throws std::invalid_argument where a frame is not finite or not orthonormal, where rigid
+    /// axes of the two bodies are apart (joint_checks.hpp), where both bodies are one, or both
+    /// static.
     JointConstraintOf(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                       const btTransform& frame_in_b, Joint joint, const typename Base::Axes& axes,
                       Feedback feedback)
-        : Base(Link<Joint>(std::move(joint), axes, to_core(frame_in_a), to_core(frame_in_b)), a, b,
-               feedback) {}
+        : Base(Link<Joint>{std::move(joint), axes, checked("frame_in_a", frame_in_a),
+                           checked("frame_in_b", frame_in_b)},
+               a, b, feedback) {}
+
+  private:
+    static JointFrame<double> checked(const char* name, const btTransform& frame) {
+        constexpr double round_off = 1e-5; // of axes made in float
+        return require_frame(std::string("JointConstraint.") + name, to_core(frame), round_off);
+    }
 };
 
 } // namespace ductile::bullet

@@ -26,6 +26,7 @@ DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBo
         decoupled_ = std::make_unique<DecoupledLink>(order_, int(link_.axes().size()));
     }
     link_.start(body_motion(m_rbA), body_motion(m_rbB));
+    require_meeting("JointConstraint", link_);
 }
 
 DUCTILE_INLINE JointConstraint::~JointConstraint() = default;
@@ -114,6 +115,8 @@ DUCTILE_INLINE btScalar JointConstraint::getParam(int num, int /*axis*/) const {
 // ---- a tick
 
 DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
+    require_bodies_in_world();
+    came_into_world();
     tell_keepers_of_step();
     dt_ = force_share_.value * tick;
     tick_share_ = force_share_.value;

@@ -58,6 +58,9 @@ class PlasticConstraint : public btTypedConstraint,
 
     [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
     [[nodiscard]] virtual JointView view() const = 0;
+    /// @throws std::logic_error where a body that can move is in no world. Asked in every tick, and
+    /// by World before it.
+    void require_bodies_in_world() const;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     /// True from add_to to remove_from, whoever else took the constraint out.

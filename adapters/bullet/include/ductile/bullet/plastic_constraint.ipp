@@ -7,6 +7,7 @@
 
 #include <mutex>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "ductile/bullet/draw.hpp"
@@ -50,7 +51,17 @@ DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
 DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b)
     : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b) {
     require_matching_precision();
+    const auto moves = [](const btRigidBody& body) {
+        return body.getInvMass() > 0 || body.isKinematicObject();
+    };
+    if (&a == &b) throw std::invalid_argument("PlasticConstraint.b: must not be body a itself");
+    if (!moves(a) && !moves(b)) {
+        throw std::invalid_argument(
+            "PlasticConstraint.a, b: must not both be static, as no joint acts between such "
+            "bodies");
+    }
     find_driven();
+    wait_for_world(&a, &b);
 }
 
 DUCTILE_INLINE PlasticConstraint::~PlasticConstraint() {
@@ -82,6 +93,7 @@ DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
     world.removeAction(&end_of_tick_); // is there still after Bullet's own removeConstraint
     world.addAction(&end_of_tick_);
     world_ = &world;
+    came_into_world();
 }
 
 DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
@@ -103,6 +115,14 @@ DUCTILE_INLINE void PlasticConstraint::abandon_world() {
         const bool is_alive =
             body == &getFixedBody() || objects.findLinearSearch(body) < objects.size();
         if (is_alive) body->removeConstraintRef(this);
+    }
+}
+
+DUCTILE_INLINE void PlasticConstraint::require_bodies_in_world() const {
+    for (const int side : {0, 1}) {
+        if (!(body(side).getInvMass() > 0) || body(side).getBroadphaseHandle() != nullptr) continue;
+        throw std::logic_error(std::string("PlasticConstraint.") + (side == 0 ? "a" : "b") +
+                               ": must be in a world before the first step: addRigidBody it");
     }
 }
 

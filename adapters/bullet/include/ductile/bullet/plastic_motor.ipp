@@ -126,6 +126,8 @@ DUCTILE_INLINE double MotorConstraint::moment_alone() const {
 // ---- a tick
 
 DUCTILE_INLINE void MotorConstraint::prepare() {
+    require_bodies_in_world();
+    came_into_world();
     tell_keepers_of_step();
     tick_ = double(world_->getSolverInfo().m_timeStep);
     dt_ = force_share_.value * tick_;

@@ -38,6 +38,7 @@
 #include <optional>
 #include <string>
 #include <unordered_set>
+#include <vector>
 
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/held_forces.hpp"
@@ -98,12 +99,14 @@ class World final : public SteppedWorld {
     DUCTILE_INLINE void set_iterations(int iterations) override;
     DUCTILE_INLINE void suspect(const void* joint) override;
     DUCTILE_INLINE void finish(const Effort& effort) override;
+    [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;
 
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<SuspectSolver> suspect_solver_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
+    std::vector<const PlasticConstraint*> joints_;
     std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's
     int told_ = -1; ///< how many constraints know that forces act for the whole step
 };

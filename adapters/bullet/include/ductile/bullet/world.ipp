@@ -73,6 +73,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
         supervisor(), joint, std::move(name), [&joint] { return joint.queries().report(); },
         [&] { joint.add_to(world_); });
     keep(joint, [this, &joint] { forget(joint); });
+    joints_.push_back(&joint);
     told_ = -1;
 }
 DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
@@ -101,6 +102,7 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     if (suspect_solver_ != nullptr) suspect_solver_->trust(detail::address(joint));
     if (meter_) meter_->forget(joint);
     sharing_.erase(&joint);
+    std::erase(joints_, &joint);
 }
 
 DUCTILE_INLINE void World::share(const ForceShare& how) {
@@ -154,6 +156,7 @@ DUCTILE_INLINE void World::require_possible(double dt) {
     if (!(dt > double(SIMD_EPSILON))) {
         check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
     }
+    for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
 }
 DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& /*effort*/) {
     const bool keeps_ledger = meter_ && !holds_multibodies();
@@ -173,6 +176,13 @@ DUCTILE_INLINE void World::suspect(const void* joint) {
 }
 DUCTILE_INLINE void World::finish(const Effort& effort) {
     if (!effort.direct && suspect_solver_ != nullptr) suspect_solver_->trust_all();
+}
+DUCTILE_INLINE bool World::has_body(const void* body) const {
+    const auto& objects = world_.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        if (objects[i] == body && !objects[i]->isStaticObject()) return true;
+    }
+    return false;
 }
 DUCTILE_INLINE const Ledger<double>* World::kept_ledger() const noexcept {
     return meter_ && !holds_multibodies() ? &meter_->ledger() : nullptr;

@@ -36,6 +36,7 @@ DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const Moto
     if (has_stop(row_)) throw std::invalid_argument(detail::stop_refused);
     position_ = row_.measure(0);
     joint_.set_plastic_offset(position_);
+    wait_for_world(row_.bodies().a, row_.bodies().b);
 }
 
 DUCTILE_INLINE OneAxisConstraint::~OneAxisConstraint() {

@@ -57,7 +57,8 @@ class PlasticHinge final : public AxisConstraint<Joint, HingeConstraint> {
   public:
     /// `b` null: hinge between body `a` and the static world. Where the bodies are now is the
     /// hinge's rest position.
-    /// @throws std::invalid_argument where `a` is null.
+    /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
+    /// or the frame is not finite or its axis has no length.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
         : AxisConstraint<Joint, HingeConstraint>(std::move(joint), world, a, b, frame) {}
 };

@@ -20,9 +20,13 @@ DUCTILE_INLINE HingeConstraint::HingeConstraint(AxisJoint& joint, dWorldID world
 
 DUCTILE_INLINE dJointID HingeConstraint::make(dWorldID world, dBodyID a, dBodyID b,
                                               const HingeFrame& frame) {
-    require_body("PlasticHinge", a);
-    const dJointID id = dJointCreateHinge(world, nullptr);
+    require_bodies("PlasticHinge", world, a, b);
     const auto& [anchor, axis] = frame;
+    require_direction("PlasticHinge.frame.axis", axis);
+    if (!is_finite(anchor)) {
+        throw std::invalid_argument("PlasticHinge.frame.anchor: must be finite [m]");
+    }
+    const dJointID id = dJointCreateHinge(world, nullptr);
     dJointAttach(id, a, b);
     dJointSetHingeAnchor(id, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
     dJointSetHingeAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));

@@ -85,7 +85,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     /// The link was given a saved state.
     void restored(bool was_broken);
 
-    static dBodyID require_bodies(dBodyID a, dBodyID b);
+    static dBodyID require_bodies(dWorldID world, dBodyID a, dBodyID b);
     static const Frame& require_frame(const char* name, const Frame& frame);
     /// A frame given in the world, in the axes of a body (null: the static world), from its centre.
     static Frame frame_in(dBodyID body, const Frame& world);
@@ -107,7 +107,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     dBodyID b_;
     std::shared_ptr<const WorldLife> life_;
     PointRows forces_;
-    dJointID id_;
+    dJointID id_ = nullptr;
     dJointFeedback moments_{};
     Vector3<double> arm_a_ = Vector3<double>::Zero(); ///< joint minus centre of mass, world [m]
     Vector3<double> arm_b_ = Vector3<double>::Zero();
@@ -138,18 +138,19 @@ class PlasticJoint final : public LinkJoint<Joint, LinkConstraint> {
     /// The plastic axes start unstrained where the bodies are now. `in_a`, `in_b`: the joint's
     /// frame in body A and in body B (null: the static world), z along the member; `axes`: which
     /// axis each row of `joint` is.
-    /// @throws std::invalid_argument where A is null, both bodies are one, a frame is not finite or
-    /// not orthonormal and right-handed, or an axis is given twice.
+    /// @throws std::invalid_argument where A is null, both bodies are one or not of this world, a
+    /// frame is not finite or not orthonormal and right-handed, rigid axes of the two bodies are
+    /// apart (joint_checks.hpp), or an axis is given twice.
     PlasticJoint(dWorldID world, dBodyID a, dBodyID b, const Frame& in_a, const Frame& in_b,
                  Joint joint, const std::array<JointAxis, ruled_axes<Joint>>& axes = every_axis())
         : Base(Link<Joint>(std::move(joint), axes, Base::require_frame("in_a", in_a),
                            Base::require_frame("in_b", in_b)),
-               world, Base::require_bodies(a, b), b) {}
+               world, Base::require_bodies(world, a, b), b) {}
 
     /// As above with one frame, in the world, where the bodies are now.
     PlasticJoint(dWorldID world, dBodyID a, dBodyID b, const Frame& in_world, Joint joint,
                  const std::array<JointAxis, ruled_axes<Joint>>& axes = every_axis())
-        : PlasticJoint(world, Base::require_bodies(a, b), b,
+        : PlasticJoint(world, Base::require_bodies(world, a, b), b,
                        Base::frame_in(a, Base::require_frame("in_world", in_world)),
                        Base::frame_in(b, in_world), std::move(joint), axes) {}
 };

@@ -4,16 +4,15 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <stdexcept>
+#include <string>
 
-#include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_joint.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
+#include "ductile/world/joint_checks.hpp"
 
 namespace ductile::ode {
 
@@ -34,49 +33,30 @@ DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<doub
 
 DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
                                               dBodyID b)
-    : LinkQueries(link),
-      a_(a),
-      b_(b),
-      life_(WorldLife::of(world)),
-      forces_(world),
-      id_(dJointCreateAMotor(world, nullptr)) {
+    : LinkQueries(link), a_(a), b_(b), life_(WorldLife::of(world)), forces_(world) {
     require_matching_precision();
+    link_.start(body_motion(a_), body_motion(b_));
+    require_meeting("PlasticJoint", link_);
+    id_ = dJointCreateAMotor(world, nullptr);
     dJointAttach(id_, a_, b_);
     dJointSetAMotorNumAxes(id_, 3);
     dJointSetFeedback(id_, &moments_);
-    link_.start(body_motion(a_), body_motion(b_));
+    wait_for_world(a_, b_);
 }
 
 DUCTILE_INLINE LinkConstraint::~LinkConstraint() {
     if (life_->goes_on()) dJointDestroy(id_);
 }
 
-DUCTILE_INLINE dBodyID LinkConstraint::require_bodies(dBodyID a, dBodyID b) {
-    require_body("PlasticJoint", a);
-    if (a == b) throw std::invalid_argument("PlasticJoint.b: must not be body a itself");
+DUCTILE_INLINE dBodyID LinkConstraint::require_bodies(dWorldID world, dBodyID a, dBodyID b) {
+    ductile::ode::require_bodies("PlasticJoint", world, a, b);
     return a;
 }
 
 DUCTILE_INLINE const JointFrame<double>& LinkConstraint::require_frame(const char* name,
                                                                        const Frame& frame) {
     constexpr double round_off = 1e-9;
-    const std::string field = std::string("PlasticJoint.") + name;
-    if (!is_finite(frame.origin)) {
-        throw std::invalid_argument(field + ".origin: must be finite [m]");
-    }
-    const Matrix3<double> products = transposed_times(frame.axes, frame.axes);
-    bool orthonormal = true;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            const double off = products(i, j) - (i == j ? 1 : 0);
-            orthonormal = orthonormal && std::abs(off) <= round_off;
-        }
-    }
-    if (!(orthonormal && numeric::determinant(frame.axes) > 0)) {
-        throw std::invalid_argument(field +
-                                    ".axes: must be three orthonormal columns, right-handed");
-    }
-    return frame;
+    return ductile::require_frame(std::string("PlasticJoint.") + name, frame, round_off);
 }
 
 DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const Frame& world) {

@@ -23,7 +23,8 @@ class PlasticSlider final : public AxisConstraint<Joint, OneAxisConstraint> {
   public:
     /// Bar along `axis` (world, any length > 0). `b` null: between body `a` and the static world.
     /// Where the bodies are now is the bar's rest position.
-    /// @throws std::invalid_argument where `a` is null.
+    /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
+    /// or the axis is not finite or has no length.
     PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis, Joint joint)
         : Base(std::move(joint), slider_axis(make(world, a, b, axis)), AtBreak::disable_joint,
                true) {}
@@ -37,7 +38,8 @@ class PlasticSlider final : public AxisConstraint<Joint, OneAxisConstraint> {
 
   private:
     static dJointID make(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis) {
-        require_body("PlasticSlider", a);
+        require_bodies("PlasticSlider", world, a, b);
+        require_direction("PlasticSlider.axis", axis);
         const dJointID id = dJointCreateSlider(world, nullptr);
         dJointAttach(id, a, b);
         dJointSetSliderAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));

@@ -21,6 +21,7 @@ class SteppedConstraint : public KeptJoint {
     virtual void commit(double dt) = 0;
 
   protected:
+    friend class World;
     SteppedConstraint() = default;
 
     ForceShare force_share_;

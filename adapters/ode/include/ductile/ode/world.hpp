@@ -65,7 +65,7 @@ class World final : public SteppedWorld {
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
     /// Steps a joint and looks after it, until it ends. An empty `name`: "joint" and its number.
-    /// @throws std::invalid_argument where it is here already.
+    /// @throws std::invalid_argument where it is here already, or of another world.
     void add(PlasticConstraint& joint, std::string name = {});
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint);
@@ -97,6 +97,7 @@ class World final : public SteppedWorld {
         dWorldSetQuickStepNumIterations(world_, iterations);
     }
     void finish(const Effort&) override { contacts_.clear(); }
+    [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
         return meter_ ? &meter_->ledger() : nullptr;
     }

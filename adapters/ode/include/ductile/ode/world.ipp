@@ -26,6 +26,10 @@ DUCTILE_INLINE World::World(dWorldID world, Solver solver)
     : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
+    const dBodyID body = dJointGetBody(joint.id(), 0);
+    if (body != nullptr && dBodyGetWorld(body) != world_) {
+        throw std::invalid_argument("World.add.joint: must be one between bodies of this world");
+    }
     supervisor().add(&joint, std::move(name), [&joint] { return joint.queries().report(); });
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
@@ -33,6 +37,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     joint.set_force_share({});
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
+    joint.came_into_world();
 }
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
     let_go(joint);
@@ -89,6 +94,14 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
     }
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
     if (meter_) meter_->after_step(dt, how.value);
+}
+
+DUCTILE_INLINE bool World::has_body(const void* body) const {
+    if (body == nullptr) return false;
+    return std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end() ||
+           std::any_of(plastic_.begin(), plastic_.end(), [body](const PlasticConstraint* joint) {
+               return joint->bodies().a == body || joint->bodies().b == body;
+           });
 }
 
 DUCTILE_INLINE void World::require_bodies() {
