@@ -12,7 +12,6 @@
 
 #include "ductile/joint/any_link.hpp"
 #include "ductile/joint/link_types.hpp"
-#include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 
@@ -34,7 +33,8 @@ inline const JointFrame<double>& require_frame(const std::string& field,
             orthonormal = orthonormal && std::abs(off) <= round_off;
         }
     }
-    if (!(orthonormal && numeric::determinant(frame.axes) > 0)) {
+    const Vector3<double> third = cross(column(frame.axes, 0), column(frame.axes, 1));
+    if (!orthonormal || !(dot(third, column(frame.axes, 2)) > 0)) {
         throw std::invalid_argument(field +
                                     ".axes: must be three orthonormal columns, right-handed");
     }
