@@ -18,8 +18,15 @@
 // rate of d; the rate of rotation is that of the left increments of R.
 //
 // Finite rotation. The rest orientation R_p is a rotation, not three angles: the elastic part is
-// e = log(R R_pᵀ), and plastic flow Δ turns it on, R_p <- exp(Δ) R_p. The joint is shown the
-// position q_p + e. A hinge may turn many times, as long as it turns less than π in one step.
+// e = log(R R_pᵀ). The joint is shown the position q_p + e; what flowed of it, Δ, leaves e - Δ:
+//
+//   R_p <- exp(-(e - Δ)) R;   about one axis R_p <- exp(Δ) R_p, which keeps that axis
+//
+// A hinge may turn many times, as long as it turns less than π in one step.
+//
+// Elastic rotation about several axes. A spring stores ½ e·k e, so its moment is the one conjugate
+// to e, not k e itself: the rows of rotation are those of ė = G(e) ω (rotation.hpp), and k e acts
+// as the moment Gᵀ k e. Then no closed path of rotations makes energy.
 //
 // Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
 // does not, `outcome` is unreliable although the plastic rows may look solved.
@@ -133,7 +140,8 @@ class AnyLink {
     /// Of the last prepare.
     [[nodiscard]] const Limits& limits() const noexcept { return limits_; }
     [[nodiscard]] LinkRow<S> row(JointAxis axis) const noexcept {
-        return {column(pose_.axes(), int(index(axis) % 3)), turns(axis), limits_[index(axis)]};
+        const Matrix3<S>& directions = turns(axis) ? pose_.moment_axes() : pose_.axes();
+        return {column(directions, int(index(axis) % 3)), turns(axis), limits_[index(axis)]};
     }
     [[nodiscard]] bool broken() const noexcept { return totals().broken; }
     [[nodiscard]] bool is_plastic(JointAxis axis) const noexcept { return plastic_[index(axis)]; }
@@ -143,8 +151,8 @@ class AnyLink {
     [[nodiscard]] const Vector3<S>& point() const noexcept { return pose_.point(); }
     [[nodiscard]] const Matrix3<S>& axes_in_world() const noexcept { return pose_.axes(); }
 
-    /// Velocities of the six rows if the bodies moved as these do, at the joint and along the axes
-    /// of the last look [m/s | rad/s].
+    /// Velocities of the six rows as last looked at, if the bodies moved as these do
+    /// [m/s | rad/s].
     [[nodiscard]] Vector6<S> velocities(const BodyState<S>& a,
                                         const BodyState<S>& b) const noexcept {
         return pose_.twist(a, b);
@@ -159,7 +167,8 @@ class AnyLink {
     [[nodiscard]] S plastic_offset(JointAxis axis) const noexcept {
         return offset()[Eigen::Index(index(axis))];
     }
-    /// Reaction on A along +axis of frame B in the last step, whether rigid or plastic [N | N m].
+    /// Reaction on A along +axis of frame B in the last step, whether rigid or plastic; the moments
+    /// of a joint that is elastic about several axes are those conjugate to e [N | N m].
     [[nodiscard]] S force(JointAxis axis) const noexcept {
         return force_[Eigen::Index(index(axis))];
     }
@@ -192,6 +201,11 @@ class AnyLink {
     [[nodiscard]] Vector6<S> strain() const noexcept;
     /// Turns the rest orientation by what flowed about the plastic axes [rad].
     void turn_rest(const Vector3<S>& flow) noexcept;
+    /// plastic_ is known.
+    void choose_rows() noexcept {
+        several_turn_ = plastic_[3] + plastic_[4] + plastic_[5] > 1;
+        if (several_turn_ && !all_rigid_) pose_.make_conjugate();
+    }
 
     LinkPose<S> pose_;
     std::array<bool, 6> plastic_{};
@@ -222,6 +236,7 @@ class AnyLink {
     bool rigid_unsolved_ = false;
     bool one_axis_;
     bool all_rigid_;
+    bool several_turn_ = false; ///< more than one plastic axis of rotation
     Allowed allowed_;
 };
 
@@ -261,7 +276,7 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
         limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
         if (!whole) limits_[i] = {.lower = 0, .upper = 0};
     }
-    if (reads_mass()) take_mass(inverse_mass_of_rows(a, b, pose_.point(), pose_.axes()));
+    if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
     prepare_joint(error, a, b, dt, midway);
     return limits_;
 }
@@ -269,10 +284,7 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
                                   const JointWrench<S>& wrench, S dt) noexcept {
-    return commit_rows(a, b,
-                       twist_of(transposed_times(pose_.axes(), wrench.force),
-                                transposed_times(pose_.axes(), wrench.moment)),
-                       dt);
+    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt);
 }
 
 template <std::floating_point S>
@@ -291,7 +303,7 @@ template <std::floating_point S>
 BreakRelease<S> AnyLink<S>::release(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
     if (!(last().release > 0)) return {};
     return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
-                         pose_.in_world(pose_.twist(a, b)), last().release);
+                         pose_.twist_in_world(a, b), last().release);
 }
 
 template <std::floating_point S>
@@ -299,7 +311,7 @@ JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
                                             const BodyState<S>& b) const noexcept {
     if (!(last().release > 0)) return {};
     return ductile::release_impulse(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
-                                    pose_.in_world(pose_.twist(a, b)), last().release);
+                                    pose_.twist_in_world(a, b), last().release);
 }
 
 template <std::floating_point S>
@@ -333,7 +345,12 @@ inline void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
     for (int i = 0; i < 3; ++i) {
         if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
     }
-    pose_.set_rest(is_zero(turn) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
+    if (several_turn_) {
+        const Vector3<S> back = difference(turn, pose_.elastic_rotation());
+        pose_.set_rest(turned_by<S>(back, pose_.orientation()));
+    } else {
+        pose_.set_rest(is_zero(turn) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
+    }
 }
 
 } // namespace ductile

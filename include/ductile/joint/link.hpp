@@ -61,6 +61,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
             }
             plastic_[index(axes_[i])] = true;
         }
+        this->choose_rows();
     }
 
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
@@ -210,12 +211,9 @@ void Link<Joint>::commit_joint(const Vector6<S>& velocity, const BodyState<S>& a
         const std::size_t axis = index(axes_[0]);
         const auto i = Eigen::Index(axis);
         last_ = joint_.commit({force_[i], velocity[i], strain_along(axis) + offset_[0]}, dt);
-        // the same velocity, as the next step sees it
-        joint_.carry(pose_.twist_along(axis, a, b));
     } else {
         last_ =
             joint_.commit({to_joint(force_), to_joint(velocity), from_rest(this->strain())}, dt);
-        joint_.carry(to_joint(pose_.twist(a, b)));
     }
     JointVector flowed = joint_offset();
     bool flows = false;
@@ -224,6 +222,12 @@ void Link<Joint>::commit_joint(const Vector6<S>& velocity, const BodyState<S>& a
         flows = flows || flowed[k] != 0;
     }
     if (flows) this->turn_rest(angular(from_joint(flowed)));
+    // the same velocity, as the next step sees it
+    if constexpr (one_axis) {
+        joint_.carry(pose_.twist_along(index(axes_[0]), a, b));
+    } else {
+        joint_.carry(to_joint(pose_.twist(a, b)));
+    }
 }
 
 } // namespace ductile

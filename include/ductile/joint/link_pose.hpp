@@ -16,6 +16,7 @@
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
@@ -61,9 +62,20 @@ class LinkPose {
     [[nodiscard]] const Vector3<S>& elastic_rotation() const noexcept {
         if (turned_) {
             elastic_rotation_ = rotation_vector<S>(times_transposed(orientation_, rest_));
+            if (conjugate_) {
+                moment_axes_ = times_transposed(axes_, rotation_vector_rate(elastic_rotation_));
+            }
             turned_ = false;
         }
         return elastic_rotation_;
+    }
+    /// From now on the rows of rotation are those of ė.
+    void make_conjugate() noexcept { conjugate_ = turned_ = true; }
+    /// Directions of the moment rows as columns, world: those of B, or of ė about them.
+    [[nodiscard]] const Matrix3<S>& moment_axes() const noexcept {
+        if (!conjugate_) return axes_;
+        (void)elastic_rotation();
+        return moment_axes_;
     }
     [[nodiscard]] const Matrix3<S>& rest() const noexcept { return rest_; } ///< R_p
     void set_rest(const Matrix3<S>& rest) noexcept {
@@ -75,13 +87,17 @@ class LinkPose {
     /// need not compare.
     [[nodiscard]] unsigned rest_changes() const noexcept { return rest_changes_; }
 
-    /// Velocity of A minus that of B at the joint, and of their turning, along the axes of frame B
-    /// [m/s, rad/s].
+    /// Velocity of A minus that of B at the joint, and of their turning, world axes [m/s, rad/s].
+    [[nodiscard]] Vector6<S> twist_in_world(const BodyState<S>& a,
+                                            const BodyState<S>& b) const noexcept {
+        return twist_of(relative_velocity(a, b), difference(a.spin, b.spin));
+    }
+    /// The same along the rows: the axes of frame B, and moment_axes [m/s, rad/s].
     [[nodiscard]] Vector6<S> twist(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
         return twist_of(transposed_times(axes_, relative_velocity(a, b)),
-                        transposed_times(axes_, difference(a.spin, b.spin)));
+                        transposed_times(moment_axes(), difference(a.spin, b.spin)));
     }
-    /// One entry of it.
+    /// One entry of it, along the axes of frame B.
     [[nodiscard]] S twist_along(std::size_t axis, const BodyState<S>& a,
                                 const BodyState<S>& b) const noexcept {
         if (axis >= 3) {
@@ -96,9 +112,31 @@ class LinkPose {
     [[nodiscard]] BodyAtJoint<S> at_joint(const BodyState<S>& body) const noexcept {
         return {body.inverse_mass, body.inverse_inertia, difference(point_, body.position)};
     }
-    /// Entries along the axes of frame B, seen in the world.
-    [[nodiscard]] Vector6<S> in_world(const Vector6<S>& of_frame_b) const noexcept {
-        return twist_of(times(axes_, linear(of_frame_b)), times(axes_, angular(of_frame_b)));
+    /// The twist in the world of which `along_rows` is that along the rows.
+    [[nodiscard]] Vector6<S> in_world(const Vector6<S>& along_rows) const noexcept {
+        const Vector3<S> turning = angular(along_rows);
+        return twist_of(times(axes_, linear(along_rows)),
+                        conjugate_ ? transposed_times(numeric::inverse(moment_axes()), turning)
+                                   : times(axes_, turning));
+    }
+    /// Forces of the rows that together are a force and a moment at the joint, world axes.
+    [[nodiscard]] Vector6<S> along_rows(const Vector3<S>& force,
+                                        const Vector3<S>& moment) const noexcept {
+        return twist_of(transposed_times(axes_, force),
+                        conjugate_ ? times(numeric::inverse(moment_axes()), moment)
+                                   : transposed_times(axes_, moment));
+    }
+    /// K of the rows.
+    [[nodiscard]] Matrix6<S> inverse_mass(const BodyState<S>& a,
+                                          const BodyState<S>& b) const noexcept {
+        Matrix6<S> k = inverse_mass_of_rows(a, b, point_, axes_);
+        if (!conjugate_) return k;
+        const Matrix3<S> rate = rotation_vector_rate(elastic_rotation());
+        const Matrix3<S> across = times_transposed(block(k, 0, 3), rate);
+        set_block(k, 0, 3, across);
+        set_block(k, 3, 0, transposed(across));
+        set_block(k, 3, 3, sandwiched(rate, block(k, 3, 3)));
+        return k;
     }
 
   private:
@@ -130,7 +168,9 @@ class LinkPose {
     Vector3<S> displacement_ = Vector3<S>::Zero();
     Matrix3<S> orientation_ = Matrix3<S>::Identity(); ///< R
     mutable Vector3<S> elastic_rotation_ = Vector3<S>::Zero();
+    mutable Matrix3<S> moment_axes_ = Matrix3<S>::Identity(); ///< of rows of ė
     mutable bool turned_ = true; ///< e is to be worked out anew
+    bool conjugate_ = false;
 };
 
 } // namespace ductile

@@ -39,9 +39,20 @@ struct JointFrame {
 /// One row of the link: a force along, or a moment about, a direction.
 template <std::floating_point S>
 struct LinkRow {
-    Vector3<S> direction = Vector3<S>::Zero(); ///< world, unit
+    Vector3<S> direction = Vector3<S>::Zero(); ///< world; of unit length but for rows of ė
     bool turns = false;                        ///< moment row
     RowLimits<S> limits;                       ///< [N | N m], [m/s | rad/s]
+
+    /// The same row along a direction of unit length.
+    [[nodiscard]] LinkRow along_unit() const noexcept {
+        const S length = norm(direction);
+        return {scaled(1 / length, direction),
+                turns,
+                {.lower = limits.lower * length,
+                 .upper = limits.upper * length,
+                 .bias = limits.bias / length,
+                 .compliance = limits.compliance / (length * length)}};
+    }
 };
 
 /// Force and moment on body A at the joint, world axes.

@@ -11,10 +11,10 @@
 // function of the orientation alone.
 //
 // Source: Bullo and Murray (1995), Proportional derivative control on the Euclidean group; Solà et
-// al. (2018), A micro Lie theory, eq. (133)-(135), arXiv:1812.01537. The logarithm is taken through
-// the unit quaternion, which is accurate for small and for large angles; the angles of a joint that
-// holds are so small that the series of asin and of sin and cos are exact to round-off after a few
-// terms, without a square root.
+// al. (2018), A micro Lie theory, eq. (133)-(135), (146), arXiv:1812.01537. The logarithm is taken
+// through the unit quaternion, which is accurate for small and for large angles; the angles of a
+// joint that holds are so small that the series of asin and of sin and cos are exact to round-off
+// after a few terms, without a square root.
 #pragma once
 
 #include <Eigen/Core>
@@ -104,6 +104,32 @@ template <std::floating_point S>
     const S cosine = std::abs(q.cosine);
     if (!(sine > 0)) return scaled(2, v);
     return scaled(2 * std::atan2(sine, cosine) / sine, v);
+}
+
+/// G of ė = G ω: how the rotation vector e of exp([e]ₓ) changes as that is turned on at the angular
+/// velocity ω, G = J_l⁻¹(e) = 1 - [e]ₓ/2 + c [e]ₓ², c = (1 - (θ/2) cot(θ/2))/θ². A moment s
+/// conjugate to e is then the moment Gᵀ s = s + e × s/2 + c e × (e × s). θ = |e| < 2 π.
+template <std::floating_point S>
+[[nodiscard]] Matrix3<S> rotation_vector_rate(const Vector3<S>& e) noexcept {
+    const S square = dot(e, e);
+    S c = S(1) / 12 + square * (S(1) / 720 + square * (S(1) / 30240 + square / 1209600));
+    if (square > S(0.01)) {
+        const S half = std::sqrt(square) / 2;
+        c = (1 - half * std::cos(half) / std::sin(half)) / square;
+    }
+    Matrix3<S> rate;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) rate(i, j) = c * e[i] * e[j];
+        rate(i, i) += 1 - c * square;
+    }
+    const Vector3<S> half = scaled(S(0.5), e);
+    rate(0, 1) += half[2];
+    rate(0, 2) -= half[1];
+    rate(1, 0) -= half[2];
+    rate(1, 2) += half[0];
+    rate(2, 0) += half[1];
+    rate(2, 1) -= half[0];
+    return rate;
 }
 
 /// `rotation` turned on by the rotation vector `turn` in the frame in which it is given:

@@ -193,7 +193,7 @@ DUCTILE_INLINE Vector6<double> JointConstraint::reaction_of_own_rows() {
     if (m_jointFeedback != nullptr) {
         const LinkPose<double>& pose = link_.pose();
         const Vector3<double> force = times(pose.axes(), linear(forces));
-        const Vector3<double> moment = times(pose.axes(), angular(forces));
+        const Vector3<double> moment = times(pose.moment_axes(), angular(forces));
         write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
                        scaled(tick_share_, force), scaled(tick_share_, moment));
     }

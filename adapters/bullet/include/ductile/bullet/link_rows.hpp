@@ -174,7 +174,7 @@ inline void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const An
     const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
     int at = 0;
     for (const CombinedRow<double>& row : combined) {
-        const Vector3<double> about = times(pose.axes(), row.moment);
+        const Vector3<double> about = times(pose.moment_axes(), row.moment);
         double target = dot(row.moment, turning);
         if (is_zero(row.force)) {
             write_moment(info, at, about);
@@ -203,6 +203,7 @@ inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
                      double dt) noexcept {
     const auto dimension = int(link.axes().size());
     const Matrix3<double>& axes = link.pose().axes();
+    const Matrix3<double>& moment_axes = link.pose().moment_axes();
     const auto& rows = link.limits();
     const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
     const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
@@ -212,13 +213,14 @@ inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
         limits.lower *= dt;
         limits.upper *= dt;
         if (decoupled == nullptr) {
-            const Vector3<double> direction = column(axes, int(order[i] % 3));
-            order[i] < 3 ? sweep.add(direction, none, limits) : sweep.add(none, direction, limits);
+            const int column_of_axis = int(order[i] % 3);
+            order[i] < 3 ? sweep.add(column(axes, column_of_axis), none, limits)
+                         : sweep.add(none, column(moment_axes, column_of_axis), limits);
         } else {
             const CombinedRow<double>& row = decoupled->rows()[i];
             limits.bias = dot(row.force, moving) + dot(row.moment, turning);
             // Eigen's own products, in packets: six rows a tick
-            sweep.add(axes * row.force, axes * row.moment, limits);
+            sweep.add(axes * row.force, moment_axes * row.moment, limits);
         }
     }
     if (dimension > 1) sweep.join_last(dimension);
@@ -254,8 +256,7 @@ inline void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigid
     bool solved_alone = false;
     const auto force_alone = [&](std::size_t axis) {
         if (!solved_alone) {
-            const Matrix6<double> k = inverse_mass_of_rows(body_state(a), body_state(b),
-                                                           link.point(), link.axes_in_world());
+            const Matrix6<double> k = link.pose().inverse_mass(body_state(a), body_state(b));
             alone = forces_of_isolated_pair(
                 link.limits(), k, link.velocities(free_state(a, tick), free_state(b, tick)), dt);
             solved_alone = true;

@@ -3,7 +3,7 @@
 // The forces of a constraint's rows, read back from Bullet's joint feedback: a force with its
 // torque about the centre of mass, world axes, for either body,
 //
-//   on A:  F = Σ n λ/dt,   T = r × F + M        =>   force n·F, moment n·(T - r × F)
+//   on A:  F = Σ n λ/dt,   T = r × F + Σ n λ/dt   =>   LinkPose::along_rows of F and T - r × F
 //
 // with r from the centre of mass to the joint. Bullet sums in its own precision, so that the moment
 // is known to round-off of |T| + |r| |F|. It is read from the body with the shorter arm, and a
@@ -57,16 +57,17 @@ struct ReactionArm {
     const Vector3<double>& arm = from.arm;
     const Vector3<double> moment = difference(torque, cross(arm, force));
     constexpr double round_off = 8 * double(std::numeric_limits<btScalar>::epsilon());
-    Vector6<double> result;
+    Vector6<double> result = link.pose().along_rows(force, moment);
     for (const JointAxis axis : all_joint_axes) {
-        const LinkRow<double> row = link.row(axis);
-        double value = dot(row.direction, row.turns ? moment : force) / share;
+        const RowLimits<double>& limits = link.limits()[index(axis)];
+        double& value = result[Eigen::Index(index(axis))];
+        value /= share;
         const double round_off_of_value =
-            round_off * (row.turns ? norm(torque) + norm(arm) * norm(force) : norm(force)) / share;
-        for (const double bound : {row.limits.lower, row.limits.upper}) {
+            round_off * (turns(axis) ? norm(torque) + norm(arm) * norm(force) : norm(force)) /
+            share;
+        for (const double bound : {limits.lower, limits.upper}) {
             if (std::abs(value - bound) <= round_off_of_value) value = bound;
         }
-        result[Eigen::Index(index(axis))] = value;
     }
     return result;
 }

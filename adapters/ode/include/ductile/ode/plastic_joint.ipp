@@ -117,7 +117,7 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     std::array<PointRow, 3> force_rows, moment_rows;
     bool out_of_scale = false; // a moment's row
     for (const JointAxis axis : all_joint_axes) {
-        const LinkRow<double> row = link_.row(axis);
+        const LinkRow<double> row = link_.row(axis).along_unit();
         SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
         symmetric.cfm += detail::softness * dt * moved;

@@ -60,7 +60,7 @@ class PointRows {
     /// Directions at right angles to each other; rows without strength are left out.
     void make(dBodyID a, dBodyID b, const Vector3<double>& point,
               const std::array<PointRow, 3>& rows);
-    /// The same with moments about the directions.
+    /// The same with moments about the directions, which need not be at right angles.
     void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows);
 
     /// What the rows did in the step, about the centres of mass; takes them away.
@@ -76,14 +76,15 @@ class PointRows {
     static dContact contact(const Vector3<double>& point, const Vector3<double>& first,
                             const Vector3<double>& second);
 
-    /// One contact for two rows, `contact_of` the first and the second (null: there is none).
+    /// One contact for each `together` rows, of which `contact_of` gets the first and the second
+    /// (null: there is none).
     template <class ContactOf>
-    void attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows,
+    void attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows, std::size_t together,
                 const ContactOf& contact_of);
 
     dWorldID world_;
     dJointGroupID group_;
-    std::array<dJointFeedback, 4> feedback_{}; ///< two of forces, two of moments
+    std::array<dJointFeedback, 5> feedback_{}; ///< two of forces, three of moments
     std::size_t contacts_ = 0;                 ///< made for this step
 };
 

@@ -28,15 +28,15 @@ DUCTILE_INLINE Vector3<double> unit_orthogonal(const Vector3<double>& v) noexcep
 
 template <class ContactOf>
 void PointRows::attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows,
-                       const ContactOf& contact_of) {
+                       std::size_t together, const ContactOf& contact_of) {
     std::array<const PointRow*, 3> acting{};
     std::size_t count = 0;
     for (const PointRow& row : rows) {
         if (row.row.strength > 0) acting[count++] = &row;
     }
-    for (std::size_t i = 0; i < count; i += 2) {
+    for (std::size_t i = 0; i < count; i += together) {
         const PointRow& first = *acting[i];
-        const PointRow* second = i + 1 < count ? acting[i + 1] : nullptr;
+        const PointRow* second = together > 1 && i + 1 < count ? acting[i + 1] : nullptr;
         dContact contact = contact_of(first, second);
         dSurfaceParameters& surface = contact.surface;
         surface.mu = dReal(first.row.strength / first.scale);
@@ -59,7 +59,7 @@ DUCTILE_INLINE double row_scale(double diagonal) noexcept {
 
 DUCTILE_INLINE void PointRows::make(dBodyID a, dBodyID b, const Vector3<double>& point,
                                     const std::array<PointRow, 3>& rows) {
-    attach(a, b, rows, [&point](const PointRow& first, const PointRow* second) {
+    attach(a, b, rows, 2, [&point](const PointRow& first, const PointRow* second) {
         const Vector3<double> along = scaled(first.scale, first.direction);
         const Vector3<double> other =
             second != nullptr ? scaled(second->scale, second->direction)
@@ -70,15 +70,11 @@ DUCTILE_INLINE void PointRows::make(dBodyID a, dBodyID b, const Vector3<double>&
 
 DUCTILE_INLINE void PointRows::make_moments(dBodyID a, dBodyID b,
                                             const std::array<PointRow, 3>& rows) {
-    attach(a, b, rows, [](const PointRow& first, const PointRow* second) {
-        const Vector3<double> about = first.direction;
-        const Vector3<double> other =
-            second != nullptr ? second->direction : detail::unit_orthogonal(about);
-        const Vector3<double> normal = cross(about, other);
-        const double second_scale = second != nullptr ? second->scale : first.scale;
-        return contact(scaled(distance, normal),
-                       scaled(first.scale / distance, cross(about, normal)),
-                       scaled(second_scale / distance, cross(other, normal)));
+    attach(a, b, rows, 1, [](const PointRow& row, const PointRow*) {
+        const Vector3<double> normal = cross(row.direction, detail::unit_orthogonal(row.direction));
+        const Vector3<double> along = scaled(row.scale / distance, cross(row.direction, normal));
+        return contact(scaled(distance, normal), along,
+                       scaled(row.scale / distance, row.direction));
     });
 }
 
