@@ -512,6 +512,25 @@ TEST_CASE("parameters: the error reduction of the rigid rows, and no compliance"
     hinge.remove_from(world.world());
 }
 
+TEST_CASE("a motor that turns faster than Bullet can says so", "[bullet][life]") {
+    BulletWorld world;
+    btRigidBody& body = rotor(world);
+    body.setAngularVelocity({0, 0, 90});
+    btHingeConstraint stock(body, {0, 0, 0}, {0, 0, 1}, true);
+    bullet::PlasticMotor motor(stock, one(0.1));
+    world.world().addConstraint(&stock);
+    motor.add_to(world.world());
+    world.step(1.0 / 60);
+    CHECK(motor.outcome() == Outcome::unreliable);
+    CHECK(motor.report().unseen_turn == Approx(1.5).epsilon(1e-3)); // Bullet: 1.34
+    body.setAngularVelocity({0, 0, 40});
+    world.step(1.0 / 60);
+    CHECK(motor.outcome() == Outcome::yielding);
+    CHECK(motor.report().unseen_turn == 0);
+    motor.remove_from(world.world());
+    world.world().removeConstraint(&stock);
+}
+
 TEST_CASE("Bullet serialises a world with plastic joints", "[bullet][life]") {
     BulletWorld world;
     btRigidBody& body = rotor(world);

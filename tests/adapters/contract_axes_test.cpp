@@ -451,3 +451,32 @@ TEST_CASE("bending and torsion flow together along the ellipse", "[contract][axe
         CHECK(order >= 0.9);
     }
 }
+
+TEST_CASE("a joint that turns further in a step than can be followed says so", "[contract]") {
+    const auto solver = GENERATE(from_range(Rig::solvers()));
+    const double speed = GENERATE(40.0, 90.0, 400.0), dt = 1.0 / 60;
+    INFO(solver << ", " << speed * dt << " rad a step");
+    Rig rig(solver, none);
+    const auto rotor = [&](const V3& at) {
+        return rig.body(1, sphere(2), at, none, {0, 0, speed});
+    };
+    auto& six_axes = rig.six_axis(rotor({0, 0, 0}), nullptr, Frame{}, six(V6::Constant(0.1)));
+    auto& hinge = rig.hinge_of(rotor({9, 0, 0}), nullptr, {9, 0, 0}, {0, 0, 1}, one(0.1));
+    double before = 0, hinge_before = 0;
+    const auto says = [&](const auto& joint, double turned) {
+        const bool right = std::abs(turned - speed * dt) < 0.05 * speed * dt;
+        const bool unreliable = joint.outcome() == Outcome::unreliable;
+        CHECK(unreliable == !right);
+        CHECK(joint.report().unseen_turn == Approx(right ? 0 : speed * dt).epsilon(1e-3));
+    };
+    for (int i = 0; i < 5; ++i) {
+        rig.step(dt);
+        const double now = six_axes.position(JointAxis::torsion), hinge_now = hinge.rotation();
+        says(six_axes, now - before);
+        says(hinge, hinge_now - hinge_before);
+        before = now;
+        hinge_before = hinge_now;
+    }
+    if (speed < 50) CHECK(six_axes.outcome() == Outcome::yielding);
+    if (speed > 300) CHECK(six_axes.outcome() == Outcome::unreliable);
+}

@@ -495,6 +495,16 @@ TEST_CASE("P01 a spinning ball link stops about any axis", "[multibody][ball][P0
     CHECK(ball.residual_max() < 1e-3);
 }
 
+TEST_CASE("a ball link that turns faster than Bullet can says so", "[multibody][ball]") {
+    const double speed = GENERATE(40.0, 90.0, 400.0), dt = 1.0 / 60;
+    Pivot rig("mlcp");
+    Ball& ball = rig.ball({0.1, 0.1, 0.1});
+    rig.spin({0, 0, speed});
+    rig.step(dt);
+    CHECK((ball.outcome() == Outcome::unreliable) == (speed > 50));
+    CHECK(ball.report().unseen_turn == Approx(speed > 50 ? speed * dt : 0).epsilon(1e-3));
+}
+
 TEST_CASE("P02 a ball link breaks with the right residual speed", "[multibody][ball][P02]") {
     const double rate = GENERATE(60.0, 240.0, 1000.0);
     const Vector3<double> axis =

@@ -203,7 +203,7 @@ TEST_CASE("springs of a six-axis joint that swing about all axes make no energy"
         bent = std::max(bent, std::abs(joint.position(JointAxis::bending_y)));
     }
     CHECK(bent > 0.2);
-    Shown(solver, "six axes: a free swing keeps its energy").small((last - first) / start, 3e-4);
+    CHECK(std::abs(last - first) < 3e-4 * start);
 }
 
 TEST_CASE("a six-axis joint does not care where the world's axes point", "[six]") {

@@ -22,7 +22,8 @@
 //
 //   R_p <- exp(-(e - Δ)) R;   about one axis R_p <- exp(Δ) R_p, which keeps that axis
 //
-// A hinge may turn many times, as long as it turns less than π in one step.
+// A hinge may turn many times, as long as it turns less than π in one step; a step in which it
+// turned further, or its engine turned the bodies otherwise than they spin, is unreliable.
 //
 // Elastic rotation about several axes. A spring stores ½ e·k e, so its moment is the one conjugate
 // to e, not k e itself: the rows of rotation are those of ė = G(e) ω (rotation.hpp), and k e acts
@@ -101,12 +102,13 @@ class AnyLink {
                           bool midway = false) noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
-    /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it.
+    /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it; `share`:
+    /// of the engine's step, dt is that for which forces acted.
     const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
-                          const JointWrench<S>& wrench, S dt) noexcept;
+                          const JointWrench<S>& wrench, S dt, S share = 1) noexcept;
     /// The same with the forces of the rows, in the order of JointAxis [N | N m].
     const Step<S>& commit_rows(const BodyState<S>& a, const BodyState<S>& b,
-                               const Vector6<S>& forces, S dt) noexcept;
+                               const Vector6<S>& forces, S dt, S share = 1) noexcept;
 
     /// What the bodies must be given back after a break, as they are now; see break_release. Zero
     /// energy: nothing.
@@ -120,7 +122,7 @@ class AnyLink {
     /// what the last booked step did.
     void pause() noexcept {
         pause_joint();
-        rigid_residual_ = 0;
+        rigid_residual_ = unseen_turn_ = 0;
         rigid_unsolved_ = false;
     }
 
@@ -176,10 +178,12 @@ class AnyLink {
     [[nodiscard]] const Vector6<S>& forces() const noexcept { return force_; }
     /// Largest violation of the rigid rows in the last step [m/s | rad/s].
     [[nodiscard]] S rigid_residual() const noexcept { return rigid_residual_; }
-    /// That of the joint, and unreliable where a rigid row was left unsolved.
+    /// LinkPose's of the last step [rad].
+    [[nodiscard]] S unseen_turn() const noexcept { return unseen_turn_; }
+    /// That of the joint, and unreliable where a rigid row was left unsolved or a turn unseen.
     [[nodiscard]] Outcome outcome() const noexcept {
-        return rigid_unsolved_ && last().outcome != Outcome::broken ? Outcome::unreliable
-                                                                    : last().outcome;
+        const bool believed = !rigid_unsolved_ && !(unseen_turn_ > 0);
+        return believed || last().outcome == Outcome::broken ? last().outcome : Outcome::unreliable;
     }
 
   protected:
@@ -233,6 +237,7 @@ class AnyLink {
     /// LinkPose::rest_changes that M stays right for; the largest: that of the last prepare alone
     unsigned mass_at_ = std::numeric_limits<unsigned>::max();
     S rigid_residual_ = 0;
+    S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;
     bool one_axis_;
     bool all_rigid_;
@@ -283,17 +288,18 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
 
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
-                                  const JointWrench<S>& wrench, S dt) noexcept {
-    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt);
+                                  const JointWrench<S>& wrench, S dt, S share) noexcept {
+    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt, share);
 }
 
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>& b,
-                                       const Vector6<S>& forces, S dt) noexcept {
+                                       const Vector6<S>& forces, S dt, S share) noexcept {
     // velocities belong to the rows that were solved, positions to where the bodies are now
     const Vector6<S> velocity = pose_.twist(a, b);
     force_ = forces;
     certify_rigid_rows(a, velocity);
+    unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
     pose_.look(a, b);
     commit_joint(velocity, a, b, dt);
     return last();

@@ -8,15 +8,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <numbers>
 
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/rotation.hpp"
 #include "ductile/numeric/lu.hpp"
+#include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
@@ -48,6 +52,13 @@ class LinkPose {
             transposed_times(axes_, difference(arm_b_, times(b.orientation, in_b_.origin)));
         orientation_ = transposed_times(axes_, times(a.orientation, in_a_.axes));
     }
+
+    /// Largest turn of a body in a step of `time` [s], 0 where the joint could follow it, with the
+    /// bodies as they are after the step and last looked at before it [rad]. It cannot where they
+    /// turned by π or more relative to each other, as an orientation does not say by how much, and
+    /// where their engine turned them otherwise than they spin.
+    [[nodiscard]] S unseen_turn(const BodyState<S>& a, const BodyState<S>& b,
+                                S time) const noexcept;
 
     // ---- as last looked at
 
@@ -151,6 +162,15 @@ class LinkPose {
         }
     };
 
+    /// By how much a body was turned less than it spins, world axes [rad].
+    [[nodiscard]] static Vector3<S> missed_turn(const Place& before, const BodyState<S>& after,
+                                                const Vector3<S>& turn) noexcept {
+        // a body that its engine moves before the solve
+        if (before.orientation == after.orientation) return Vector3<S>::Zero();
+        return rotation_vector<S>(
+            times_transposed(turned_by(turn, before.orientation), after.orientation));
+    }
+
     [[nodiscard]] Vector3<S> relative_velocity(const BodyState<S>& a,
                                                const BodyState<S>& b) const noexcept {
         return difference(sum(a.velocity, cross(a.spin, arm_a_)),
@@ -172,5 +192,20 @@ class LinkPose {
     mutable bool turned_ = true; ///< e is to be worked out anew
     bool conjugate_ = false;
 };
+
+template <std::floating_point S>
+S LinkPose<S>::unseen_turn(const BodyState<S>& a, const BodyState<S>& b, S time) const noexcept {
+    const Vector3<S> turn_a = scaled(time, a.spin), turn_b = scaled(time, b.spin);
+    const S square = std::max(dot(turn_a, turn_a), dot(turn_b, turn_b));
+    if (!(square > small_turn<S> * small_turn<S>)) return 0;
+    const S most = std::sqrt(square), allowed = allowed_miss<S>;
+    if (norm(difference(turn_a, turn_b)) >= std::numbers::pi_v<S>) return most;
+    const Vector3<S> missed_a = missed_turn(seen_a_, a, turn_a);
+    const Vector3<S> missed_b = missed_turn(seen_b_, b, turn_b);
+    const S gap = norm(difference(cross(missed_a, arm_a_), cross(missed_b, arm_b_)));
+    const S swept = norm(cross(turn_a, arm_a_)) + norm(cross(turn_b, arm_b_));
+    return norm(difference(missed_a, missed_b)) > allowed * most || gap > allowed * swept ? most
+                                                                                          : S(0);
+}
 
 } // namespace ductile

@@ -18,4 +18,20 @@ template <std::floating_point Scalar>
     return measured + turn * std::round((predicted - measured) / turn);
 }
 
+/// Turn of a step up to which no engine's rule for it differs much from another [rad].
+template <std::floating_point Scalar>
+inline constexpr Scalar small_turn = Scalar(0.5);
+
+/// Share of a step's turn by which an engine's rule may miss it [-].
+template <std::floating_point Scalar>
+inline constexpr Scalar allowed_miss = Scalar(0.04);
+
+/// True where a joint that turned on by `due` = velocity × step was seen to turn by `seen`: its
+/// engine cuts fast turns, or it went round unseen. [rad]
+template <std::floating_point Scalar>
+[[nodiscard]] bool turned_otherwise(Scalar due, Scalar seen) noexcept {
+    return std::abs(due) > small_turn<Scalar> &&
+           std::abs(seen - due) > allowed_miss<Scalar> * std::abs(due);
+}
+
 } // namespace ductile

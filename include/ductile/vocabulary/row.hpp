@@ -58,8 +58,8 @@ struct Reaction {
 };
 
 /// State of a joint after a step. `unreliable` says that the solver left the row unsolved, or that
-/// the joint gives its bodies energy it never took: neither motion nor force of this step should be
-/// believed.
+/// the joint gives its bodies energy it never took, or that they turned further than it could
+/// follow: neither motion nor force of this step should be believed.
 enum class Outcome { elastic, yielding, broken, unreliable };
 
 [[nodiscard]] constexpr std::string_view to_string(Outcome outcome) noexcept {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ductile/joint/axis_joint.hpp"
+#include "ductile/vocabulary/angle.hpp"
 #include "ductile/world/joint_queries.hpp"
 
 namespace ductile {
@@ -40,8 +41,21 @@ class AxisQueries : public PairQueries {
     AxisJoint& joint_;
     double position_ = 0; ///< q
     double force_ = 0;
+    double unseen_turn_ = 0; ///< of the last step, where the position does not tell it [rad]
+
+    /// Of a turning row whose step ended at `velocity` and moved it to `position` [rad/s, rad].
+    void see_turn(double velocity, double time, double position) noexcept {
+        const double due = velocity * time;
+        unseen_turn_ = turned_otherwise(due, position - position_) ? std::abs(due) : 0;
+    }
+
+    [[nodiscard]] Outcome last_outcome() const override {
+        const Outcome outcome = joint_.last().outcome;
+        return unseen_turn_ > 0 && outcome != Outcome::broken ? Outcome::unreliable : outcome;
+    }
 
   private:
+    [[nodiscard]] double last_unseen_turn() const final { return unseen_turn_; }
     [[nodiscard]] const JointTotals<double>& state_totals() const final { return joint_.totals(); }
     [[nodiscard]] const Step<double>& last_step() const final { return joint_.last(); }
     [[nodiscard]] std::optional<FractureEvent<double>> fracture() const final {

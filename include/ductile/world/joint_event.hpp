@@ -15,7 +15,7 @@ namespace ductile {
 enum class EventKind {
     yielded,    ///< flowed for the first time
     broke,      ///< see JointEvent::fracture
-    unreliable, ///< unsolved, or it makes energy (Outcome); told once per joint
+    unreliable, ///< unsolved, makes energy, or turned unseen (Outcome); told once per joint
     coarse,     ///< the step was too long for what it did; told once per joint
 };
 

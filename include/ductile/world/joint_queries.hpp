@@ -51,6 +51,7 @@ class JointQueries {
         settle();
         auto now = joint_report(state_totals(), last_step(), fracture(), last_outcome(),
                                 last_rigid_residual());
+        now.unseen_turn = last_unseen_turn();
         if (!now.fracture) add_speeds(now);
         return acts() ? now : idle_report(now);
     }
@@ -75,6 +76,7 @@ class JointQueries {
     /// Of all rows.
     [[nodiscard]] virtual Outcome last_outcome() const { return last_step().outcome; }
     [[nodiscard]] virtual double last_rigid_residual() const { return 0; }
+    [[nodiscard]] virtual double last_unseen_turn() const = 0;
     [[nodiscard]] virtual double last_utilisation() const = 0;
     /// False where the engine left the joint out of the last step.
     [[nodiscard]] virtual bool acts() const { return true; }

@@ -20,6 +20,7 @@ struct JointReport {
     bool first_yield = false; ///< it flowed in this step for the first time
     bool coarse = false;      ///< the flow that ended had steps too long for it: step_error.hpp
     S residual = 0;           ///< worst violation of any of its rows, >= 0 [m/s | rad/s]
+    S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
     S plastic_travel = 0;     ///< p [m | rad]
     S absorbed_energy = 0;    ///< D [J]
@@ -53,6 +54,7 @@ template <std::floating_point S>
 template <std::floating_point S>
 [[nodiscard]] JointReport<S> idle_report(JointReport<S> last) noexcept {
     last.residual = 0;
+    last.unseen_turn = 0;
     last.gained = 0;
     last.coarse = false;
     if (last.outcome == Outcome::broken) return last;

@@ -38,7 +38,11 @@ inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n
 [[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
     std::ostringstream line;
     line << "ductile: joint \"" << event.name << "\" ";
-    if (event.report.gained > 0) {
+    if (event.report.unseen_turn > 0) {
+        line << "turned by " << event.report.unseen_turn
+             << " rad in the step that ended at t = " << event.time
+             << " s, which its engine or its angle cannot follow; take shorter steps";
+    } else if (event.report.gained > 0) {
         line << "has given its bodies " << event.report.gained
              << " J more than it took, at t = " << event.time << " s";
     } else {

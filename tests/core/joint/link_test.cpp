@@ -368,6 +368,45 @@ TEST_CASE("a rigid row that the engine left unsolved makes the link unreliable",
     CHECK(link.last().outcome == Outcome::elastic);
 }
 
+TEST_CASE("a turn that a link cannot follow is unreliable, and says how far it was",
+          "[joint][link]") {
+    const double dt = 1.0 / 60;
+    const V3 axis = V3(1, -2, 3).normalized();
+    const bool all = GENERATE(false, true);
+    const auto seen = [&](const V3& spin_a, const V3& spin_b, double engine_turns) {
+        Body a = body(1, 2), b = body(1, 2);
+        const auto see = [&](auto link) {
+            link.start(a, b);
+            a.spin = spin_a;
+            b.spin = spin_b;
+            link.prepare(a, b, dt, 0);
+            a.orientation = turned(spin_a.norm() * dt * engine_turns, spin_a + V3(0, 0, 1e-9));
+            b.orientation = turned(spin_b.norm() * dt * engine_turns, spin_b + V3(0, 0, 1e-9));
+            link.commit_rows(a, b, Vector6<double>::Zero(), dt);
+            if (link.unseen_turn() > 0) CHECK(link.outcome() == Outcome::unreliable);
+            return link.unseen_turn();
+        };
+        if (all) return see(Link(six(capacities()), all_joint_axes, {}, {}));
+        const M3 along =
+            Eigen::Quaternion<double>::FromTwoVectors(V3::UnitZ(), axis).toRotationMatrix();
+        return see(Link(hinge(40), {JointAxis::torsion}, {V3::Zero(), along}, {V3::Zero(), along}));
+    };
+    const V3 still = V3::Zero();
+    CHECK(seen(400 * axis, still, 1) == Approx(400 * dt));
+    CHECK(seen(still, 400 * axis, 1) == Approx(400 * dt));
+    CHECK(seen(95 * axis, -95 * axis, 1) == Approx(95 * dt)); // 3.17 rad of each other
+    CHECK(seen(180 * axis, still, 1) == 0);                   // 3 rad
+    CHECK(seen(90 * axis, -90 * axis, 1) == 0);
+    CHECK(seen(400 * axis, 300 * axis, 1) == 0);
+    // an engine that cuts turns
+    CHECK(seen(60 * axis, still, 0.9) == Approx(60 * dt));
+    CHECK(seen(60 * axis, still, 0.97) == 0);
+    CHECK(seen(60 * axis, 60 * axis, 0.5) == 0);
+    CHECK(seen(60 * axis, -60 * axis, 0.9) == Approx(60 * dt));
+    CHECK(seen(60 * axis, still, 0) == 0); // moved before the solve
+    CHECK(seen(20 * axis, still, 0.5) == 0);
+}
+
 TEST_CASE("a link refuses an axis given twice", "[joint][link]") {
     CHECK(ductile::test::message_of([] {
               Link(CoupledJoint(IndependentAxes<double, 2>({.capacity = Eigen::Vector2d(1, 2)}),

@@ -49,6 +49,20 @@ TEST_CASE("a supervisor warns once, by name, and reports who is suspect", "[worl
     CHECK(supervisor.time() == 1);
 }
 
+TEST_CASE("a supervisor says why a joint is unreliable", "[world]") {
+    std::vector<std::string> lines;
+    Supervisor supervisor({}, [&lines](const std::string& line) { lines.push_back(line); });
+    Puppet post;
+    supervisor.add(&post, "post", post.ask());
+    post.says = {.outcome = Outcome::unreliable, .unseen_turn = 6.5};
+    supervisor.open();
+    supervisor.look(0.5, [](const void*) {});
+    CHECK(lines ==
+          std::vector<std::string>{
+              "ductile: joint \"post\" turned by 6.5 rad in the step that ended at t = 0.5 "
+              "s, which its engine or its angle cannot follow; take shorter steps"});
+}
+
 TEST_CASE("a supervisor warns once of steps that are too long", "[world]") {
     std::vector<std::string> lines;
     Supervisor supervisor({}, [&lines](const std::string& line) { lines.push_back(line); });

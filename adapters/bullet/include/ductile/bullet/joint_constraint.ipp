@@ -152,7 +152,7 @@ DUCTILE_INLINE void JointConstraint::settle(bool late, bool in_solver) {
     if (was != Open::tick) return;
     const Vector6<double> forces = reaction();
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
-    if (link_.commit_rows(a, b, forces, dt_).outcome != Outcome::broken) return;
+    if (link_.commit_rows(a, b, forces, dt_, tick_share_).outcome != Outcome::broken) return;
     const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
     release_ = link_.release(now_a, now_b);
     if (in_solver && release_.energy > 0) {

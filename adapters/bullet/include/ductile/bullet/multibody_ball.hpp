@@ -10,9 +10,9 @@
 //
 // Axes, moments and velocities are those of Bullet's spherical joint: the axes of the link's own
 // frame, which turn with it. Rotation is the sum of increments of the rotation vector
-// (joint/rotation.hpp); it may turn many times, at less than π/4 a step. See
-// multibody_constraint.hpp for signs, committing, the break and Bullet's traps, multibody_hinge.hpp
-// for elastic rows.
+// (joint/rotation.hpp); it may turn many times, at less than π/4 a step, beyond which the joint is
+// unreliable. See multibody_constraint.hpp for signs, committing, the break and Bullet's traps,
+// multibody_hinge.hpp for elastic rows.
 #pragma once
 
 #include <algorithm>
@@ -25,6 +25,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/numeric/lu.hpp"
 #include "ductile/surface/ellipsoid.hpp"
+#include "ductile/vocabulary/angle.hpp"
 
 namespace ductile::bullet {
 
@@ -63,7 +64,8 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     [[nodiscard]] bool broken() const noexcept override { return joint_.state().broken; }
     /// Unreliable where the solver left a row unsolved, or out.
     [[nodiscard]] Outcome outcome() const noexcept {
-        return left_out() && !broken() ? Outcome::unreliable : last_.outcome;
+        const bool believed = !left_out() && !(unseen_turn_ > 0);
+        return believed || broken() ? last_.outcome : Outcome::unreliable;
     }
     /// Certificate: largest violation of a row in the last tick, and so far [rad/s].
     [[nodiscard]] double residual() const noexcept { return last_.residual; }
@@ -72,7 +74,9 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
     [[nodiscard]] State state() const noexcept { return {joint_.state(), tracker_}; }
     [[nodiscard]] JointReport<double> report() const noexcept override {
-        return Base::report_of(joint_, last_, outcome());
+        auto now = Base::report_of(joint_, last_, outcome());
+        now.unseen_turn = unseen_turn_;
+        return now;
     }
     /// For a joint re-created from a saved state.
     void restore(const State& state) noexcept {
@@ -101,7 +105,11 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     }
     void commit(const Values& force, const Values& velocity, double dt) override {
         moment_ = force;
-        last_ = joint_.commit({force, velocity, tracker_.follow(orientation())}, dt);
+        const Vector3<double> before = tracker_.total, due = scaled(dt, velocity);
+        const Vector3<double> missed =
+            difference(difference(tracker_.follow(orientation()), before), due);
+        unseen_turn_ = turned_otherwise(norm(due), norm(due) + norm(missed)) ? norm(due) : 0;
+        last_ = joint_.commit({force, velocity, tracker_.total}, dt);
         if (!broken()) return;
         moment_ = {0, 0, 0};
         if (last_.release > 0) hand_back(last_.release, last_.direction);
@@ -110,6 +118,7 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     Joint joint_;
     RotationTracker<double> tracker_;
     typename Joint::Step last_;
+    double unseen_turn_ = 0; ///< as JointReport's
     Vector3<double> moment_ = Vector3<double>::Zero();
 };
 

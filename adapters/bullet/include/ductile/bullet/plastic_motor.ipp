@@ -159,7 +159,9 @@ DUCTILE_INLINE void MotorConstraint::settle_tick(bool late) {
     const double speed = turning(a, b);
     force_ = double(internalGetAppliedImpulse()) / dt_;
     if (is_open()) read_own_row();
-    position_ = measure(a, b, position_ + speed * tick_);
+    const double position = measure(a, b, position_ + speed * tick_);
+    see_turn(speed, tick_, position);
+    position_ = position;
     const Step<double>& step = joint_.commit({force_, speed, position_}, dt_);
     if (step.outcome != Outcome::broken) return;
     if (at_break_ == AtBreak::disable_joint) {

@@ -93,8 +93,9 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
 
   private:
     [[nodiscard]] Outcome last_outcome() const override {
-        return rigid_unsolved_ && joint_.last().outcome != Outcome::broken ? Outcome::unreliable
-                                                                           : joint_.last().outcome;
+        return rigid_unsolved_ && joint_.last().outcome != Outcome::broken
+                   ? Outcome::unreliable
+                   : AxisQueries::last_outcome();
     }
     /// Of the pin for hinges and universals, of the axis for a PlasticHinge; other rigid rows are
     /// not known.

@@ -82,7 +82,7 @@ DUCTILE_INLINE bool OneAxisConstraint::solved() const {
 DUCTILE_INLINE void OneAxisConstraint::suspend() {
     joint_.pause();
     driven_.forget();
-    rigid_residual_ = 0;
+    rigid_residual_ = unseen_turn_ = 0;
     rigid_unsolved_ = false;
 }
 
@@ -142,9 +142,12 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     driven_.booked(1, row_.bodies().b, dt);
     certify_rigid_rows(twist);
     force_ = row_force();
-    position_ = row_.measured()
-                    ? row_.measure(position_ + velocity * dt)
-                    : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
+    const double position =
+        row_.measured()
+            ? row_.measure(position_ + velocity * dt)
+            : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
+    if (row_.turns()) see_turn(velocity, dt, position);
+    position_ = position;
     const Step<double>& step =
         joint_.commit({force_, velocity, position_}, force_share_.value * dt);
     pose_.look(row_);

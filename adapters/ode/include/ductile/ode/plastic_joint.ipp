@@ -160,7 +160,7 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
     link_.commit(body_motion(a_), body_motion(b_),
                  JointWrench<double>{.force = scaled(1 / share, outside_.force),
                                      .moment = scaled(1 / share, moment)},
-                 share * dt);
+                 share * dt, share);
     if (!link_.broken()) return;
     hand_back();
     let_go();
