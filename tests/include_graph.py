@@ -13,16 +13,17 @@ from pathlib import Path
 # folder -> folders it may include, besides itself
 ALLOWED = {
     "vocabulary": set(),
-    "numeric": set(),
+    "numeric": {"vocabulary"},
     "material": {"vocabulary"},
     "section": {"vocabulary", "material"},
     "law": {"vocabulary"},
     "surface": {"vocabulary", "numeric"},
     "fracture": {"vocabulary"},
     "joint": {"vocabulary", "numeric", "law", "surface", "fracture"},
+    "solve": {"vocabulary", "numeric"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
-    "world": {"vocabulary", "fracture", "joint", "fidelity"},
+    "world": {"vocabulary", "fracture", "joint", "fidelity", "solve"},
     "fidelity": {"vocabulary", "material", "section", "law", "fracture", "joint"},
 }
 ADAPTERS = ("bullet", "ode")

@@ -6,6 +6,8 @@
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/driven_body.ipp>
 #include <ductile/bullet/energy_meter.ipp>
+#include <ductile/bullet/front_solver.ipp>
+#include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/kept_mass.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>

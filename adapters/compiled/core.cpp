@@ -3,8 +3,17 @@
 // What of the core is compiled once (DUCTILE_COMPILED).
 #include <ductile/joint/row_sweep.hpp>
 #include <ductile/joint/usual_joints.hpp>
+#include <ductile/numeric/block_ldlt.hpp>
+#include <ductile/numeric/block_ldlt.ipp>
+#include <ductile/solve/active_set.ipp>
+#include <ductile/solve/interior_point.ipp>
+#include <ductile/solve/island.ipp>
+#include <ductile/solve/island_solver.ipp>
+#include <ductile/solve/island_system.ipp>
+#include <ductile/solve/one_pair.ipp>
 #include <ductile/world/energy_meter.hpp>
 #include <ductile/world/energy_meter.ipp>
+#include <ductile/world/island_joint.ipp>
 
 namespace ductile {
 

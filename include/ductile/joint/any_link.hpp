@@ -136,6 +136,14 @@ class AnyLink {
     [[nodiscard]] virtual std::optional<FractureEvent<S>> fracture() const noexcept = 0;
     /// Share of the strength that the last step's forces use: 1 where it flows, 0 where broken [-].
     [[nodiscard]] virtual S utilisation() const noexcept = 0;
+    /// Elastic stiffness of the member that the joint stands for, by axis, whether its rows are
+    /// elastic or rigid; infinite where nobody said [N/m | N m/rad].
+    [[nodiscard]] virtual Vector6<S> section_stiffness() const noexcept = 0;
+    /// Semi-axes of the ellipsoid that the plastic rows share in the step that `prepare` opened;
+    /// zero: they have their bounds alone [N | N m].
+    [[nodiscard]] virtual Vector6<S> ellipsoid() const noexcept = 0;
+    /// For that step: the solver will meet the ellipsoid itself, and not look at the bounds.
+    void meet_surface() noexcept { on_surface_ = true; }
 
     [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
     [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }
@@ -215,6 +223,7 @@ class AnyLink {
     std::array<bool, 6> plastic_{};
     Limits limits_{};                       ///< between prepare and commit
     Vector6<S> force_ = Vector6<S>::Zero(); ///< of the last step, axes of frame B [N | N m]
+    bool on_surface_ = false;               ///< between prepare and commit: see meet_surface
 
   private:
     // ---- what the joint does; six-vectors in the order of JointAxis, zero for what is not its own
@@ -275,6 +284,7 @@ template <std::floating_point S>
 const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
                                                        S dt, S rate, bool midway) noexcept {
     pose_.look(a, b);
+    on_surface_ = false;
     const Vector6<S> error = strain();
     const bool whole = !broken();
     for (std::size_t i = 0; i < limits_.size(); ++i) {

@@ -20,12 +20,14 @@
 // step (row_box.hpp, where the error is measured); it grows with the law, γ(f) R(0)/R(p) <= 1. Each
 // row is rigid or elastic as that of a one-axis joint, whose account and certificate these are.
 //
-// Finite rotation: angular entries of q are sums of rotation increments (rotation.hpp), without wrap.
+// Finite rotation: angular entries of q are sums of rotation increments (rotation.hpp), without
+// wrap.
 //
 // Break. Life is counted by p, and by the way along axes that have a limit (axis_life.hpp). A step
 // that would use up more than is left has its bounds lowered before the solve; what it still did in
-// excess is CoupledStep::release, to be handed back along its direction. A criterion's cap on the force
-// bounds the equivalent force γ R(0); where it is met before yield, the joint breaks without flow.
+// excess is CoupledStep::release, to be handed back along its direction. A criterion's cap on the
+// force bounds the equivalent force γ R(0); where it is met before yield, the joint breaks without
+// flow.
 //
 // Limit cases: one axis is OneAxisJoint; independent axes are as many of them with one life.
 #pragma once
@@ -66,7 +68,7 @@ namespace ductile {
 /// where all flow; elastic rows 0.2 to 0.4 µs more, surfaces without closed chords some µs.
 template <YieldSurface Surface, StrengthLaw Law,
           FractureCriterion Criterion = TravelLimit<typename Surface::Scalar>>
-    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 class CoupledJoint {
   public:
     using Scalar = typename Surface::Scalar;
@@ -80,8 +82,8 @@ class CoupledJoint {
     using State = CoupledState<Scalar, dimension, typename Criterion::State>;
     using Parameters = CoupledParameters<Scalar, dimension>;
 
-    /// `law`: strength over the equivalent travel, in the unit of the axis it is told for; the surface
-    /// is that at R(0).
+    /// `law`: strength over the equivalent travel, in the unit of the axis it is told for; the
+    /// surface is that at R(0).
     /// @throws std::invalid_argument where a parameter is out of range.
     explicit CoupledJoint(Surface surface, Law law, Criterion criterion = Criterion(),
                           Parameters parameters = {})
@@ -101,7 +103,8 @@ class CoupledJoint {
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
-    /// The velocity that the step left, seen along the axes as they are now: not a jump [m/s | rad/s].
+    /// The velocity that the step left, seen along the axes as they are now: not a jump [m/s |
+    /// rad/s].
     void carry(const Vector& velocity) noexcept { state_.velocity = velocity; }
 
     /// γ of the last step's forces on the present surface: 1 where it flows [-].
@@ -130,6 +133,10 @@ class CoupledJoint {
                                      .force = state_.force[state_.broken_axis]};
     }
 
+    /// Of the step that `prepare` opened: the forces are admissible where the gauge of the surface
+    /// is at most this [-].
+    [[nodiscard]] Scalar reach() const noexcept { return cap_ < grown_ ? cap_ : grown_ * share_; }
+
     /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
@@ -142,7 +149,7 @@ class CoupledJoint {
         Vector force;    ///< f; once the step has broken the joint, that just before [N | N m]
         Scalar flow = 0; ///< [J]
         StepError<Scalar> error{};
-        int axis = 0;    ///< that did most of it
+        int axis = 0; ///< that did most of it
         Eigen::Array<bool, dimension, 1> at_bound = Eigen::Array<bool, dimension, 1>::Zero();
     };
 
@@ -227,6 +234,23 @@ class CoupledJoint {
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
 
+    /// Of the velocities beyond u' + C f dt = b: where the joint flows, what is not along the
+    /// normal.
+    [[nodiscard]] Vector off_normal(const Reaction& reaction, bool flows,
+                                    Scalar dt) const noexcept {
+        Vector excess;
+        for (int i = 0; i < dimension; ++i) {
+            const RowLimits<Scalar>& row = rows_[std::size_t(i)];
+            excess[i] = reaction.velocity[i] + row.compliance * reaction.force[i] * dt - row.bias;
+        }
+        if (flows) {
+            const Vector normal = surface_.normal(reaction.force);
+            const Scalar along = numeric::dot(excess, normal) / numeric::dot(normal, normal);
+            if (along < 0) excess -= along * normal; // against the force
+        }
+        return excess.cwiseAbs();
+    }
+
     [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
         const Scalar speed = std::max(numeric::largest(start_), numeric::largest(velocity));
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
@@ -288,7 +312,8 @@ class CoupledJoint {
                                  : strength;
         criterion_.update(state_.criterion,
                           {travel, state_.plastic_travel, force, step.plastic_work, dt});
-        state_.broken = last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
+        state_.broken =
+            last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         const Scalar rest = work - step.plastic_work;
         (state_.broken ? step.release : step.other_work) += rest;
         if (state_.broken) end_after(taken, reaction, travel, dt);
@@ -319,81 +344,14 @@ class CoupledJoint {
     // between prepare and commit
     Rows rows_{};
     Vector start_ = Vector::Zero(), elastic_ = Vector::Zero(); ///< u, q_e at the start
-    Vector lower_ = Vector::Zero(), upper_ = Vector::Zero(); ///< bounds of the forces
-    Vector implicit_ = Vector::Ones(); ///< θ of the elastic rows
+    Vector lower_ = Vector::Zero(), upper_ = Vector::Zero();   ///< bounds of the forces
+    Vector implicit_ = Vector::Ones();                         ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it
-    Scalar left_ = 0, share_ = 1; ///< travel left before a break; of the strength, what bounds allow
+    Scalar left_ = 0,
+           share_ = 1; ///< travel left before a break; of the strength, what bounds allow
     Scalar cap_ = 0;   ///< γ of a brittle break
     Predicted<Vector> predicted_{Vector::Zero()};
 };
-
-template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
-    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
-    -> Rows {
-    start_ = motion.velocity;
-    predicted_ = predict(state_, motion.midway, dt);
-    elastic_ = motion.position - state_.plastic_offset;
-    if (state_.broken) {
-        rows_.fill({.lower = 0, .upper = 0});
-        return rows_;
-    }
-    bound(motion, dt);
-    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
-    return rows_;
-}
-
-template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
-    requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt) noexcept
-    -> Step {
-    Step step;
-    if (state_.broken) {
-        step.outcome = Outcome::broken;
-        return step;
-    }
-    Taken taken{.force = reaction.force};
-    Scalar most = 0;
-    const Scalar jump = allowed_residual(start_);
-    for (int i = 0; i < dimension; ++i) {
-        const RowBooking<Scalar> booked = open_row(i, jump).book(
-            {reaction.force[i], reaction.velocity[i], reaction.position[i]}, dt);
-        taken.flow += booked.flow;
-        if (booked.flow > most) {
-            most = booked.flow;
-            taken.axis = i;
-        }
-        step.direction[i] = booked.travel;
-        step.elastic += booked.elastic;
-        step.other_work += booked.other;
-        step.residual = std::max(step.residual, booked.residual);
-        taken.error += booked.error;
-        taken.at_bound[i] = booked.at_bound;
-        if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
-        if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
-    }
-    const Scalar misdirected = off_normal_work(surface_, reaction.force, step.direction, taken.flow);
-    taken.error.flow = std::max(taken.error.flow, misdirected);
-    if (brittle(reaction.force)) {
-        snap(step, taken, reaction, dt);
-    } else {
-        flow(step, taken, reaction, dt);
-    }
-    settle(state_, step,
-           StepEnd<Scalar, Vector>{.start = start_,
-                                   .velocity = reaction.velocity,
-                                   .force = taken.force,
-                                   .start_speed = numeric::largest(start_),
-                                   .absolute_residual = parameters_.absolute_residual,
-                                   .allowed_residual = allowed_residual(reaction.velocity),
-                                   .error = taken.error,
-                                   .strength = first_strength_ * grown_,
-                                   .largest_force = upper_.cwiseMax(-lower_),
-                                   .allowed_step_error = parameters_.allowed_step_error,
-                                   .dt = dt,
-                                   .at_bound = taken.at_bound.any()},
-           [this]() noexcept { return least_travel(); });
-    return step;
-}
-
 } // namespace ductile
+
+#include "ductile/joint/coupled_joint.ipp" // IWYU pragma: export

@@ -38,7 +38,7 @@ struct OpenRow {
     S noise;             ///< speed below which nothing moves [m/s | rad/s]
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
-    S predicted;          ///< as RowStep's [m/s | rad/s]
+    S predicted;         ///< as RowStep's [m/s | rad/s]
     bool midway;         ///< as RowStep's
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
@@ -78,6 +78,37 @@ struct OpenRow {
         if (booked.travel != 0) {
             booked.flow = (1 - implicit) * slipped + implicit * std::max(rest, S(0));
         }
+        booked.other = rest - booked.flow;
+        booked.error = error_of(booked, f, travel, dt);
+        return booked;
+    }
+
+    /// The same where the solver met the surface. `flows`: the forces are on it; `residual`: of the
+    /// velocity beyond u' + C f dt = b, what is not along the normal [m/s | rad/s].
+    [[nodiscard]] RowBooking<S> book_on_surface(const Reaction<S>& reaction, S dt, bool flows,
+                                                S residual) const noexcept {
+        const S f = reaction.force;
+        const S travel = (start + reaction.velocity) / 2 * dt;
+        const S work = -f * travel;
+        RowBooking<S> booked;
+        booked.at_bound = flows;
+        booked.residual = residual;
+        if (stiffness == std::numeric_limits<S>::infinity()) {
+            const bool stops = !flows && work > 0 && may_stop;
+            (flows || stops ? booked.flow : booked.other) = work;
+            booked.travel = flows || stops ? travel : S(0);
+            booked.moved = flows || stops;
+            if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
+            return booked;
+        }
+        // f = -k (q_e + θ u' dt - Δ), the spring's part of it at the end of the step
+        const S trial = reaction.position - offset;
+        booked.travel = flows ? elastic + implicit * reaction.velocity * dt + f / stiffness : S(0);
+        const S strained = trial - booked.travel;
+        booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
+        const S rest = work - booked.elastic;
+        const S slipped = -f * booked.travel;
+        if (flows) booked.flow = (1 - implicit) * slipped + implicit * rest;
         booked.other = rest - booked.flow;
         booked.error = error_of(booked, f, travel, dt);
         return booked;

@@ -20,7 +20,8 @@ template <std::floating_point S, int N>
 struct CoupledMotion {
     Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u [m/s | rad/s]
-    /// M, symmetric, positive definite [kg | kg m²]; only its error by factors spoils the prediction
+    /// M, symmetric, positive definite [kg | kg m²]; only its error by factors spoils the
+    /// prediction
     Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
     bool midway = false; ///< as Motion's
 };
@@ -31,6 +32,7 @@ struct CoupledReaction {
     Eigen::Matrix<S, N, 1> force = Eigen::Matrix<S, N, 1>::Zero();    ///< λ/dt [N | N m]
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u' [m/s | rad/s]
     Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
+    bool on_surface = false; ///< the solver met the surface itself, not the rows' bounds
 };
 
 /// What one committed step did.
@@ -49,7 +51,8 @@ struct CoupledState : JointTotals<S> {
     Eigen::Matrix<S, N, 1> start_velocity = Eigen::Matrix<S, N, 1>::Zero(); ///< u of the last step
     Eigen::Matrix<S, N, 1> velocity = Eigen::Matrix<S, N, 1>::Zero();       ///< u' of the last step
     CriterionState criterion{};
-    S life = 0; ///< L, share that flow along the axes used up of their largest travel (axis_life.hpp)
+    S life =
+        0; ///< L, share that flow along the axes used up of their largest travel (axis_life.hpp)
     int broken_axis = -1; ///< that did most of the breaking step's plastic work; -1 while intact
 
     bool operator==(const CoupledState&) const = default;
@@ -64,9 +67,14 @@ struct CoupledParameters {
     /// (axis_life.hpp); infinity: never.
     Eigen::Matrix<S, N, 1> largest_travel =
         Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
-    S drift_time = S(0.02);        ///< as OneAxisParameters [s], > 0
-    S absolute_residual = S(1e-3); ///< [m/s | rad/s], > 0
-    S relative_residual = S(1e-2); ///< [-], in [0, 1]
+    /// Elastic stiffness of the member that the joint stands for, for rigid axes too [N/m | N
+    /// m/rad], > 0: by it the joints of a redundant structure share their forces. Infinity: not
+    /// known.
+    Eigen::Matrix<S, N, 1> section_stiffness =
+        Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
+    S drift_time = S(0.02);         ///< as OneAxisParameters [s], > 0
+    S absolute_residual = S(1e-3);  ///< [m/s | rad/s], > 0
+    S relative_residual = S(1e-2);  ///< [-], in [0, 1]
     S allowed_step_error = S(0.04); ///< as OneAxisParameters [-], > 0
     S least_travel = S(2e-3);       ///< as OneAxisParameters, equivalent travel [m | rad], > 0
 
@@ -82,6 +90,8 @@ struct CoupledParameters {
                                         stiffness[i], "N/m or N m/rad");
             check::positive_or_infinite("CoupledJoint.largest_travel[" + std::to_string(i) + "]",
                                         largest_travel[i], "m or rad");
+            check::positive_or_infinite("CoupledJoint.section_stiffness[" + std::to_string(i) + "]",
+                                        section_stiffness[i], "N/m or N m/rad");
         }
         check::positive("CoupledJoint.drift_time", drift_time, "s");
         check::positive("CoupledJoint.absolute_residual", absolute_residual, "m/s or rad/s");

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -69,6 +70,11 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     void restore(const State& state) noexcept {
         joint_.restore(state.joint);
         pose_.set_rest(state.rest);
+        if constexpr (one_axis) {
+            force_ = from_joint(JointVector::Constant(state.joint.force));
+        } else {
+            force_ = from_joint(state.joint.force);
+        }
     }
 
     [[nodiscard]] std::span<const JointAxis> axes() const noexcept override { return axes_; }
@@ -85,6 +91,26 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         } else {
             return joint_.utilisation();
         }
+    }
+    [[nodiscard]] Vector6<S> section_stiffness() const noexcept override {
+        Vector6<S> result = Vector6<S>::Constant(std::numeric_limits<S>::infinity());
+        for (int k = 0; k < dimension; ++k) {
+            S& of_axis = result[Eigen::Index(index(axes_[std::size_t(k)]))];
+            if constexpr (one_axis) {
+                of_axis = joint_.parameters().stiffness;
+            } else {
+                of_axis = std::min(joint_.parameters().stiffness[k],
+                                   joint_.parameters().section_stiffness[k]);
+            }
+        }
+        return result;
+    }
+    [[nodiscard]] Vector6<S> ellipsoid() const noexcept override {
+        if constexpr (requires { joint_.surface().capacity(); }) {
+            if (joint_.state().broken) return Vector6<S>::Zero();
+            return from_joint(joint_.surface().capacity() * joint_.reach());
+        }
+        return Vector6<S>::Zero();
     }
 
   private:
@@ -212,8 +238,9 @@ void Link<Joint>::commit_joint(const Vector6<S>& velocity, const BodyState<S>& a
         const auto i = Eigen::Index(axis);
         last_ = joint_.commit({force_[i], velocity[i], strain_along(axis) + offset_[0]}, dt);
     } else {
-        last_ =
-            joint_.commit({to_joint(force_), to_joint(velocity), from_rest(this->strain())}, dt);
+        last_ = joint_.commit(
+            {to_joint(force_), to_joint(velocity), from_rest(this->strain()), this->on_surface_},
+            dt);
     }
     JointVector flowed = joint_offset();
     bool flows = false;

@@ -66,6 +66,7 @@ template <FullSection T>
     Eigen::Matrix<S, 6, 1> capacity;
     for (int i = 0; i < 6; ++i) {
         capacity[i] = of.capacity[std::size_t(i)];
+        rows.section_stiffness[i] = of.stiffness[std::size_t(i)];
         if (parameters.elastic) rows.stiffness[i] = of.stiffness[std::size_t(i)];
     }
     const S bending = check::positive_or_infinite("SectionJoint.largest_bending",

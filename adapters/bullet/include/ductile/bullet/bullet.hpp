@@ -5,6 +5,9 @@
 
 #include "ductile/bullet/draw.hpp"
 #include "ductile/bullet/energy_meter.hpp"
+#include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/island_rows.hpp"
+#include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/joint_constraint.hpp"
 #include "ductile/bullet/multibody_ball.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"

@@ -90,17 +90,14 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double /*dt*/,
                                                std::vector<MeteredContact>& contacts) const {
-    const bool two_directions =
-        (world_.getSolverInfo().m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) != 0;
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
         const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
         for (int j = 0; j < manifold.getNumContacts(); ++j) {
             const btManifoldPoint& point = manifold.getContactPoint(j);
-            btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1;
-            if (two_directions) {
-                lateral += point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
-            }
+            // the second one is zero where only one direction was solved (front_solver.hpp)
+            const btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                      point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
             contacts.push_back(
                 {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
                  to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),

@@ -51,6 +51,10 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
     [[nodiscard]] DUCTILE_INLINE JointView view() const override;
 
+    DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                  double tick, double erp) override;
+    DUCTILE_INLINE void close_rows(const solve::Island& island) override;
+
     // ---- Bullet's side
 
     /// Bullet's own: called for every constraint when a tick opens.
@@ -80,6 +84,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
         tick,     ///< rows were handed out
         hand_back ///< a break was found by the solver: this tick gives its energy back
     };
+    static constexpr int no_rows = -1;
     struct Reading; ///< what reading Bullet's own rows takes
 
     [[nodiscard]] bool one_axis() const noexcept { return link_.axes().size() == 1; }
@@ -103,7 +108,10 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     // what every pass over the constraints asks for comes first
     Open open_ = Open::nothing;
     Feedback feedback_;
-    btScalar rigid_erp_ = -1;                  ///< negative: the world's
+    int first_row_ = no_rows;                          ///< in the island that is being solved
+    bool told_ = false;                                ///< the island said its forces
+    Vector6<double> forces_ = Vector6<double>::Zero(); ///< these, in the open tick [N | N m]
+    btScalar rigid_erp_ = -1;                          ///< negative: the world's
     double dt_ = 0;                            ///< for which the rows' forces act in the open tick
     double tick_share_ = 1;                    ///< as a share of the tick
     std::array<std::size_t, 6> order_;         ///< axis of each row

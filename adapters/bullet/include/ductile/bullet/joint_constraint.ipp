@@ -58,6 +58,7 @@ DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
 
 DUCTILE_INLINE void JointConstraint::buildJacobian() {
     settle_late(true);
+    told_ = false;
     if (feedback_ == Feedback::all_rows && m_jointFeedback == nullptr &&
         sweeps_of_solver(*this, world_) == nullptr) {
         m_jointFeedback = &reading().feedback;
@@ -95,6 +96,33 @@ DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
         return;
     }
     write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
+}
+
+// ---- an island's side
+
+DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const IslandSeat& a,
+                                               const IslandSeat& b, double tick, double erp) {
+    first_row_ = no_rows;
+    close();
+    if (open_ == Open::hand_back) {
+        add_given_rows(island, a, b, link_.pose(), handed_);
+        return;
+    }
+    if (link_.broken()) return;
+    prepare(tick, erp);
+    first_row_ = add_rows(island, link_, a, b, dt_);
+}
+
+DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island) {
+    if (first_row_ == no_rows) return;
+    forces_ = forces_of(island, first_row_, dt_);
+    told_ = true;
+    internalSetAppliedImpulse(btScalar(forces_[Eigen::Index(order_.back())] * dt_));
+    if (m_jointFeedback == nullptr) return;
+    const LinkPose<double>& pose = link_.pose();
+    write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
+                   scaled(tick_share_, times(pose.axes(), linear(forces_))),
+                   scaled(tick_share_, times(pose.moment_axes(), angular(forces_))));
 }
 
 DUCTILE_INLINE void JointConstraint::setParam(int num, btScalar value, int /*axis*/) {
@@ -170,6 +198,7 @@ DUCTILE_INLINE void JointConstraint::settle(bool late, bool in_solver) {
 // ---- what the solver did
 
 DUCTILE_INLINE Vector6<double> JointConstraint::reaction() {
+    if (told_) return forces_;
     if (is_open()) return reaction_of_own_rows();
     Vector6<double> forces = Vector6<double>::Zero();
     if (feedback_ == Feedback::all_rows && m_jointFeedback != nullptr) {

@@ -31,6 +31,7 @@
 #include <memory>
 
 #include "ductile/bullet/driven_body.hpp"
+#include "ductile/bullet/island_rows.hpp"
 #include "ductile/bullet/joint_view.hpp"
 #include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/bullet/soft_rows.hpp"
@@ -41,8 +42,12 @@
 
 namespace ductile::bullet {
 
+/// Tells a PlasticConstraint from all of Bullet's: none of its own.
+inline constexpr auto plastic_constraint_type = btTypedConstraintType(int(MAX_CONSTRAINT_TYPE) + 1);
+
 /// Everything but the joint.
 class PlasticConstraint : public btTypedConstraint,
+                          public IslandRows,
                           public SoftRows,
                           public SelfSolvedRows,
                           public KeptJoint {
@@ -109,6 +114,13 @@ class PlasticConstraint : public btTypedConstraint,
     std::array<std::unique_ptr<DrivenBody>, 2> driven_; ///< of bodies that are kinematic
     bool parts_bodies_ = false;                         ///< let_go has to be undone by hold_again
 };
+
+/// Null for any other constraint.
+[[nodiscard]] inline PlasticConstraint* as_plastic(btTypedConstraint& constraint) noexcept {
+    return constraint.getConstraintType() == plastic_constraint_type
+               ? static_cast<PlasticConstraint*>(&constraint)
+               : nullptr;
+}
 
 /// At the constraint's own size of drawing (setDbgDrawSize); see draw.hpp.
 void draw(PlasticConstraint& constraint, btIDebugDraw& drawer);

@@ -49,7 +49,7 @@ DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
 
 // no built-in type: Bullet casts by type, e.g. when it draws
 DUCTILE_INLINE PlasticConstraint::PlasticConstraint(btRigidBody& a, btRigidBody& b)
-    : btTypedConstraint(MAX_CONSTRAINT_TYPE, a, b) {
+    : btTypedConstraint(plastic_constraint_type, a, b) {
     require_matching_precision();
     const auto moves = [](const btRigidBody& body) {
         return body.getInvMass() > 0 || body.isKinematicObject();

@@ -50,6 +50,10 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
     [[nodiscard]] DUCTILE_INLINE JointView view() const override;
 
+    DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                  double tick, double erp) override;
+    DUCTILE_INLINE void close_rows(const solve::Island& island) override;
+
     // ---- Bullet's side
 
     void buildJacobian() override { settle(); }
@@ -93,6 +97,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void read_own_row();
     void hand_back();
 
+    static constexpr int no_row = -1;
+
     btHingeConstraint& hinge_;
     AtBreak at_break_;
     bool motor_was_on_;
@@ -102,6 +108,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     double tick_ = 0;               ///< [s]
     double dt_ = 0;                 ///< for which the row's moment acts in it [s]
     bool pending_ = false;
+    double moment_ = 0;     ///< that the island gave it [N m]
+    int row_ = no_row;      ///< in the island that is being solved
     bool restored_ = false; ///< the next position is measured, not compared
 };
 

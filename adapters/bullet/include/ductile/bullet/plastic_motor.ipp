@@ -62,6 +62,7 @@ DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) con
 DUCTILE_INLINE void MotorConstraint::getInfo1(btConstraintInfo1* info) {
     *info = {.m_numConstraintRows = 0, .nub = 0};
     close();
+    row_ = no_row;
     if (world_ == nullptr || !hinge_.isEnabled() || joint_.broken()) return;
     prepare();
     SweepGroup* sweeps = sweeps_of_solver(*this, world_);
@@ -80,6 +81,34 @@ DUCTILE_INLINE void MotorConstraint::getInfo2(btConstraintInfo2* info) {
     write_moment(*info, 0, axis_);
     write_limits(*info, 0, {axis_, true, limits_}, m_rbA, m_rbB, pivot(), compliance_is_exact(),
                  dt_, [this] { return moment_alone(); });
+}
+
+// ---- an island's side
+
+DUCTILE_INLINE void MotorConstraint::open_rows(solve::Island& island, const IslandSeat& a,
+                                               const IslandSeat& b, double /*tick*/,
+                                               double /*erp*/) {
+    row_ = no_row;
+    close();
+    if (world_ == nullptr || !hinge_.isEnabled() || joint_.broken()) return;
+    prepare();
+    const Vector3<double> none = Vector3<double>::Zero();
+    row_ = int(island.rows.size());
+    solve::IslandRow& row = add_row(island, a, b, none, none, none, axis_, limits_.bias);
+    row.compliance = limits_.compliance;
+    row.lower = limits_.lower * dt_;
+    row.upper = limits_.upper * dt_;
+}
+
+DUCTILE_INLINE void MotorConstraint::close_rows(const solve::Island& island) {
+    if (row_ == no_row) return;
+    const double impulse = island.rows[std::size_t(row_)].impulse;
+    internalSetAppliedImpulse(btScalar(impulse));
+    moment_ = impulse / dt_;
+    if (m_jointFeedback == nullptr) return;
+    const Vector3<double> none = Vector3<double>::Zero();
+    write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none,
+                   scaled(impulse / tick_, axis_));
 }
 
 // ---- geometry
@@ -159,6 +188,8 @@ DUCTILE_INLINE void MotorConstraint::settle_tick(bool late) {
     const double speed = turning(a, b);
     force_ = double(internalGetAppliedImpulse()) / dt_;
     if (is_open()) read_own_row();
+    if (row_ != no_row) force_ = moment_;
+    row_ = no_row;
     const double position = measure(a, b, position_ + speed * tick_);
     see_turn(speed, tick_, position);
     position_ = position;

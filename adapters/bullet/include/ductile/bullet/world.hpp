@@ -49,11 +49,16 @@
 
 namespace ductile::bullet {
 
+class FrontHold;
 class SuspectSolver;
 
 struct WorldParameters {
-    EffortParameters effort{};  ///< what is done where the solver did not converge
-    bool ledger = true;         ///< whether the energy account is kept; not with multibodies
+    EffortParameters effort{}; ///< what is done where the solver did not converge
+    bool ledger = true;        ///< whether the energy account is kept; not with multibodies
+    /// Whether islands with a plastic joint are solved at once, joints, contacts and friction
+    /// (front_solver.hpp), whatever the user's solver is; not with multibodies. Friction that
+    /// slides in jammed contacts may be left unsolved, and is told.
+    bool solve_islands = false;
     bool leapfrog = false;      ///< whether positions are of second order in the step
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
@@ -104,6 +109,7 @@ class World final : public SteppedWorld {
 
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<SuspectSolver> suspect_solver_;
+    std::unique_ptr<FrontHold> front_;
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
     std::vector<const PlasticConstraint*> joints_;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ductile/bullet/force_share.hpp"
+#include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/precision_check.hpp"
 #include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/world.hpp"
@@ -53,6 +54,13 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
         require_exchangeable_solver();
         suspect_solver_ = std::make_unique<SuspectSolver>(*world_.getConstraintSolver());
         world_.setConstraintSolver(suspect_solver_.get());
+    }
+    if (parameters.solve_islands) {
+        if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
+            throw std::invalid_argument(
+                "World.solve_islands = true: must not be asked of a btMultiBodyDynamicsWorld");
+        }
+        front_ = std::make_unique<FrontHold>(world_);
     }
     if (parameters.ledger) meter_.emplace(world_);
     if (parameters.leapfrog) {

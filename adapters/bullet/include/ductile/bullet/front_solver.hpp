@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+//
+// Stands before the user's solver: an island with a plastic joint is solved at once
+// (island_solver.hpp), all others go to the user's solver in its order, in one call a group, bit
+// for bit as without.
+//
+// Bullet hands over a group of islands. They are told apart by the island tag of their bodies, by
+// which Bullet has sorted them, or not where islands are not split (setSplitIslands(false)).
+//
+// Thread-safety: `solveGroup` may be called by several threads at once, for different islands, as
+// far as the user's solver allows it (btConstraintSolverPoolMt does).
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btConstraintSolver.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "ductile/bullet/island_solver.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+class FrontSolver final : public btConstraintSolver {
+  public:
+    /// `usual` must outlive this; `owned`: it ends with this, as Bullet's worlds end theirs.
+    FrontSolver(btConstraintSolver& usual, bool owned) : usual_(usual), owned_(owned) {}
+    FrontSolver(const FrontSolver&) = delete;
+    FrontSolver& operator=(const FrontSolver&) = delete;
+    DUCTILE_INLINE ~FrontSolver() override;
+
+    [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
+
+    // ---- Bullet's side
+
+    void prepareSolve(int bodies, int manifolds) override {
+        usual_.prepareSolve(bodies, manifolds);
+    }
+    DUCTILE_INLINE btScalar solveGroup(btCollisionObject** bodies, int body_count,
+                                       btPersistentManifold** manifolds, int manifold_count,
+                                       btTypedConstraint** constraints, int constraint_count,
+                                       const btContactSolverInfo& info, btIDebugDraw* drawer,
+                                       btDispatcher* dispatcher) override;
+    DUCTILE_INLINE void allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+    DUCTILE_INLINE void reset() override;
+    [[nodiscard]] btConstraintSolverType getSolverType() const override {
+        return usual_.getSolverType();
+    }
+
+  private:
+    /// What a call of solveGroup works with.
+    struct Room {
+        std::vector<btCollisionObject*> bodies, sorted_bodies; ///< of islands without; of all
+        std::vector<btPersistentManifold*> manifolds, sorted_manifolds;
+        std::vector<btTypedConstraint*> constraints, sorted_constraints;
+    };
+    /// The solver of an island, by its first plastic joint: it keeps the topology.
+    struct Kept {
+        IslandSolver solver;
+        bool used = true;
+    };
+    btScalar solve_usual(btCollisionObject** bodies, int body_count,
+                         btPersistentManifold** manifolds, int manifold_count,
+                         btTypedConstraint** constraints, int constraint_count,
+                         const btContactSolverInfo& info, btIDebugDraw* drawer,
+                         btDispatcher* dispatcher);
+    [[nodiscard]] std::unique_ptr<Room> borrow();
+    void give_back(std::unique_ptr<Room> room);
+    [[nodiscard]] std::shared_ptr<Kept> solver_of(const btTypedConstraint& first);
+
+    friend class FrontHold;
+
+    btConstraintSolver& usual_;
+    bool owned_;
+    std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
+    std::mutex mutex_; ///< of what follows
+    std::vector<std::unique_ptr<Room>> idle_;
+    std::unordered_map<const btTypedConstraint*, std::shared_ptr<Kept>> kept_;
+};
+
+/// Puts a front before the solver of a world, and takes it away again. Whichever ends first: the
+/// front belongs to the world, which ends it with itself.
+class FrontHold {
+  public:
+    /// @throws std::bad_alloc
+    explicit FrontHold(btDiscreteDynamicsWorld& world);
+    ~FrontHold();
+    FrontHold(const FrontHold&) = delete;
+    FrontHold& operator=(const FrontHold&) = delete;
+
+  private:
+    btDiscreteDynamicsWorld& world_;
+    std::weak_ptr<FrontSolver*> front_; ///< nothing once the world has ended
+};
+
+} // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/front_solver.ipp"
+#endif

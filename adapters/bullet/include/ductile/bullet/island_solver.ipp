@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of island_solver.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/island_solver.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE double limit(btScalar value) noexcept {
+    constexpr double unlimited = 1e9;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (double(value) >= unlimited) return infinity;
+    if (double(value) <= -unlimited) return -infinity;
+    return double(value);
+}
+
+[[nodiscard]] DUCTILE_INLINE bool moves(const btRigidBody* body) noexcept {
+    return body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE btScalar IslandSolver::solveGroup(
+    btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+    int manifold_count, btTypedConstraint** constraints, int constraint_count,
+    const btContactSolverInfo& info, btIDebugDraw* drawer, btDispatcher* dispatcher) {
+    if (has_only_joints(bodies, body_count, manifolds, manifold_count, constraints,
+                        constraint_count)) {
+        solve_joints(bodies, body_count, constraints, constraint_count, info);
+        return 0;
+    }
+    btContactSolverInfo two_directions = info;
+    two_directions.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+    return btSequentialImpulseConstraintSolver::solveGroup(
+        bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
+        two_directions, drawer, dispatcher);
+}
+
+DUCTILE_INLINE bool IslandSolver::has_only_joints(btCollisionObject** bodies, int body_count,
+                                                  btPersistentManifold** manifolds,
+                                                  int manifold_count,
+                                                  btTypedConstraint** constraints,
+                                                  int constraint_count) {
+    return std::none_of(manifolds, manifolds + manifold_count,
+                        [](const auto* manifold) { return manifold->getNumContacts() > 0; }) &&
+           std::all_of(constraints, constraints + constraint_count,
+                       [](auto* constraint) { return as_plastic(*constraint) != nullptr; }) &&
+           std::all_of(bodies, bodies + body_count, [](const auto* object) {
+               const btRigidBody* body = btRigidBody::upcast(object);
+               return body != nullptr &&
+                      (body->getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT) == 0;
+           });
+}
+
+/// Straight from bodies and joints, without Bullet's rows and solver bodies.
+DUCTILE_INLINE void IslandSolver::solve_joints(btCollisionObject** bodies, int body_count,
+                                               btTypedConstraint** constraints,
+                                               int constraint_count,
+                                               const btContactSolverInfo& info) {
+    const auto tick = double(info.m_timeStep);
+    island_.clear();
+    free_.clear();
+    for (int i = 0; i < body_count; ++i) {
+        auto& body = static_cast<btRigidBody&>(*bodies[i]);
+        body.setCompanionId(-1);
+        if (!detail::moves(&body)) continue;
+        body.setCompanionId(int(free_.size()));
+        free_.push_back(free_state(body, tick));
+        add_body(body);
+    }
+    const auto seat_of = [this](const btRigidBody& body) {
+        if (!detail::moves(&body)) return still_seat(body);
+        const int number = body.getCompanionId();
+        const BodyState<double>& free = free_[std::size_t(number)];
+        return IslandSeat{number, free.velocity, free.spin};
+    };
+    plastic_.clear();
+    for (int i = 0; i < constraint_count; ++i) {
+        PlasticConstraint* plastic = as_plastic(*constraints[i]);
+        plastic->buildJacobian();
+        if (!plastic->isEnabled()) continue;
+        plastic_.push_back(plastic);
+        plastic->open_rows(island_, seat_of(plastic->getRigidBodyA()),
+                           seat_of(plastic->getRigidBodyB()), tick, double(info.m_erp));
+    }
+    report_ = solver_.solve(island_);
+    for (int i = 0; i < body_count; ++i) {
+        auto& body = static_cast<btRigidBody&>(*bodies[i]);
+        const int number = body.getCompanionId();
+        if (number < 0) continue;
+        const BodyState<double>& free = free_[std::size_t(number)];
+        const Vector6<double>& change = island_.bodies[std::size_t(number)].velocity;
+        body.setLinearVelocity(to_bullet(sum(free.velocity, linear(change))));
+        body.setAngularVelocity(to_bullet(sum(free.spin, angular(change))));
+        body.setCompanionId(-1);
+    }
+    for (PlasticConstraint* plastic : plastic_) plastic->close_rows(island_);
+}
+
+DUCTILE_INLINE void IslandSolver::convertJoints(btTypedConstraint** constraints, int count,
+                                                const btContactSolverInfo& info) {
+    plastic_.clear();
+    others_.clear();
+    for (int i = 0; i < count; ++i) {
+        PlasticConstraint* plastic = as_plastic(*constraints[i]);
+        if (plastic != nullptr) {
+            plastic->buildJacobian();
+            if (plastic->isEnabled()) plastic_.push_back(plastic);
+        } else {
+            others_.push_back(constraints[i]);
+        }
+    }
+    btSequentialImpulseConstraintSolver::convertJoints(others_.data(), int(others_.size()), info);
+}
+
+DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
+    btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+    int manifold_count, btTypedConstraint** constraints, int constraint_count,
+    const btContactSolverInfo& info, btIDebugDraw* drawer) {
+    island_.clear();
+    read_.clear();
+    load_bodies();
+    load_plastic_joints(info);
+    first_read_ = island_.rows.size();
+    load_rows();
+    load_contacts();
+    report_ = solver_.solve(island_);
+    store();
+    if (info.m_splitImpulse) {
+        solveGroupCacheFriendlySplitImpulseIterations(bodies, body_count, manifolds, manifold_count,
+                                                      constraints, constraint_count, info, drawer);
+    }
+    return 0;
+}
+
+DUCTILE_INLINE void IslandSolver::load_bodies() {
+    number_.assign(std::size_t(m_tmpSolverBodyPool.size()), solve::immovable);
+    for (int i = 0; i < m_tmpSolverBodyPool.size(); ++i) {
+        const btRigidBody* body = m_tmpSolverBodyPool[i].m_originalBody;
+        if (!detail::moves(body)) continue;
+        number_[std::size_t(i)] = int(island_.bodies.size());
+        add_body(*body);
+    }
+}
+
+DUCTILE_INLINE void IslandSolver::add_body(const btRigidBody& body) {
+    const Vector3<double> turns = to_core(body.getAngularFactor());
+    Matrix3<double> inverse_inertia = to_core(body.getInvInertiaTensorWorld());
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) inverse_inertia(r, c) *= turns[r] * turns[c];
+    }
+    island_.bodies.push_back(solve::island_body(
+        scaled(double(body.getInvMass()), to_core(body.getLinearFactor())), inverse_inertia));
+}
+
+DUCTILE_INLINE IslandSeat IslandSolver::still_seat(const btRigidBody& body) {
+    return {.velocity = to_core(body.getLinearVelocity()),
+            .spin = to_core(body.getAngularVelocity())};
+}
+
+/// Where a body of this solve stands in the island, with the velocities that Bullet lets it begin
+/// with.
+DUCTILE_INLINE IslandSeat IslandSolver::seat(btRigidBody& body) const {
+    if (!detail::moves(&body)) return still_seat(body);
+    const int id = body.getCompanionId();
+    const btSolverBody& solver_body = m_tmpSolverBodyPool[id];
+    return {.number = number_[std::size_t(id)],
+            .velocity = to_core(solver_body.m_linearVelocity + solver_body.m_externalForceImpulse),
+            .spin = to_core(solver_body.m_angularVelocity + solver_body.m_externalTorqueImpulse)};
+}
+
+DUCTILE_INLINE void IslandSolver::load_plastic_joints(const btContactSolverInfo& info) {
+    for (PlasticConstraint* plastic : plastic_) {
+        plastic->open_rows(island_, seat(plastic->getRigidBodyA()), seat(plastic->getRigidBodyB()),
+                           double(info.m_timeStep), double(info.m_erp));
+    }
+}
+
+DUCTILE_INLINE solve::IslandRow& IslandSolver::add_row(btSolverConstraint& row) {
+    solve::IslandRow& added = island_.rows.emplace_back();
+    read_.push_back(&row);
+    const double scale = double(row.m_jacDiagABInv);
+    if (!(scale > 0)) {
+        added.lower = added.upper = 0;
+        return added;
+    }
+    added.a = number_[std::size_t(row.m_solverBodyIdA)];
+    added.b = number_[std::size_t(row.m_solverBodyIdB)];
+    if (added.a >= 0) {
+        added.on_a = twist_of(to_core(row.m_contactNormal1), to_core(row.m_relpos1CrossNormal));
+    }
+    if (added.b >= 0) {
+        added.on_b = twist_of(to_core(row.m_contactNormal2), to_core(row.m_relpos2CrossNormal));
+    }
+    added.target = double(row.m_rhs) / scale;
+    added.compliance = double(row.m_cfm) / scale;
+    return added;
+}
+
+DUCTILE_INLINE void IslandSolver::load_rows() {
+    btConstraintArray& pool = m_tmpSolverNonContactConstraintPool;
+    for (int i = 0; i < pool.size(); ++i) {
+        solve::IslandRow& row = add_row(pool[i]);
+        if (!(pool[i].m_jacDiagABInv > 0)) continue;
+        row.lower = detail::limit(pool[i].m_lowerLimit);
+        row.upper = detail::limit(pool[i].m_upperLimit);
+    }
+}
+
+/// A normal row and, after it, its friction rows, sliding and rolling ones, on one cone.
+DUCTILE_INLINE void IslandSolver::load_contacts() {
+    btConstraintArray& contacts = m_tmpSolverContactConstraintPool;
+    int slides = 0, rolls = 0; // in the order of the contacts
+    for (int i = 0; i < contacts.size(); ++i) {
+        const bool dead = !(contacts[i].m_jacDiagABInv > 0);
+        solve::IslandBlock block{.kind = solve::BlockKind::contact,
+                                 .first = int(island_.rows.size())};
+        const auto take = [&](btSolverConstraint& row) -> solve::IslandRow& {
+            solve::IslandRow& added = add_row(row);
+            added.impulse = double(row.m_appliedImpulse);
+            added.softness = solve::contact_softness / double(row.m_jacDiagABInv);
+            ++block.count;
+            return added;
+        };
+        take(contacts[i]);
+        const auto take_friction = [&](btConstraintArray& pool, int& next) {
+            for (; next < pool.size() && pool[next].m_frictionIndex == i; ++next) {
+                // no more than a block holds: sliding comes first, then rolling about the normal
+                if (dead || block.count == 6 || !(pool[next].m_friction > 0)) {
+                    pool[next].m_appliedImpulse = 0;
+                    continue;
+                }
+                block.size[std::size_t(block.count)] = double(pool[next].m_friction);
+                take(pool[next]);
+            }
+        };
+        take_friction(m_tmpSolverContactFrictionConstraintPool, slides);
+        take_friction(m_tmpSolverContactRollingFrictionConstraintPool, rolls);
+        close_contact(block);
+    }
+}
+
+/// Where the solve begins: as the last tick left the contact.
+DUCTILE_INLINE void IslandSolver::close_contact(solve::IslandBlock block) {
+    constexpr double slides = 1 - 1e-6;
+    solve::IslandRow& normal = island_.rows[std::size_t(block.first)];
+    const bool open = !(normal.impulse > 0 || normal.target > 0);
+    if (block.count == 1) {
+        normal.lower = 0;
+        normal.side = open ? solve::Side::lower : solve::Side::free;
+        return;
+    }
+    double square = 0;
+    for (int k = 1; k < block.count; ++k) {
+        const solve::IslandRow& row = island_.rows[std::size_t(block.first + k)];
+        square += std::pow(row.impulse / block.size[std::size_t(k)], 2);
+    }
+    if (open) {
+        block.state = solve::BlockState::apex;
+    } else if (square > 0 && std::sqrt(square) >= slides * normal.impulse) {
+        block.state = solve::BlockState::surface;
+    }
+    island_.blocks.push_back(block);
+}
+
+DUCTILE_INLINE void IslandSolver::store() {
+    for (std::size_t i = 0; i < read_.size(); ++i) {
+        read_[i]->m_appliedImpulse = btScalar(island_.rows[first_read_ + i].impulse);
+    }
+    for (int i = 0; i < m_tmpSolverBodyPool.size(); ++i) {
+        const int number = number_[std::size_t(i)];
+        if (number < 0) continue;
+        const Vector6<double>& change = island_.bodies[std::size_t(number)].velocity;
+        m_tmpSolverBodyPool[i].internalGetDeltaLinearVelocity() = to_bullet(linear(change));
+        m_tmpSolverBodyPool[i].internalGetDeltaAngularVelocity() = to_bullet(angular(change));
+    }
+    for (PlasticConstraint* plastic : plastic_) plastic->close_rows(island_);
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+//
+// The course of a step of coupled_joint.hpp: templates, seen everywhere.
+#pragma once
+
+#include <algorithm>
+
+#include "ductile/joint/coupled_joint.hpp"
+
+namespace ductile {
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
+    -> Rows {
+    start_ = motion.velocity;
+    predicted_ = predict(state_, motion.midway, dt);
+    elastic_ = motion.position - state_.plastic_offset;
+    if (state_.broken) {
+        rows_.fill({.lower = 0, .upper = 0});
+        return rows_;
+    }
+    bound(motion, dt);
+    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
+    return rows_;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt) noexcept
+    -> Step {
+    Step step;
+    if (state_.broken) {
+        step.outcome = Outcome::broken;
+        return step;
+    }
+    Taken taken{.force = reaction.force};
+    Scalar most = 0;
+    const Scalar jump = allowed_residual(start_);
+    const bool flows = surface_.value(reaction.force) >= reach() * (1 - bound_tolerance);
+    const Vector off = reaction.on_surface ? off_normal(reaction, flows, dt) : Vector::Zero();
+    for (int i = 0; i < dimension; ++i) {
+        const OpenRow<Scalar> open = open_row(i, jump);
+        const ductile::Reaction<Scalar> of_row{reaction.force[i], reaction.velocity[i],
+                                               reaction.position[i]};
+        const RowBooking<Scalar> booked = reaction.on_surface
+                                              ? open.book_on_surface(of_row, dt, flows, off[i])
+                                              : open.book(of_row, dt);
+        taken.flow += booked.flow;
+        if (booked.flow > most) {
+            most = booked.flow;
+            taken.axis = i;
+        }
+        step.direction[i] = booked.travel;
+        step.elastic += booked.elastic;
+        step.other_work += booked.other;
+        step.residual = std::max(step.residual, booked.residual);
+        taken.error += booked.error;
+        taken.at_bound[i] = booked.at_bound;
+        if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
+        if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
+    }
+    const Scalar misdirected =
+        off_normal_work(surface_, reaction.force, step.direction, taken.flow);
+    taken.error.flow = std::max(taken.error.flow, misdirected);
+    if (brittle(reaction.force)) {
+        snap(step, taken, reaction, dt);
+    } else {
+        flow(step, taken, reaction, dt);
+    }
+    settle(state_, step,
+           StepEnd<Scalar, Vector>{.start = start_,
+                                   .velocity = reaction.velocity,
+                                   .force = taken.force,
+                                   .start_speed = numeric::largest(start_),
+                                   .absolute_residual = parameters_.absolute_residual,
+                                   .allowed_residual = allowed_residual(reaction.velocity),
+                                   .error = taken.error,
+                                   .strength = first_strength_ * grown_,
+                                   .largest_force = upper_.cwiseMax(-lower_),
+                                   .allowed_step_error = parameters_.allowed_step_error,
+                                   .dt = dt,
+                                   .at_bound = taken.at_bound.any()},
+           [this]() noexcept { return least_travel(); });
+    return step;
+}
+
+} // namespace ductile

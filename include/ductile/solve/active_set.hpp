@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+//
+// The fast way through an island: guess which rows are at their bounds and which blocks are on
+// their surface, solve what is left exactly, look again.
+//
+//   round   rows at a bound: x = bound; blocks on their surface: x there
+//           Newton on the rest, with one factorisation as long as it converges by a tenth a step
+//           each row and block looks where it belongs; those that are wrong change over
+//           contacts that slide take the slip of now for their shift (contact_form.hpp),
+//           accelerated
+//
+// Where a row belongs. In the metric d = J M⁻¹ Jᵀ + C of its own the answer is a projection,
+// x = Π(x + r/d), r = b - J v - C x: inside where x + r/d is inside, at the bound or on the surface
+// otherwise. A block that comes to its surface starts from there.
+//
+// From the sides of the last step it takes one round where nothing changed. It may go in circles,
+// where many rows change over together: then the rounds end, and interior_point.hpp has the word.
+//
+// Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
+#pragma once
+
+#include <vector>
+
+#include "ductile/numeric/anderson.hpp"
+#include "ductile/solve/island_system.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::solve {
+
+/// Not thread-safe. Keeps room between solves.
+class ActiveSet {
+  public:
+    struct Limits {
+        int rounds = 30;  ///< at most
+        int patience = 3; ///< rounds that may pass without fewer rows in the wrong place
+    };
+
+    /// From the sides, impulses and multipliers in the island. True where each row is where it
+    /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
+    /// them.
+    [[nodiscard]] bool solve(IslandSystem& system, const Limits& limits);
+
+    [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
+
+  private:
+    void begin();
+    void place();
+    [[nodiscard]] bool solve_free_rows();
+    [[nodiscard]] double set_right_sides();
+    void set_tangents();
+    [[nodiscard]] bool take_step();
+    [[nodiscard]] int change_over();
+    [[nodiscard]] Side where(std::size_t row) const;
+    [[nodiscard]] double read_slips();
+    void shift_contacts();
+
+    IslandSystem* system_ = nullptr;
+    numeric::Anderson slip_;
+    std::vector<double> shifts_, slips_; ///< of contacts, in order
+    int rounds_ = 0;
+};
+
+} // namespace ductile::solve
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/solve/active_set.ipp"
+#endif

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of active_set.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/solve/active_set.hpp"
+#include "ductile/solve/block_form.hpp"
+
+namespace ductile::solve {
+
+namespace detail {
+
+inline constexpr double exactness = 1e-12; ///< of the largest velocity: a row is solved
+inline constexpr double sufficient = 1e-7; ///< the same where round-off allows no more
+inline constexpr double acceptance = 1e-9; ///< of the largest velocity: a row is on the right side
+inline constexpr double settled = 1e-7;    ///< of the largest velocity: a slip has settled
+
+} // namespace detail
+
+DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits) {
+    system_ = &system;
+    rounds_ = 0;
+    begin();
+    int fewest = std::numeric_limits<int>::max(), patience = limits.patience;
+    slip_.restart();
+    while (rounds_ < limits.rounds) {
+        ++rounds_;
+        place();
+        const bool solved = solve_free_rows();
+        const double moved = read_slips(); // before a guess takes the place of what was solved
+        const int wrong = change_over();
+        if (wrong == 0 && moved <= detail::settled * system.scale()) return solved;
+        if (wrong == 0) { // contacts alone have to settle
+            slip_.advance(shifts_, slips_);
+            shift_contacts();
+            continue;
+        }
+        if (solved) shifts_ = slips_;
+        shift_contacts();
+        slip_.restart();
+        if (wrong < fewest) {
+            fewest = wrong;
+            patience = limits.patience;
+        } else if (--patience <= 0) {
+            return false;
+        }
+    }
+    return false;
+}
+
+/// Sides that are none, and what is not known of blocks on their surface.
+DUCTILE_INLINE void ActiveSet::begin() {
+    Island& island = system_->island();
+    for (IslandRow& row : island.rows) {
+        const bool bounded = row.side == Side::lower   ? std::isfinite(row.lower)
+                             : row.side == Side::upper ? std::isfinite(row.upper)
+                                                       : true;
+        if (!bounded) row.side = Side::free;
+    }
+    const auto unknown = [](const IslandBlock& block) {
+        return block.state == BlockState::apex ||
+               (block.state == BlockState::surface && block.multiplier == 0);
+    };
+    shifts_.clear();
+    if (std::any_of(island.blocks.begin(), island.blocks.end(), unknown)) {
+        system_->update_velocities();
+        system_->update_residuals();
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        if (view.on_surface() && view.block.multiplier == 0) {
+            with_form(view, [&view](auto form) { form.guess(view); });
+        }
+        if (view.block.kind != BlockKind::contact) continue;
+        shifts_.push_back(ContactForm::slip(view));
+    }
+    shift_contacts();
+}
+
+DUCTILE_INLINE void ActiveSet::place() {
+    Island& island = system_->island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        IslandRow& row = island.rows[i];
+        if (!system_->alone(i)) continue;
+        if (system_->rows()[i].own == 0) {
+            row.impulse = 0;
+        } else if (row.lower >= row.upper || row.side == Side::lower) {
+            row.impulse = row.lower;
+        } else if (row.side == Side::upper) {
+            row.impulse = row.upper;
+        }
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        with_form(view, [&view](auto form) { form.place(view); });
+    }
+}
+
+DUCTILE_INLINE void ActiveSet::set_tangents() {
+    Island& island = system_->island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        if (!system_->alone(i)) continue;
+        const IslandRow& row = island.rows[i];
+        IslandSystem::Row& work = system_->rows()[i];
+        const bool free = row.side == Side::free && row.lower < row.upper;
+        work.weight = work.own > 0 && free ? 1 / work.compliance : 0;
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        with_form(view, [&view](auto form) { form.set_tangent(view); });
+    }
+}
+
+/// g and e; the worst that is left [m/s | rad/s]. NaN comes through.
+DUCTILE_INLINE double ActiveSet::set_right_sides() {
+    Island& island = system_->island();
+    double worst = 0;
+    const auto see = [&worst](double off) {
+        if (!(off <= worst)) worst = off;
+    };
+    for (IslandSystem::Row& work : system_->rows()) {
+        work.right = work.residual;
+        work.extra = 0;
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        see(with_form(view, [&view](auto form) { return form.set_right(view); }));
+    }
+    for (const IslandSystem::Row& work : system_->rows()) {
+        if (work.weight != 0) see(std::abs(work.right));
+    }
+    return worst;
+}
+
+/// False where a block left its surface.
+DUCTILE_INLINE bool ActiveSet::take_step() {
+    Island& island = system_->island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        island.rows[i].impulse += system_->rows()[i].change;
+    }
+    bool stays = true;
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        if (!with_form(view, [&view](auto form) { return form.take(view); })) stays = false;
+    }
+    return stays;
+}
+
+/// To round-off, with the sides as they are. What the factors were not made for, a surface that a
+/// block moved along, calls for others; round-off does not.
+DUCTILE_INLINE bool ActiveSet::solve_free_rows() {
+    constexpr int steps = 12;
+    constexpr double slow = 0.1, stalled = 0.5;
+    const std::vector<IslandBlock>& blocks = system_->island().blocks;
+    const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
+        return block.state == BlockState::surface;
+    });
+    const double enough = detail::exactness * system_->scale();
+    set_tangents();
+    bool factored = false, stays = true;
+    double worst = 0, before = std::numeric_limits<double>::infinity();
+    for (int step = 0;; ++step) {
+        system_->update_velocities();
+        system_->update_residuals();
+        worst = set_right_sides();
+        if (worst <= enough) return true;
+        if (!stays || step >= steps || std::isnan(worst)) break;
+        if (step > 1 && !curved && worst > stalled * before) break;
+        if (!factored || (curved && !(worst < slow * before))) {
+            set_tangents();
+            static_cast<void>(set_right_sides());
+            if (!system_->factor()) return false;
+            factored = true;
+        }
+        before = worst;
+        system_->step();
+        stays = take_step();
+    }
+    return stays && worst <= detail::sufficient * system_->scale();
+}
+
+DUCTILE_INLINE Side ActiveSet::where(std::size_t i) const {
+    const IslandRow& row = system_->island().rows[i];
+    const IslandSystem::Row& work = system_->rows()[i];
+    if (work.own == 0 || !(row.lower < row.upper)) return row.side;
+    const double least = detail::acceptance * system_->scale();
+    if (row.side == Side::lower) return work.residual > least ? Side::free : Side::lower;
+    if (row.side == Side::upper) return work.residual < -least ? Side::free : Side::upper;
+    double cap = 0;
+    if (std::isfinite(row.lower)) cap = std::abs(row.lower);
+    if (std::isfinite(row.upper)) cap = std::max(cap, std::abs(row.upper));
+    const double slack = 1e-10 * cap + least / work.metric;
+    return row.impulse < row.lower - slack   ? Side::lower
+           : row.impulse > row.upper + slack ? Side::upper
+                                             : Side::free;
+}
+
+DUCTILE_INLINE int ActiveSet::change_over() {
+    Island& island = system_->island();
+    int wrong = 0;
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        if (!system_->alone(i)) continue;
+        const Side side = where(i);
+        wrong += side != island.rows[i].side;
+        island.rows[i].side = side;
+    }
+    const double least = detail::acceptance * system_->scale();
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        wrong += with_form(view, [&](auto form) { return form.change_over(view, least); });
+    }
+    return wrong;
+}
+
+/// The slips of the contacts, of open ones too; the largest that differs from its shift [m/s].
+DUCTILE_INLINE double ActiveSet::read_slips() {
+    slips_.clear();
+    double moved = 0;
+    for (std::size_t k = 0; k < system_->island().blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        if (view.block.kind != BlockKind::contact) continue;
+        const double slip = ContactForm::slip(view);
+        moved = std::max(moved, std::abs(slip - shifts_[slips_.size()]));
+        slips_.push_back(slip);
+    }
+    return moved;
+}
+
+DUCTILE_INLINE void ActiveSet::shift_contacts() {
+    std::size_t next = 0;
+    for (const IslandBlock& block : system_->island().blocks) {
+        if (block.kind != BlockKind::contact) continue;
+        double& shift = shifts_[next++];
+        shift = std::max(shift, 0.0);
+        system_->rows()[std::size_t(block.first)].shift = shift;
+    }
+}
+
+} // namespace ductile::solve

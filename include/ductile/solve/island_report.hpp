@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+//
+// What a solver says of an island.
+#pragma once
+
+namespace ductile::solve {
+
+/// Plain value.
+struct IslandReport {
+    bool solved = true;
+    double residual = 0; ///< worst violation of a row [m/s | rad/s]
+    double scale = 0;    ///< largest velocity that a row asked for [m/s | rad/s]
+    int rounds = 0;      ///< of the active set
+    int factorisations = 0;
+    int interior_points = 0; ///< how often the interior point was asked
+};
+
+/// An answer is solved where its residual is at most this share of `scale` [-].
+inline constexpr double solved_residual = 1e-5;
+
+} // namespace ductile::solve

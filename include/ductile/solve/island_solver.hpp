@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// Solves an island: all rows of joints, contacts and friction at once.
+//
+//   IslandSolver solver;
+//   const IslandReport report = solver.solve(island);   // impulses, sides, velocities: in the
+//   island
+//
+// The answer is that of a convex problem, and unique with the softness of its rows:
+//
+//   minimise 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x,   v = M⁻¹ Jᵀ x,   x within bounds and blocks
+//
+// but for friction, whose slips shift what the normals are asked for (contact_form.hpp). Warm
+// active set first (active_set.hpp); where that does not settle the interior point
+// (interior_point.hpp), polished by the active set. At the end the certificate, of Coulomb's law
+// itself.
+//
+// What is not solved says so, and of the answer, the start and no impulse at all the one is taken
+// that leaves the least energy: where bounds enclose zero an island never gains any, whatever went
+// wrong. Input that is not finite gets no impulse and `solved == false`.
+//
+// Cost: O(bodies + rows) for chains and trees, some n^1.2 for frames. 1 factorisation where no row
+// changes sides.
+#pragma once
+
+#include <vector>
+
+#include "ductile/solve/active_set.hpp"
+#include "ductile/solve/interior_point.hpp"
+#include "ductile/solve/island.hpp"
+#include "ductile/solve/island_report.hpp"
+#include "ductile/solve/island_system.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::solve {
+
+/// Worst violation of a row, with velocities and residuals as they are [m/s | rad/s]: how far each
+/// row or block is from its own optimum, times its own effect. NaN comes through.
+[[nodiscard]] double certificate(IslandSystem& system) noexcept;
+
+/// One per island that lasts: it keeps the topology. Not thread-safe.
+class IslandSolver {
+  public:
+    IslandReport solve(Island& island);
+
+  private:
+    void fall_back(IslandReport& report);
+    void finish(IslandReport& report);
+    void give_up();
+    void put(const std::vector<double>& impulses);
+    void take(std::vector<double>& impulses) const;
+
+    IslandSystem system_;
+    ActiveSet active_set_;
+    InteriorPoint interior_point_;
+    std::vector<double> start_, best_;
+};
+
+} // namespace ductile::solve
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/solve/island_solver.ipp"
+#endif

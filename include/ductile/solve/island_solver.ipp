@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of island_solver.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/solve/block_form.hpp"
+#include "ductile/solve/island_solver.hpp"
+#include "ductile/solve/one_pair.hpp"
+
+namespace ductile::solve {
+
+namespace detail {
+
+/// Into bounds and blocks.
+DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
+    Island& island = system.island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        IslandRow& row = island.rows[i];
+        if (system.rows()[i].own == 0) {
+            row.impulse = 0;
+        } else if (system.alone(i)) {
+            row.impulse = std::min(std::max(row.impulse, row.lower), row.upper);
+        }
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        with_form(view, [&view](auto form) { form.project(view); });
+    }
+}
+
+} // namespace detail
+
+DUCTILE_INLINE double certificate(IslandSystem& system) noexcept {
+    const Island& island = system.island();
+    double worst = 0;
+    const auto see = [&worst](double off) {
+        if (!(off <= worst)) worst = off;
+    };
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        const IslandSystem::Row& work = system.rows()[i];
+        if (!system.alone(i) || work.own == 0) continue;
+        const IslandRow& row = island.rows[i];
+        const double aim = row.impulse + work.residual / work.metric;
+        const double to = aim < row.lower ? row.lower : aim > row.upper ? row.upper : aim;
+        see(std::abs(to - row.impulse) * work.metric);
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        see(with_form(view, [&view](auto form) { return form.off(view); }));
+    }
+    return worst;
+}
+
+DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
+    IslandReport report;
+    if (solve_one_pair(island, report)) return report;
+    system_.open(island);
+    report.scale = system_.scale();
+    if (!std::isfinite(report.scale)) {
+        for (IslandRow& row : island.rows) row.impulse = 0;
+        for (IslandBody& body : island.bodies) body.velocity.setZero();
+        report.solved = false;
+        report.residual = std::numeric_limits<double>::quiet_NaN();
+        return report;
+    }
+    if (report.scale == 0) {
+        for (IslandRow& row : island.rows) row.impulse = 0;
+        for (IslandBlock& block : island.blocks) {
+            block.state = BlockState::inside;
+            block.multiplier = 0;
+        }
+        detail::project_impulses(system_);
+        finish(report);
+        return report;
+    }
+    take(start_);
+    const bool settled = active_set_.solve(system_, {});
+    report.rounds = active_set_.rounds();
+    if (!settled) fall_back(report);
+    finish(report);
+    return report;
+}
+
+/// Interior point with the shifts of contacts as they are, then the active set from there, which
+/// follows their slips. Where that goes in circles once more, again with the shifts that it ended
+/// with.
+DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
+    constexpr int most = 8;
+    for (IslandSystem::Row& row : system_.rows()) row.shift = 0;
+    put(start_);
+    for (int pass = 0; pass < most; ++pass) {
+        interior_point_.solve(system_);
+        ++report.interior_points;
+        take(best_);
+        const double before = certificate(system_);
+        if (active_set_.solve(system_, {})) {
+            report.rounds += active_set_.rounds();
+            return;
+        }
+        report.rounds += active_set_.rounds();
+        system_.update_velocities();
+        system_.update_residuals();
+        if (!(certificate(system_) <= before)) put(best_);
+        if (certificate(system_) <= detail::sufficient * report.scale) return;
+    }
+}
+
+DUCTILE_INLINE void IslandSolver::finish(IslandReport& report) {
+    detail::project_impulses(system_);
+    system_.update_velocities();
+    system_.update_residuals();
+    report.residual = certificate(system_);
+    report.solved = report.residual <= solved_residual * report.scale;
+    if (!report.solved) give_up();
+    report.factorisations = system_.factorisations();
+}
+
+/// Of the answer, the start and nothing the one that leaves the least energy.
+DUCTILE_INLINE void IslandSolver::give_up() {
+    take(best_);
+    double least = system_.energy();
+    for (const bool nothing : {false, true}) {
+        if (nothing) std::fill(start_.begin(), start_.end(), 0.0);
+        put(start_);
+        const double energy = system_.energy();
+        if (!(energy >= least)) {
+            take(best_);
+            least = energy;
+        }
+    }
+    put(best_);
+}
+
+DUCTILE_INLINE void IslandSolver::put(const std::vector<double>& impulses) {
+    std::vector<IslandRow>& rows = system_.island().rows;
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = impulses[i];
+    detail::project_impulses(system_);
+    system_.update_velocities();
+    system_.update_residuals();
+}
+
+DUCTILE_INLINE void IslandSolver::take(std::vector<double>& impulses) const {
+    const std::vector<IslandRow>& rows = system_.island().rows;
+    impulses.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) impulses[i] = rows[i].impulse;
+}
+
+} // namespace ductile::solve

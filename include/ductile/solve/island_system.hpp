@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+//
+// The linear system behind every step of a solve, in body form: one unknown a body and axis,
+// whatever the number of rows.
+//
+//   K dv = Jᵀ (D g + e),   K = M + Jᵀ D J,   dx = D (g - J dv) + e
+//
+// D is the tangent of the rows' answer to a change of their velocity: diagonal, W = 1/C for a row
+// that is free and 0 for one at its bound, and up to two more ranks for a block,
+//
+//   D = W + Σ c t tᵀ,   two terms at most.
+//
+// A redundant structure makes K no worse than its softness (island.hpp), and contacts add no
+// unknown.
+//
+// Derivation. Rows: C dx + J dv = g where free; bodies: M dv = Jᵀ dx; dx from the first put into
+// the second. K is positive definite as D is semidefinite.
+//
+// Source: the form of implicit plasticity in structural mechanics, K = Σ Jᵀ D J with consistent
+// tangents (Simo & Taylor 1985, doi:10.1016/0045-7825(85)90070-2), here with mass in place of the
+// supports.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "ductile/numeric/block_ldlt.hpp"
+#include "ductile/solve/island.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::solve {
+
+/// Not thread-safe. Allocates where an island is larger than those before, or of another topology.
+class IslandSystem {
+  public:
+    /// Of a row.
+    struct Row {
+        double own = 0;        ///< its effect on itself, J M⁻¹ Jᵀ; 0: no body can follow
+        double compliance = 0; ///< C with softness
+        double metric = 0;     ///< own + C
+        double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
+        double residual = 0;   ///< b - shift - J v - C x
+        double weight = 0;     ///< W
+        double right = 0;      ///< g
+        double extra = 0;      ///< e
+        double rest = 0;       ///< g - J dv
+        double change = 0;     ///< dx
+    };
+    /// Of a block.
+    struct Block {
+        struct Term {
+            double coefficient = 0;                              ///< c
+            Vector6<double> direction = Vector6<double>::Zero(); ///< t
+        };
+        std::array<Term, 2> terms;
+        double gap = 0; ///< of a contact, at the last right side [N s]
+        std::size_t run = 0;
+    };
+
+    /// Takes up an island; it must stay where it is until the answer is read.
+    void open(Island& island);
+
+    [[nodiscard]] Island& island() const noexcept { return *island_; }
+    [[nodiscard]] std::vector<Row>& rows() noexcept { return rows_; }
+    [[nodiscard]] std::vector<Block>& blocks() noexcept { return blocks_; }
+    /// True of rows that belong to no block.
+    [[nodiscard]] bool alone(std::size_t row) const noexcept { return block_of_[row] < 0; }
+    /// Largest velocity that a row asks for [m/s | rad/s]; NaN where the input is not finite.
+    [[nodiscard]] double scale() const noexcept { return scale_; }
+    [[nodiscard]] int factorisations() const noexcept { return factorisations_; }
+
+    /// v = M⁻¹ Jᵀ x.
+    void update_velocities() noexcept;
+    /// r = b - J v - C x.
+    void update_residuals() noexcept;
+    /// K from the weights, and its factors. False where it is not positive definite.
+    [[nodiscard]] bool factor() noexcept;
+    /// dx from `right` and `extra`, with the last factors.
+    void step() noexcept;
+
+    /// 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x with the residuals of now [J]: never more than 0 at the
+    /// answer. The bodies' kinetic energy changes by no more than this.
+    [[nodiscard]] double energy() const noexcept;
+
+  private:
+    /// Consecutive rows between the same two bodies.
+    struct Run {
+        std::size_t first = 0, end = 0;
+        int a = immovable, b = immovable;
+        numeric::BlockLdlt::Place place{};
+    };
+    void make_isotropic(const IslandBlock& block) noexcept;
+    void find_runs();
+    void find_pattern();
+
+    Island* island_ = nullptr;
+    std::vector<Row> rows_;
+    std::vector<Block> blocks_;
+    std::vector<int> block_of_;
+    std::vector<Run> runs_;
+    std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
+    numeric::BlockLdlt factors_;
+    std::vector<Vector6<double>> change_; ///< dv
+    double scale_ = 0;
+    int factorisations_ = 0;
+};
+
+} // namespace ductile::solve
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/solve/island_system.ipp"
+#endif

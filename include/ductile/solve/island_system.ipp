@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of island_system.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/solve/island_system.hpp"
+
+namespace ductile::solve {
+
+namespace detail {
+
+/// u += f v
+DUCTILE_INLINE void add_scaled(Vector6<double>& u, double f, const Vector6<double>& v) noexcept {
+    u += f * v;
+}
+
+/// A row's entries on an axis that a body has locked are of no effect.
+DUCTILE_INLINE double own_effect(Vector6<double>& on, const IslandBody& body) noexcept {
+    for (int i = 0; i < 6; ++i) {
+        if (body.inverse_mass(i, i) == 0) on[i] = 0;
+    }
+    return on.dot(body.inverse_mass * on);
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void IslandSystem::open(Island& island) {
+    island_ = &island;
+    factorisations_ = 0;
+    rows_.resize(island.rows.size());
+    blocks_.resize(island.blocks.size());
+    change_.resize(island.bodies.size());
+    find_runs();
+    find_pattern();
+    block_of_.assign(island.rows.size(), -1);
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const IslandBlock& block = island.blocks[k];
+        for (int i = 0; i < block.count; ++i) block_of_[std::size_t(block.first + i)] = int(k);
+    }
+    scale_ = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        IslandRow& given = island.rows[i];
+        Row& row = rows_[i];
+        row = {};
+        if (given.a >= 0) {
+            row.own += detail::own_effect(given.on_a, island.bodies[std::size_t(given.a)]);
+        }
+        if (given.b >= 0) {
+            row.own += detail::own_effect(given.on_b, island.bodies[std::size_t(given.b)]);
+        }
+        const double softness = given.softness > 0 ? given.softness : least_softness * row.own;
+        row.compliance = given.compliance <= softness ? softness : given.compliance; // or NaN
+        row.metric = row.own + row.compliance;
+        const double size =
+            std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
+        if (row.own != 0 && !(size <= scale_)) scale_ = size;
+    }
+    for (const IslandBlock& block : island.blocks) {
+        if (block.kind == BlockKind::contact) make_isotropic(block);
+    }
+}
+
+/// The friction rows of a contact get one compliance and one metric, in shares of their
+/// coefficients.
+DUCTILE_INLINE void IslandSystem::make_isotropic(const IslandBlock& block) noexcept {
+    double compliance = 0, own = 0;
+    for (int i = 1; i < block.count; ++i) {
+        const Row& row = rows_[std::size_t(block.first + i)];
+        const double f = block.size[std::size_t(i)];
+        compliance = std::max(compliance, f * f * row.compliance);
+        own = std::max(own, f * f * row.own);
+    }
+    for (int i = 1; i < block.count; ++i) {
+        Row& row = rows_[std::size_t(block.first + i)];
+        const double f = block.size[std::size_t(i)];
+        row.compliance = compliance / (f * f);
+        row.metric = (own + compliance) / (f * f);
+    }
+}
+
+DUCTILE_INLINE void IslandSystem::find_runs() {
+    runs_.clear();
+    edges_.clear();
+    for (std::size_t i = 0; i < island_->rows.size(); ++i) {
+        const IslandRow& row = island_->rows[i];
+        if (runs_.empty() || runs_.back().a != row.a || runs_.back().b != row.b) {
+            runs_.push_back({.first = i, .end = i, .a = row.a, .b = row.b, .place = {}});
+            if (row.a >= 0 && row.b >= 0)
+                edges_.emplace_back(std::min(row.a, row.b), std::max(row.a, row.b));
+        }
+        runs_.back().end = i + 1;
+    }
+    std::size_t run = 0;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const auto first = std::size_t(island_->blocks[k].first);
+        if (run < runs_.size() && runs_[run].first > first) run = 0;
+        while (run < runs_.size() && runs_[run].end <= first) ++run;
+        blocks_[k] = {};
+        blocks_[k].run = run;
+    }
+}
+
+/// Of the island's own pairs alone, so that an answer does not depend on islands before it.
+DUCTILE_INLINE void IslandSystem::find_pattern() {
+    const int bodies = int(island_->bodies.size());
+    if (edges_ != pattern_ || bodies != factors_.size()) {
+        pattern_ = edges_;
+        std::sort(edges_.begin(), edges_.end());
+        edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+        factors_.set_pattern(bodies, edges_);
+    }
+    for (Run& run : runs_) {
+        if (run.a >= 0 && run.b >= 0) run.place = factors_.place(run.a, run.b);
+    }
+}
+
+DUCTILE_INLINE void IslandSystem::update_velocities() noexcept {
+    std::vector<IslandBody>& bodies = island_->bodies;
+    for (IslandBody& body : bodies) body.velocity.setZero();
+    for (const IslandRow& row : island_->rows) {
+        if (row.impulse == 0) continue;
+        if (row.a >= 0)
+            detail::add_scaled(bodies[std::size_t(row.a)].velocity, row.impulse, row.on_a);
+        if (row.b >= 0)
+            detail::add_scaled(bodies[std::size_t(row.b)].velocity, row.impulse, row.on_b);
+    }
+    for (IslandBody& body : bodies) {
+        const Vector6<double> impulse = body.velocity;
+        body.velocity.noalias() = body.inverse_mass * impulse;
+    }
+}
+
+DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
+    const std::vector<IslandBody>& bodies = island_->bodies;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const IslandRow& row = island_->rows[i];
+        double residual = row.target - rows_[i].shift - rows_[i].compliance * row.impulse;
+        if (row.a >= 0) residual -= row.on_a.dot(bodies[std::size_t(row.a)].velocity);
+        if (row.b >= 0) residual -= row.on_b.dot(bodies[std::size_t(row.b)].velocity);
+        rows_[i].residual = residual;
+    }
+}
+
+DUCTILE_INLINE bool IslandSystem::factor() noexcept {
+    ++factorisations_;
+    factors_.clear();
+    for (std::size_t i = 0; i < island_->bodies.size(); ++i) {
+        factors_.diagonal(int(i)) = island_->bodies[i].mass;
+    }
+    const auto add = [this](const Run& run, double weight, const Vector6<double>& on_a,
+                            const Vector6<double>& on_b) {
+        if (run.a >= 0) factors_.diagonal(run.a).noalias() += (weight * on_a) * on_a.transpose();
+        if (run.b >= 0) factors_.diagonal(run.b).noalias() += (weight * on_b) * on_b.transpose();
+        if (run.a < 0 || run.b < 0) return;
+        const bool turned = run.place.transposed;
+        const Vector6<double>& left = turned ? on_b : on_a;
+        const Vector6<double>& right = turned ? on_a : on_b;
+        factors_.off_diagonal(run.place).noalias() += (weight * left) * right.transpose();
+    };
+    for (const Run& run : runs_) {
+        for (std::size_t i = run.first; i < run.end; ++i) {
+            const double weight = rows_[i].weight;
+            if (weight != 0) add(run, weight, island_->rows[i].on_a, island_->rows[i].on_b);
+        }
+    }
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const IslandBlock& given = island_->blocks[k];
+        for (const Block::Term& term : blocks_[k].terms) {
+            if (term.coefficient == 0) continue;
+            Vector6<double> on_a = Vector6<double>::Zero(), on_b = Vector6<double>::Zero();
+            for (int i = 0; i < given.count; ++i) {
+                const IslandRow& row = island_->rows[std::size_t(given.first + i)];
+                detail::add_scaled(on_a, term.direction[i], row.on_a);
+                detail::add_scaled(on_b, term.direction[i], row.on_b);
+            }
+            add(runs_[blocks_[k].run], term.coefficient, on_a, on_b);
+        }
+    }
+    return factors_.factor();
+}
+
+DUCTILE_INLINE void IslandSystem::step() noexcept {
+    // D g + e, and later D (g - J dv) + e: the same map
+    const auto apply = [this](double Row::*from, double Row::*to) {
+        for (Row& row : rows_) row.*to = row.weight * (row.*from) + row.extra;
+        for (std::size_t k = 0; k < blocks_.size(); ++k) {
+            const IslandBlock& given = island_->blocks[k];
+            for (const Block::Term& term : blocks_[k].terms) {
+                if (term.coefficient == 0) continue;
+                double along = 0;
+                for (int i = 0; i < given.count; ++i) {
+                    along += term.direction[i] * (rows_[std::size_t(given.first + i)].*from);
+                }
+                along *= term.coefficient;
+                for (int i = 0; i < given.count; ++i) {
+                    rows_[std::size_t(given.first + i)].*to += along * term.direction[i];
+                }
+            }
+        }
+    };
+    apply(&Row::right, &Row::change);
+    for (Vector6<double>& change : change_) change.setZero();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const double impulse = rows_[i].change;
+        if (impulse == 0) continue;
+        const IslandRow& row = island_->rows[i];
+        if (row.a >= 0) detail::add_scaled(change_[std::size_t(row.a)], impulse, row.on_a);
+        if (row.b >= 0) detail::add_scaled(change_[std::size_t(row.b)], impulse, row.on_b);
+    }
+    factors_.solve(change_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const IslandRow& row = island_->rows[i];
+        double rest = rows_[i].right;
+        if (row.a >= 0) rest -= row.on_a.dot(change_[std::size_t(row.a)]);
+        if (row.b >= 0) rest -= row.on_b.dot(change_[std::size_t(row.b)]);
+        rows_[i].rest = rest;
+    }
+    apply(&Row::rest, &Row::change);
+}
+
+DUCTILE_INLINE double IslandSystem::energy() const noexcept {
+    double twice = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        twice -= island_->rows[i].impulse *
+                 (island_->rows[i].target + rows_[i].residual + rows_[i].shift);
+    }
+    return twice / 2;
+}
+
+} // namespace ductile::solve

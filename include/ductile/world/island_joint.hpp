@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+//
+// The rows of a joint in an island (solve/island.hpp), whatever the engine: the link's, as its last
+// `prepare` ruled them, and those of contacts.
+//
+// The velocity that a row asks for is its bias less that of the bodies without any row: the
+// engine's velocities with the step's forces applied. Impulses are forces times the step.
+//
+// Where the solve begins. A row that flowed in the last step begins at its bound. That is read from
+// the joint's state, so that a run which goes on from a saved state goes on bit for bit.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/joint/any_link.hpp"
+#include "ductile/solve/island.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile {
+
+/// A body of a row: its number in the island, solve::immovable for what rows cannot move, and its
+/// velocities without them [m/s], [rad/s], world axes.
+struct IslandSeat {
+    int number = solve::immovable;
+    Vector3<double> velocity = Vector3<double>::Zero();
+    Vector3<double> spin = Vector3<double>::Zero();
+};
+
+/// Adds a row of a force along `along` at `arm_a`, `arm_b` from the centres of mass and a moment
+/// about `about`, on A, and the opposite on B; `target`: velocity of A relative to B [m/s | rad/s].
+solve::IslandRow& add_row(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                          const Vector3<double>& arm_a, const Vector3<double>& arm_b,
+                          const Vector3<double>& along, const Vector3<double>& about,
+                          double target);
+
+/// Adds the six rows of the link's last `prepare`, in the order of JointAxis, and the surface that
+/// they share; `dt`: for which their forces act [s]. Returns the first.
+int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a, const IslandSeat& b,
+             double dt);
+
+/// Adds six rows that give `impulse` to A at the joint where it is `pose`, and the opposite to B.
+void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                    const LinkPose<double>& pose, const JointImpulse<double>& impulse);
+
+/// Forces along the axes of the link from six rows that begin with `first` [N | N m].
+[[nodiscard]] Vector6<double> forces_of(const solve::Island& island, int first, double dt) noexcept;
+
+} // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/world/island_joint.ipp"
+#endif

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of island_joint.hpp.
+#pragma once
+
+#include "ductile/world/island_joint.hpp"
+
+namespace ductile {
+
+namespace detail {
+
+/// False where the rows have bounds of their own: another surface, other axes than all six, a
+/// spring whose force the step gives.
+DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& link, int first,
+                                  double dt) {
+    const Vector6<double> semi_axes = link.ellipsoid();
+    solve::IslandBlock block{.first = first, .count = 6};
+    for (int i = 0; i < 6; ++i) {
+        const RowLimits<double>& limits = link.limits()[std::size_t(i)];
+        if (!(semi_axes[i] > 0) || !(limits.lower < limits.upper)) return false;
+        block.size[std::size_t(i)] = semi_axes[i] * dt;
+    }
+    if (link.totals().flowing) {
+        block.state = solve::BlockState::surface;
+        for (int i = 0; i < 6; ++i) {
+            island.rows[std::size_t(first + i)].impulse = link.forces()[i] * dt;
+        }
+    }
+    island.blocks.push_back(block);
+    return true;
+}
+
+/// Rows that flowed in the last step.
+DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link, int first) {
+    constexpr double at_bound = 1 - 1e-5;
+    for (const JointAxis axis : link.axes()) {
+        const RowLimits<double>& limits = link.limits()[index(axis)];
+        const double force = link.forces()[Eigen::Index(index(axis))];
+        solve::IslandRow& row = island.rows[std::size_t(first) + index(axis)];
+        if (force < 0 && force <= at_bound * limits.lower) row.side = solve::Side::lower;
+        if (force > 0 && force >= at_bound * limits.upper) row.side = solve::Side::upper;
+    }
+}
+
+} // namespace detail
+
+DUCTILE_INLINE solve::IslandRow& add_row(solve::Island& island, const IslandSeat& a,
+                                         const IslandSeat& b, const Vector3<double>& arm_a,
+                                         const Vector3<double>& arm_b, const Vector3<double>& along,
+                                         const Vector3<double>& about, double target) {
+    solve::IslandRow& row = island.rows.emplace_back();
+    const Vector6<double> on_a = twist_of(along, sum(cross(arm_a, along), about));
+    const Vector6<double> on_b = twist_of(along, sum(cross(arm_b, along), about));
+    row.a = a.number;
+    row.b = b.number;
+    row.on_a = on_a;
+    row.on_b = -on_b;
+    row.target = target - dot(linear(on_a), a.velocity) - dot(angular(on_a), a.spin) +
+                 dot(linear(on_b), b.velocity) + dot(angular(on_b), b.spin);
+    return row;
+}
+
+DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a,
+                            const IslandSeat& b, double dt) {
+    constexpr double of_section =
+        1e-6; // of the section's own compliance: far below what it strains
+    const int first = int(island.rows.size());
+    const LinkPose<double>& pose = link.pose();
+    const Vector3<double> none = Vector3<double>::Zero();
+    const Vector6<double> stiffness = link.section_stiffness();
+    for (const JointAxis axis : all_joint_axes) {
+        const auto i = Eigen::Index(index(axis));
+        const RowLimits<double>& limits = link.limits()[index(axis)];
+        const Matrix3<double>& directions = turns(axis) ? pose.moment_axes() : pose.axes();
+        const Vector3<double> direction = column(directions, int(i % 3));
+        solve::IslandRow& row =
+            turns(axis)
+                ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
+                : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
+        row.compliance = limits.compliance;
+        row.softness = of_section / (stiffness[i] * dt * dt);
+        row.lower = limits.lower * dt;
+        row.upper = limits.upper * dt;
+    }
+    if (detail::add_ellipsoid(island, link, first, dt)) {
+        link.meet_surface();
+    } else if (link.totals().flowing) {
+        detail::begin_at_bounds(island, link, first);
+    }
+    return first;
+}
+
+DUCTILE_INLINE void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                   const LinkPose<double>& pose,
+                                   const JointImpulse<double>& impulse) {
+    const Vector3<double> none = Vector3<double>::Zero();
+    for (int i = 0; i < 6; ++i) {
+        Vector3<double> unit = none;
+        unit[i % 3] = 1;
+        solve::IslandRow& row =
+            i < 3 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), unit, none, 0)
+                  : add_row(island, a, b, none, none, none, unit, 0);
+        row.lower = row.upper = (i < 3 ? impulse.linear : impulse.angular)[i % 3];
+        row.side = solve::Side::lower;
+    }
+}
+
+DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, int first,
+                                         double dt) noexcept {
+    Vector6<double> forces;
+    for (int i = 0; i < 6; ++i) forces[i] = island.rows[std::size_t(first + i)].impulse / dt;
+    return forces;
+}
+
+} // namespace ductile

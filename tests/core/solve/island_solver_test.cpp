@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "ductile/solve/island_solver.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/solve/islands.hpp"
+#include "reference/boxed_lcp.hpp"
+
+using namespace ductile::solve;
+using ductile::Vector3;
+using ductile::Vector6;
+using islands::add_contact;
+using islands::add_joint;
+using islands::body;
+using islands::push;
+using islands::unit;
+using islands::violation;
+
+namespace {
+
+/// A row between body 0 and the world along x through its centre.
+Island one_row(double mass, double target, double cap) {
+    Island island;
+    island.bodies.push_back(body(mass));
+    IslandRow row;
+    row.a = 0;
+    row.on_a = push(Vector3<double>::Zero(), unit(0));
+    row.target = target;
+    row.upper = cap;
+    row.lower = -cap;
+    island.rows.push_back(row);
+    return island;
+}
+
+} // namespace
+
+TEST_CASE("One row stops its body, or pushes with its bound", "[solve]") {
+    IslandSolver solver;
+    Island held = one_row(2, 3, 100);
+    CHECK(solver.solve(held).solved);
+    CHECK(held.rows[0].impulse == Approx(6).epsilon(2 * least_softness));
+    CHECK(held.bodies[0].velocity[0] == Approx(3).epsilon(2 * least_softness));
+    CHECK(held.rows[0].side == Side::free);
+
+    Island slips = one_row(2, 3, 4);
+    CHECK(solver.solve(slips).solved);
+    CHECK(slips.rows[0].impulse == 4);
+    CHECK(slips.bodies[0].velocity[0] == 2);
+    CHECK(slips.rows[0].side == Side::upper);
+}
+
+TEST_CASE("A block of one axis is a row with bounds", "[solve]") {
+    IslandSolver solver;
+    for (const double cap : {100.0, 4.0}) {
+        Island island = one_row(2, -3, std::numeric_limits<double>::infinity());
+        island.blocks.push_back({.first = 0, .count = 1, .size = {cap}});
+        CHECK(solver.solve(island).solved);
+        CHECK(island.rows[0].impulse == Approx(-std::min(cap, 6.0)).epsilon(1e-8));
+        CHECK((island.blocks[0].state == BlockState::surface) == (cap == 4.0));
+    }
+}
+
+TEST_CASE("A joint between two bodies is solved on its surface, not within its rows' bounds",
+          "[solve]") {
+    Island island;
+    island.bodies = {body(2), body(3)};
+    add_joint(island, 0, 1, {0.3, 0, 0}, {-0.4, 0.1, 0});
+    for (IslandRow& row : island.rows) {
+        row.target = 1;
+        row.lower = -(row.upper = 1e-3); // of a prediction: not read in a block
+    }
+    for (const double cap : {100.0, 0.5}) {
+        Island with = island;
+        with.blocks.push_back({.first = 0, .count = 6, .size = {cap, cap, cap, cap, cap, cap}});
+        IslandSolver solver;
+        const IslandReport report = solver.solve(with);
+        CHECK(report.solved);
+        CHECK(violation(with, islands::system_matrix(with)) <= 1e-7);
+        CHECK((with.blocks[0].state == BlockState::surface) == (cap < 1));
+    }
+}
+
+TEST_CASE("Rows that repeat each other share their force as their compliance says", "[solve]") {
+    Island island = one_row(2, 3, 100);
+    island.rows.push_back(island.rows[0]);
+    island.rows[0].softness = 1e-6;
+    island.rows[1].softness = 3e-6;
+    IslandSolver solver;
+    CHECK(solver.solve(island).solved);
+    CHECK(island.rows[0].impulse == Approx(4.5).epsilon(1e-5));
+    CHECK(island.rows[1].impulse == Approx(1.5).epsilon(1e-5));
+}
+
+TEST_CASE("Boxed rows get the answer of an independent active set", "[solve]") {
+    islands::Random make{std::mt19937(3), 1e-3, 3};
+    for (int repeat = 0; repeat < 60; ++repeat) {
+        Island island = make.island(1 + repeat % 8, false);
+        const Eigen::MatrixXd a = islands::system_matrix(island);
+        Eigen::VectorXd lower(a.rows()), upper(a.rows());
+        for (Eigen::Index i = 0; i < a.rows(); ++i) {
+            lower[i] = island.rows[std::size_t(i)].lower;
+            upper[i] = island.rows[std::size_t(i)].upper;
+        }
+        ductile::reference::BoxedLcp<double> reference;
+        const Eigen::VectorXd theirs =
+            reference.solve(a, Eigen::VectorXd(-islands::targets(island)), lower, upper);
+        IslandSolver solver;
+        CHECK(solver.solve(island).solved);
+        const Eigen::VectorXd ours = islands::impulses(island);
+        CHECK((ours - theirs).norm() <= 1e-7 * theirs.norm());
+    }
+}
+
+TEST_CASE("Random islands with surfaces, bounds and contacts meet the definition, cold and warm",
+          "[solve]") {
+    for (const double compliance : {1e-2, 1e-5, 1e-8}) {
+        for (const double strength : {1.0, 30.0}) {
+            islands::Random make{std::mt19937(11), compliance, strength};
+            for (int repeat = 0; repeat < 30; ++repeat) {
+                Island island = make.island(1 + repeat, true);
+                const Eigen::MatrixXd a = islands::system_matrix(island);
+                IslandSolver solver;
+                for (const double load : {1.0, 1.1, 0.3}) {
+                    for (IslandRow& row : island.rows) row.target *= load;
+                    const IslandReport report = solver.solve(island);
+                    INFO("compliance " << compliance << ", bodies " << island.bodies.size()
+                                       << ", load " << load);
+                    CHECK(report.solved);
+                    CHECK(violation(island, a) <= 1e-7 * report.scale);
+                    CHECK(islands::energy(island, a) <= 0);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("The interior point and the active set agree", "[solve]") {
+    islands::Random make{std::mt19937(5), 1e-4, 5};
+    for (int repeat = 0; repeat < 30; ++repeat) {
+        Island island = make.island(1 + repeat, true);
+        Island other = island;
+        IslandSolver solver;
+        CHECK(solver.solve(island).solved);
+        IslandSystem system;
+        system.open(other);
+        InteriorPoint interior;
+        interior.solve(system);
+        CHECK(interior.iterations() <= 30);
+        double largest = 0, apart = 0;
+        for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+            const Vector6<double>& v = island.bodies[i].velocity;
+            largest = std::max(largest, v.cwiseAbs().maxCoeff());
+            apart = std::max(apart, (v - other.bodies[i].velocity).cwiseAbs().maxCoeff());
+        }
+        CHECK(apart <=
+              1e-3 * largest); // the products cancel in the slack of a block from some 1e-6 on
+    }
+}
+
+TEST_CASE("Friction in random islands: solved means Coulomb's cone with the normals of the answer",
+          "[solve]") {
+    islands::Random make{std::mt19937(23), 1e-4, 10};
+    int solved = 0, asked = 0;
+    for (int repeat = 0; repeat < 60; ++repeat) {
+        Island island = make.island(1 + repeat % 12, true, true);
+        const Eigen::MatrixXd a = islands::system_matrix(island);
+        IslandSolver solver;
+        const IslandReport report = solver.solve(island);
+        ++asked;
+        CHECK(islands::energy(island, a) <= 1e-12);
+        if (!report.solved) continue;
+        ++solved;
+        CHECK(violation(island, a) <= 1e-4 * report.scale);
+    }
+    CHECK(solved == asked); // Coulomb's law does not always have an answer: these have
+}
+
+TEST_CASE("A box on a slope holds below the angle of friction and slides as the formula says above",
+          "[solve]") {
+    constexpr double mass = 10, friction = 0.5, g = 9.81, dt = 1.0 / 60;
+    constexpr int steps = 120;
+    for (const double of_slope : {0.99, 1.01, 1.1, 2.0}) {
+        const double angle = std::atan(of_slope * friction);
+        Island island;
+        island.bodies.push_back(body(mass));
+        for (const double x : {-0.5, 0.5}) {
+            for (const double y : {-0.5, 0.5}) {
+                add_contact(island, 0, immovable, {x, y, -0.1}, {0, 0, 0}, friction);
+            }
+        }
+        Vector6<double> v = Vector6<double>::Zero();
+        double slid = 0;
+        IslandSolver solver;
+        int interior = 0;
+        for (int step = 0; step < steps; ++step) {
+            v[0] += g * std::sin(angle) * dt;
+            v[2] -= g * std::cos(angle) * dt;
+            for (IslandRow& row : island.rows) row.target = -row.on_a.dot(v);
+            const IslandReport report = solver.solve(island);
+            REQUIRE(report.solved);
+            interior += report.interior_points;
+            v += island.bodies[0].velocity;
+            slid += v[0] * dt;
+        }
+        const double rate = std::max(0.0, g * (std::sin(angle) - friction * std::cos(angle)));
+        // the velocity at the end of a step acts for all of it
+        CHECK(slid == Approx(rate * dt * dt * steps * (steps + 1) / 2).margin(1e-5));
+        CHECK(interior == 0);
+    }
+}
+
+TEST_CASE("Friction is a disc: pushed at any angle a box slides at the same force", "[solve]") {
+    for (const double angle : {0.0, 0.3, M_PI / 4, 1.2}) {
+        Island island;
+        island.bodies.push_back(body(10));
+        add_contact(island, 0, immovable, {0, 0, 0}, {0, 0, 0}, 0.5);
+        island.rows[0].target = 2; // it falls at 2 m/s
+        island.rows[1].target = -7 * std::cos(angle);
+        island.rows[2].target = -7 * std::sin(angle);
+        IslandSolver solver;
+        CHECK(solver.solve(island).solved);
+        CHECK(island.rows[0].impulse == Approx(20).epsilon(1e-5));
+        CHECK(island.rows[1].impulse == Approx(-10 * std::cos(angle)).margin(1e-4));
+        CHECK(island.rows[2].impulse == Approx(-10 * std::sin(angle)).margin(1e-4));
+    }
+}
+
+TEST_CASE("A long chain of joints and a mass ratio of a million are solved to the same accuracy",
+          "[solve]") {
+    for (const int bodies : {10, 1000}) {
+        Island island;
+        for (int i = 0; i < bodies; ++i) island.bodies.push_back(body(i + 1 == bodies ? 1e6 : 1));
+        for (int i = 0; i < bodies; ++i) {
+            const int first = add_joint(island, i, i - 1, {-0.5, 0, 0}, {0.5, 0, 0});
+            for (int k = 0; k < 6; ++k) island.rows[std::size_t(first + k)].target = k == 2 ? 1 : 0;
+        }
+        IslandSolver solver;
+        const IslandReport report = solver.solve(island);
+        CHECK(report.solved);
+        CHECK(report.factorisations == 1);
+        CHECK(report.residual <= 1e-7);
+    }
+}
+
+TEST_CASE("What is not finite gets no impulse and is not called solved", "[solve]") {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinity, -infinity}) {
+        for (const int where : {0, 1, 2, 3}) {
+            Island island = one_row(2, 3, 4);
+            if (where == 0) island.rows[0].target = bad;
+            if (where == 1) island.rows[0].on_a[0] = bad;
+            if (where == 2) island.rows[0].compliance = std::abs(bad);
+            if (where == 3) island.bodies[0].inverse_mass(0, 0) = bad;
+            IslandSolver solver;
+            const IslandReport report = solver.solve(island);
+            INFO("where " << where << ", " << bad);
+            CHECK_FALSE(report.solved);
+            CHECK(island.rows[0].impulse == 0);
+            CHECK(island.bodies[0].velocity.isZero());
+        }
+    }
+}
+
+TEST_CASE("A locked axis does not move and pushes nobody", "[solve]") {
+    Island island;
+    island.bodies.push_back(island_body({0, 0.5, 0.5}, ductile::Matrix3<double>::Zero()));
+    add_joint(island, 0, immovable, {0, 0, 1}, {0, 0, 0});
+    for (IslandRow& row : island.rows) row.target = 1;
+    IslandSolver solver;
+    CHECK(solver.solve(island).solved);
+    CHECK(island.rows[0].impulse == 0);
+    CHECK(island.rows[3].impulse == 0);
+    CHECK(island.rows[1].impulse == Approx(2).epsilon(1e-8));
+    CHECK(island.bodies[0].velocity[0] == 0);
+    CHECK(island.bodies[0].velocity[3] == 0);
+}
+
+TEST_CASE("Rows that contradict each other meet in the middle and gain no energy", "[solve]") {
+    Island island = one_row(2, 3, 1e12);
+    island.rows.push_back(island.rows[0]);
+    island.rows[1].target = -1;
+    island.rows[0].softness = island.rows[1].softness = 1e-9;
+    IslandSolver solver;
+    static_cast<void>(solver.solve(island));
+    CHECK(island.bodies[0].velocity[0] == Approx(1).epsilon(1e-6));
+    CHECK(islands::energy(island, islands::system_matrix(island)) <= 0);
+}
+
+TEST_CASE("Nothing asked, nothing done", "[solve]") {
+    Island island = one_row(2, 0, 4);
+    island.rows[0].impulse = 1;
+    IslandSolver solver;
+    const IslandReport report = solver.solve(island);
+    CHECK(report.solved);
+    CHECK(island.rows[0].impulse == 0);
+    Island empty;
+    CHECK(solver.solve(empty).solved);
+}
+
+TEST_CASE("A solver gives the same bits again", "[solve]") {
+    islands::Random make{std::mt19937(9), 1e-5, 5};
+    const Island given = make.island(20, true, true);
+    Island first = given, second = given;
+    IslandSolver fresh, used;
+    Island another = make.island(7, true);
+    static_cast<void>(used.solve(another));
+    static_cast<void>(fresh.solve(first));
+    static_cast<void>(used.solve(second));
+    for (std::size_t i = 0; i < first.rows.size(); ++i) {
+        CHECK(first.rows[i].impulse == second.rows[i].impulse);
+    }
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+//
+// Islands for tests of the solver, and the conditions of the answer written down once more, dense
+// and from the definition, without a line of the solver.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "ductile/solve/island.hpp"
+
+namespace islands {
+
+using ductile::Matrix3;
+using ductile::Vector3;
+using ductile::Vector6;
+using namespace ductile::solve;
+
+inline IslandBody body(double mass, double gyration = 0.4) {
+    return island_body(Vector3<double>::Constant(1 / mass),
+                       Matrix3<double>::Identity() / (mass * gyration * gyration));
+}
+
+/// Jacobian of a force along `direction` at `arm` from the centre of mass.
+inline Vector6<double> push(const Vector3<double>& arm, const Vector3<double>& direction) {
+    return ductile::twist_of(direction, ductile::cross(arm, direction));
+}
+inline Vector6<double> turn(const Vector3<double>& about) {
+    return ductile::twist_of<double>(Vector3<double>::Zero(), about);
+}
+inline Vector3<double> unit(int axis) {
+    Vector3<double> result = Vector3<double>::Zero();
+    result[axis] = 1;
+    return result;
+}
+
+inline double own_effect(const Island& island, const IslandRow& row) {
+    double own = 0;
+    if (row.a >= 0) own += row.on_a.dot(island.bodies[std::size_t(row.a)].inverse_mass * row.on_a);
+    if (row.b >= 0) own += row.on_b.dot(island.bodies[std::size_t(row.b)].inverse_mass * row.on_b);
+    return own;
+}
+
+/// Six rows at a point: three forces, three moments. Returns the first.
+inline int add_joint(Island& island, int a, int b, const Vector3<double>& arm_a,
+                     const Vector3<double>& arm_b) {
+    const int first = int(island.rows.size());
+    for (int k = 0; k < 6; ++k) {
+        IslandRow row;
+        row.a = a;
+        row.b = b;
+        row.on_a = k < 3 ? push(arm_a, unit(k)) : turn(unit(k - 3));
+        if (b >= 0) row.on_b = -(k < 3 ? push(arm_b, unit(k)) : turn(unit(k - 3)));
+        island.rows.push_back(row);
+    }
+    return first;
+}
+
+/// A contact whose normal is z, with friction where `friction` > 0. Returns the normal row.
+inline int add_contact(Island& island, int a, int b, const Vector3<double>& arm_a,
+                       const Vector3<double>& arm_b, double friction) {
+    const int first = int(island.rows.size());
+    for (const int axis : {2, 0, 1}) {
+        if (axis != 2 && !(friction > 0)) continue;
+        IslandRow row;
+        row.a = a;
+        row.b = b;
+        row.on_a = push(arm_a, unit(axis));
+        if (b >= 0) row.on_b = -push(arm_b, unit(axis));
+        row.softness = contact_softness * own_effect(island, row);
+        if (axis == 2) row.lower = 0;
+        island.rows.push_back(row);
+    }
+    if (friction > 0) {
+        island.blocks.push_back({.kind = BlockKind::contact,
+                                 .first = first,
+                                 .count = 3,
+                                 .size = {0, friction, friction}});
+    }
+    return first;
+}
+
+/// Chains with loops of six-axis joints on ellipsoids, and boxed and one-sided rows between.
+struct Random {
+    std::mt19937 random;
+    double compliance = 1e-6; ///< of a row's own effect
+    double strength = 1;      ///< [N s]
+
+    double uniform() { return std::uniform_real_distribution<double>(0, 1)(random); }
+    double normal() { return std::normal_distribution<double>()(random); }
+    Vector3<double> point() { return {normal() / 2, normal() / 2, normal() / 2}; }
+    double decades(double from, double to) {
+        return std::pow(10.0, from + (to - from) * uniform());
+    }
+
+    Island island(int bodies, bool surfaces, bool friction = false) {
+        Island result;
+        for (int i = 0; i < bodies; ++i)
+            result.bodies.push_back(body(decades(0, 2), 0.2 + uniform()));
+        const double speed = decades(-1, 1);
+        const auto link = [&](int a, int b) {
+            const int first = add_joint(result, a, b, point(), point());
+            IslandBlock block{.first = first, .count = 6};
+            for (int k = 0; k < 6; ++k) {
+                IslandRow& row = result.rows[std::size_t(first + k)];
+                row.target = speed * normal();
+                const double cap = strength * decades(-1, 1);
+                block.size[std::size_t(k)] = cap;
+                if (!surfaces) row.lower = -(row.upper = cap);
+            }
+            if (surfaces) result.blocks.push_back(block);
+        };
+        link(0, immovable);
+        for (int i = 1; i < bodies; ++i) link(i, i - 1);
+        for (int i = 0; i < int(uniform() * bodies); ++i) {
+            const int a = int(uniform() * bodies), b = int(uniform() * bodies);
+            if (a != b) link(a, b);
+        }
+        for (int i = 0; i < bodies; ++i) {
+            const int a = int(uniform() * bodies), b = int(uniform() * (bodies + 1)) - 1;
+            if (a == b) continue;
+            const int first = add_contact(result, a, b, point(), point(), friction ? 0.5 : 0);
+            for (std::size_t k = std::size_t(first); k < result.rows.size(); ++k) {
+                result.rows[k].target = speed * normal();
+            }
+        }
+        for (IslandRow& row : result.rows) {
+            row.compliance = std::max(row.softness, compliance * own_effect(result, row));
+        }
+        for (const IslandBlock& block : result.blocks) { // one compliance for all friction
+            if (block.kind != BlockKind::contact) continue;
+            IslandRow& t1 = result.rows[std::size_t(block.first + 1)];
+            IslandRow& t2 = result.rows[std::size_t(block.first + 2)];
+            t1.compliance = t2.compliance = std::max(t1.compliance, t2.compliance);
+        }
+        return result;
+    }
+};
+
+/// J M⁻¹ Jᵀ + C of all rows.
+inline Eigen::MatrixXd system_matrix(const Island& island) {
+    const auto n = Eigen::Index(island.rows.size());
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
+    const auto entry = [&](const IslandRow& p, const IslandRow& q, int body) {
+        const Vector6<double> zero = Vector6<double>::Zero();
+        const Vector6<double>& left = p.a == body ? p.on_a : p.b == body ? p.on_b : zero;
+        const Vector6<double>& right = q.a == body ? q.on_a : q.b == body ? q.on_b : zero;
+        return left.dot(island.bodies[std::size_t(body)].inverse_mass * right);
+    };
+    for (Eigen::Index i = 0; i < n; ++i) {
+        for (Eigen::Index j = 0; j < n; ++j) {
+            for (int body = 0; body < int(island.bodies.size()); ++body) {
+                a(i, j) += entry(island.rows[std::size_t(i)], island.rows[std::size_t(j)], body);
+            }
+        }
+        a(i, i) += island.rows[std::size_t(i)].compliance;
+    }
+    return a;
+}
+inline Eigen::VectorXd impulses(const Island& island) {
+    Eigen::VectorXd x(Eigen::Index(island.rows.size()));
+    for (std::size_t i = 0; i < island.rows.size(); ++i)
+        x[Eigen::Index(i)] = island.rows[i].impulse;
+    return x;
+}
+inline Eigen::VectorXd targets(const Island& island) {
+    Eigen::VectorXd b(Eigen::Index(island.rows.size()));
+    for (std::size_t i = 0; i < island.rows.size(); ++i) b[Eigen::Index(i)] = island.rows[i].target;
+    return b;
+}
+
+/// Worst violation of the definition in island.hpp, as a velocity: rows by their sign, blocks by
+/// the maximum of dissipation, -w·y <= -w·x for every y of the block.
+inline double violation(const Island& island, const Eigen::MatrixXd& a) {
+    const Eigen::VectorXd x = impulses(island), w = a * x - targets(island);
+    std::vector<bool> in_block(island.rows.size(), false);
+    double worst = 0;
+    for (const IslandBlock& block : island.blocks) {
+        const bool contact = block.kind == BlockKind::contact;
+        const double normal = contact ? x[block.first] : 1;
+        double gauge = 0, met = 0, most = 0, largest = 0;
+        if (contact) { // w_n >= 0, n >= 0, one of them zero
+            const double w_normal = w[block.first], effect = a(block.first, block.first);
+            worst = std::max({worst, -normal * effect, -w_normal});
+            if (normal > 1e-9 / effect) worst = std::max(worst, w_normal);
+        }
+        for (int i = 0; i < block.count; ++i) {
+            const auto at = Eigen::Index(block.first + i);
+            in_block[std::size_t(at)] = true;
+            if (contact && i == 0) continue;
+            const double cap = block.size[std::size_t(i)] * std::max(0.0, normal);
+            if (cap > 0) gauge += std::pow(x[at] / cap, 2);
+            if (!(cap > 0)) worst = std::max(worst, std::abs(x[at]) * a(at, at));
+            met -= w[at] * x[at];
+            most += std::pow(w[at] * cap, 2);
+            largest = std::max(largest, cap);
+        }
+        if (!(largest > 0)) continue;
+        const auto first = Eigen::Index(block.first);
+        worst = std::max(worst, (std::sqrt(gauge) - 1) * largest * a(first, first));
+        // dissipation that was missed, as a velocity
+        worst = std::max(worst, (std::sqrt(most) - met) / largest);
+    }
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        if (in_block[i]) continue;
+        const auto k = Eigen::Index(i);
+        const IslandRow& row = island.rows[i];
+        const double slack = 1e-9 / a(k, k);
+        worst = std::max({worst, (row.lower - x[k]) * a(k, k), (x[k] - row.upper) * a(k, k)});
+        if (x[k] < row.upper - slack) worst = std::max(worst, -w[k]);
+        if (x[k] > row.lower + slack) worst = std::max(worst, w[k]);
+    }
+    return worst;
+}
+
+/// 1/2 xᵀ A x - bᵀ x [J].
+inline double energy(const Island& island, const Eigen::MatrixXd& a) {
+    const Eigen::VectorXd x = impulses(island);
+    return x.dot(a * x) / 2 - targets(island).dot(x);
+}
+
+} // namespace islands
