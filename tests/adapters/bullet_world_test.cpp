@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "adapters/bullet_world.hpp"
+#include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/suspect_solver.hpp"
 #include "support/throws.hpp"
 
@@ -76,6 +77,11 @@ class Beams {
     ~Beams() {
         for (auto& hinge : hinges) hinge->remove_from(dynamics);
         for (auto& body : bodies_) dynamics.removeRigidBody(body.get());
+    }
+    /// Takes the joints away.
+    void leave() {
+        for (auto& hinge : hinges) world->remove(*hinge);
+        hinges.clear();
     }
     [[nodiscard]] std::vector<double> state() {
         std::vector<double> result;
@@ -224,6 +230,97 @@ TEST_CASE("one proxy solver serves several threads at once", "[bullet][world][th
         CHECK(hinge->absorbed_energy() == Approx(99.84).epsilon(single ? 1e-4 : 1e-9));
     }
     CHECK(proxy.fallbacks() == 0);
+    for (std::size_t i = 0; i < worlds.size(); ++i) hinges[i]->remove_from(worlds[i]->world());
+}
+
+TEST_CASE("islands without plastic joints are the same beside a World, bit for bit",
+          "[bullet][world]") {
+    // a heap of loose bodies beside beams that a World looks after
+    const auto heap = [](bool with_beams) {
+        btSequentialImpulseConstraintSolver solver;
+        Beams<btDiscreteDynamicsWorld> beams({.solve_islands = true, .warn = nullptr}, &solver);
+        if (!with_beams) beams.leave();
+        beams.dynamics.setGravity({0, btScalar(-9.81), 0});
+        btBoxShape floor_shape({50, 1, 50}), box({btScalar(0.5), btScalar(0.5), btScalar(0.5)});
+        btRigidBody floor(btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &floor_shape));
+        floor.getWorldTransform().setOrigin({500, -1, 0});
+        beams.dynamics.addRigidBody(&floor);
+        std::vector<std::unique_ptr<btRigidBody>> boxes;
+        std::vector<double> state;
+        for (int i = 0; i < 8; ++i) {
+            btRigidBody::btRigidBodyConstructionInfo info(
+                1, nullptr, &box, btVector3(btScalar(0.2), btScalar(0.2), btScalar(0.2)));
+            info.m_startWorldTransform.setOrigin(
+                {btScalar(500 + 0.1 * i), btScalar(0.6 + 1.1 * i), 0});
+            boxes.push_back(std::make_unique<btRigidBody>(info));
+            beams.dynamics.addRigidBody(boxes.back().get());
+        }
+        for (int i = 0; i < 200; ++i) beams.world->step(1.0 / 60);
+        for (auto& body : boxes) {
+            for (int k = 0; k < 3; ++k) {
+                state.push_back(double(body->getCenterOfMassPosition()[k]));
+                state.push_back(double(body->getAngularVelocity()[k]));
+            }
+            beams.dynamics.removeRigidBody(body.get());
+        }
+        beams.dynamics.removeRigidBody(&floor);
+        return state;
+    };
+    CHECK(heap(true) == heap(false));
+}
+
+TEST_CASE("islands with a plastic joint never reach the user's solver, which is put back",
+          "[bullet][world]") {
+    CountingSolver own;
+    Beams<btDiscreteDynamicsWorld> beams({.solve_islands = true, .warn = nullptr}, &own);
+    CHECK(beams.dynamics.getConstraintSolver() != &own);
+    beams.world->step(1e-3);
+    CHECK(own.solved == 0);
+    beams.world.reset();
+    CHECK(beams.dynamics.getConstraintSolver() == &own);
+}
+
+TEST_CASE("a World and the solver that Bullet's world made itself end in either order",
+          "[bullet][world]") {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    {
+        btDiscreteDynamicsWorld owner(&dispatcher, &broadphase, nullptr, &configuration);
+        btConstraintSolver* made = owner.getConstraintSolver();
+        {
+            bullet::World world(owner, {.solve_islands = true});
+            CHECK(owner.getConstraintSolver() != made);
+        }
+        CHECK(owner.getConstraintSolver() == made);
+    }
+    auto owner = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, nullptr,
+                                                           &configuration);
+    const bullet::World world(*owner, {.solve_islands = true});
+    owner.reset(); // the sanitizers see what is freed twice or not at all
+}
+
+TEST_CASE("one front serves several threads at once", "[bullet][world][threads]") {
+    // as Bullet built with BT_THREADSAFE does it: islands by threads
+    btSequentialImpulseConstraintSolver usual;
+    bullet::FrontSolver front(usual, false);
+    std::array<std::unique_ptr<BulletWorld>, 4> worlds;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    for (auto& world : worlds) {
+        world = std::make_unique<BulletWorld>("si");
+        btRigidBody& body = world->body(1, 2);
+        body.setAngularVelocity({0, 0, 10});
+        hinges.push_back(std::make_unique<Hinge>(body, at(0, 0), joint(64)));
+        hinges.back()->add_to(world->world());
+        world->world().setConstraintSolver(&front);
+    }
+    std::vector<std::thread> threads;
+    for (auto& world : worlds) threads.emplace_back([&world] { world->step(1e-3, 300); });
+    for (auto& thread : threads) thread.join();
+    for (auto& hinge : hinges) {
+        CHECK(hinge->absorbed_energy() == hinges[0]->absorbed_energy());
+        CHECK(hinge->absorbed_energy() == Approx(99.84).epsilon(single ? 1e-4 : 1e-9));
+    }
     for (std::size_t i = 0; i < worlds.size(); ++i) hinges[i]->remove_from(worlds[i]->world());
 }
 
