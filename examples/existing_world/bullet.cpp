@@ -7,7 +7,7 @@
 //
 //   lamp post yielded at 0.001 s
 //   lamp post broke at 0.047 s
-//   took 5892.4 J
+//   took 5867.7 J
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <btBulletDynamicsCommon.h>
 

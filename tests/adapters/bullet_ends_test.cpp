@@ -263,8 +263,8 @@ TEST_CASE("what makes no joint is refused in words", "[bullet][ends]") {
                              const btTransform& in_second) {
         return message_of([&] { Hinge(first, second, in_first, in_second, joint(64)); });
     };
-    // 0.3 m between the halves of the pin, of arms of 0.9 m
-    CHECK(refused(a, b, at(0.5), at(-0.2)).find("axis shear_x, apart by = -0.3") !=
+    // a quarter of a metre between the halves of the pin, of arms of three quarters
+    CHECK(refused(a, b, at(0.5), at(-0.25)).find("axis shear_x, apart by = -0.25") !=
           std::string::npos);
     btTransform across = at(-0.5);
     across.setRotation(btQuaternion(btVector3(0, 1, 0), SIMD_HALF_PI));
