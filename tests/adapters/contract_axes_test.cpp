@@ -10,6 +10,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -479,4 +481,61 @@ TEST_CASE("a joint that turns further in a step than can be followed says so", "
     }
     if (speed < 50) CHECK(six_axes.outcome() == Outcome::yielding);
     if (speed > 300) CHECK(six_axes.outcome() == Outcome::unreliable);
+}
+
+TEST_CASE("rods that stop in one long step absorb together no more than they had", "[contract]") {
+    const auto solver = GENERATE(from_range(Rig::solvers()));
+    const bool elastic = GENERATE(false, true), six_axes = GENERATE(false, true);
+    INFO(solver << (elastic ? ", elastic" : "") << (six_axes ? ", six axes" : ""));
+    Rig rig(solver, none);
+    rig.set_iterations(200);
+    constexpr int rods = 10;
+    const double stiffness = elastic ? 1e8 : infinity;
+    V6 all = V6::Constant(infinity);
+    if (elastic) all << 1e10, 1e10, 1e10, 1e8, 1e8, 1e8;
+    std::vector<Rig::Body> bodies;
+    std::vector<std::function<double()>> absorbed;
+    std::vector<std::function<bool()>> unreliable;
+    V3 joint_velocity = none;
+    for (int i = 0; i < rods; ++i) {
+        const double spin = (i % 2 == 0 ? 1 : -1) * (1 + 0.3 * i);
+        const V3 at(0.2 * i, 0, 0), centre = at + V3(0.1, 0, 0);
+        const Rig::Body before = i == 0 ? Rig::Body(nullptr) : bodies.back();
+        const Rig::Body rod = rig.body(2, sphere(2 * 0.04 / 12), centre,
+                                       joint_velocity + V3(0, 0.1 * spin, 0), {0, 0, spin});
+        bodies.push_back(rod);
+        joint_velocity += V3(0, 0.2 * spin, 0);
+        const auto ask = [&](auto& joint) {
+            absorbed.emplace_back([&joint] { return joint.absorbed_energy(); });
+            unreliable.emplace_back([&joint] { return joint.outcome() == Outcome::unreliable; });
+        };
+        if (six_axes) {
+            V6 capacity;
+            capacity << 1e6, 1e6, 1e6, 400, 400, 400;
+            ask(rig.six_axis(rod, before, Frame{at, M3::Identity()}, six(capacity, infinity, all)));
+        } else {
+            ask(rig.hinge_of(rod, before, at, {0, 0, 1}, one(400, infinity, stiffness)));
+        }
+    }
+    const auto kinetic = [&] {
+        double sum = 0;
+        for (const Rig::Body body : bodies) {
+            sum += Rig::velocity(body).squaredNorm() + Rig::spin(body).squaredNorm() * 0.04 / 12;
+        }
+        return sum;
+    };
+    const double had = kinetic();
+    rig.step(1.0 / 30);
+    double sum = 0;
+    bool reliable = true;
+    for (std::size_t i = 0; i < rods; ++i) {
+        sum += absorbed[i]();
+        reliable = reliable && !unreliable[i]();
+        CHECK(absorbed[i]() >= 0);
+    }
+    if (!reliable) return;
+    const double lost = had - kinetic();
+    CHECK(lost > 0.5 * had);
+    CHECK(sum <= lost * (1 + (Rig::single ? 1e-3 : 1e-6)));
+    CHECK(sum > 0.9 * lost);
 }

@@ -444,6 +444,26 @@ TEST_CASE("a stiff elastic chain bends by moment over stiffness", "[multibody][e
     CHECK(reported);
 }
 
+TEST_CASE("ten uniform rods struck at the tip absorb in one long tick what they had",
+          "[multibody]") {
+    Cantilever beam("mlcp",
+                    {.segments = 10, .length = 2, .mass_per_length = 10, .plastic_moment = 400});
+    beam.strike_tip(2);
+    const double had = beam.kinetic_energy();
+    beam.step(1.0 / 30);
+    double absorbed = 0, claimed = 0;
+    for (int i = 0; i < beam.segments; ++i) {
+        absorbed += beam.hinge(i).absorbed_energy();
+        claimed += std::max(
+            beam.hinge(i).absorbed_energy() + beam.hinge(i).joint().state().other_work, 0.0);
+        CHECK(beam.hinge(i).absorbed_energy() >= 0);
+    }
+    const double lost = had - beam.kinetic_energy();
+    CHECK(lost > 0.9 * had);
+    CHECK(claimed > 1.2 * lost);
+    close(absorbed, lost, 1e-3);
+}
+
 // ---- balls
 // ----------------------------------------------------------------------------------------
 

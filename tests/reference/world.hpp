@@ -17,7 +17,7 @@
 // by moving, not by velocity, so no energy comes in.
 //
 // Work. Supplied energy is counted as load dt · (v + v')/2, as the joints count theirs, so the
-// ledger closes to round-off at any dt.
+// ledger closes to round-off at any dt. All rows share one account (joint/work_share.hpp).
 //
 // Symbols ("x | y": sliding | turning)
 //   M     mass of a degree of freedom, diagonal  [kg | kg m²]
@@ -37,6 +37,7 @@
 #include <vector>
 
 #include "ductile/joint/one_axis_joint.hpp"
+#include "ductile/joint/work_share.hpp"
 #include "ductile/vocabulary/row.hpp"
 #include "reference/boxed_lcp.hpp"
 
@@ -102,11 +103,19 @@ class World {
     /// world.
     template <class Joint>
     std::size_t add_row(const std::vector<Term<S>>& terms, Joint& joint) {
-        rows_.push_back({terms,
-                         [&joint](const Motion<S>& m, S dt) { return joint.prepare(m, dt); },
-                         [&joint](const Reaction<S>& r, S dt) { return joint.commit(r, dt); },
-                         {},
-                         {}});
+        rows_.push_back(
+            {terms,
+             [&joint](const Motion<S>& m, S dt) { return joint.prepare(m, dt); },
+             [&joint, booked = BookedStep<Joint>()](const Reaction<S>& r, S dt, S granted) mutable {
+                 if (granted < 1) {
+                     booked.grant(joint, granted);
+                 } else {
+                     booked.commit(joint, r, dt);
+                 }
+                 return booked.step();
+             },
+             {},
+             {}});
         return rows_.size() - 1;
     }
     /// A plastic hinge that turns with the angle of b less that of a.
@@ -166,7 +175,7 @@ class World {
     struct Row {
         std::vector<Term<S>> terms;
         std::function<RowLimits<S>(const Motion<S>&, S)> prepare;
-        std::function<Step<S>(const Reaction<S>&, S)> commit;
+        std::function<Step<S>(const Reaction<S>&, S dt, S granted)> commit;
         Reaction<S> reaction;
         Step<S> step;
     };
@@ -256,7 +265,14 @@ void World<S>::step(S dt, const Vector<S>& load) {
     for (Eigen::Index i = 0; i < n; ++i) {
         Row& row = rows_[std::size_t(i)];
         row.reaction = {lambda[i] / dt, end_rows[i], end_positions[i]};
-        row.step = row.commit(row.reaction, dt);
+        row.step = row.commit(row.reaction, dt, 1);
+    }
+    WorkShare<S> share;
+    for (const Row& row : rows_) share.add(row.step);
+    for (Row& row : rows_) {
+        if (share.value() < 1 && row.step.claimed > 0) {
+            row.step = row.commit(row.reaction, dt, share.value());
+        }
     }
     for (Eigen::Index i = 0; i < n; ++i) hand_back(i, rows_[std::size_t(i)].step.release);
 }

@@ -110,6 +110,9 @@ class AnyLink {
     const Step<S>& commit_rows(const BodyState<S>& a, const BodyState<S>& b,
                                const Vector6<S>& forces, S dt, S share = 1) noexcept;
 
+    /// Books the step again, for a share of its flow (work_share.hpp).
+    virtual void grant(S share) noexcept = 0;
+
     /// What the bodies must be given back after a break, as they are now; see break_release. Zero
     /// energy: nothing.
     [[nodiscard]] BreakRelease<S> release(const BodyState<S>& a,

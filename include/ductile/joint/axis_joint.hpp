@@ -10,6 +10,7 @@
 
 #include "ductile/fracture/event.hpp"
 #include "ductile/joint/joint_totals.hpp"
+#include "ductile/joint/work_share.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -20,6 +21,8 @@ class AxisJoint {
     [[nodiscard]] virtual RowLimits<double> prepare(const Motion<double>& motion,
                                                     double dt) noexcept = 0;
     virtual const Step<double>& commit(const Reaction<double>& reaction, double dt) noexcept = 0;
+    /// Books the step again, for a share of its flow (work_share.hpp).
+    virtual void grant(double share) noexcept = 0;
     virtual void carry(double velocity) noexcept = 0;
 
     [[nodiscard]] virtual const JointTotals<double>& totals() const noexcept = 0;
@@ -64,14 +67,15 @@ class AxisJointOf final : public AxisJoint {
         return joint_.prepare(motion, dt);
     }
     const Step<double>& commit(const Reaction<double>& reaction, double dt) noexcept override {
-        return last_ = joint_.commit(reaction, dt);
+        return booked_.commit(joint_, reaction, dt);
     }
+    void grant(double share) noexcept override { booked_.grant(joint_, share); }
     void carry(double velocity) noexcept override { joint_.carry(velocity); }
 
     [[nodiscard]] const JointTotals<double>& totals() const noexcept override {
         return joint_.state();
     }
-    [[nodiscard]] const Step<double>& last() const noexcept override { return last_; }
+    [[nodiscard]] const Step<double>& last() const noexcept override { return booked_.step(); }
     [[nodiscard]] std::optional<FractureEvent<double>> fracture() const noexcept override {
         return joint_.fracture();
     }
@@ -99,12 +103,12 @@ class AxisJointOf final : public AxisJoint {
         state.start_velocity = state.velocity = 0;
         state.flowing = false;
         joint_.restore(state);
-        last_ = {};
+        booked_.clear();
     }
 
   private:
     Joint joint_;
-    Step<double> last_;
+    BookedStep<Joint> booked_;
 };
 
 } // namespace ductile

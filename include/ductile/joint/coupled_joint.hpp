@@ -23,11 +23,9 @@
 // Finite rotation: angular entries of q are sums of rotation increments (rotation.hpp), without
 // wrap.
 //
-// Break. Life is counted by p, and by the way along axes that have a limit (axis_life.hpp). A step
-// that would use up more than is left has its bounds lowered before the solve; what it still did in
-// excess is CoupledStep::release, to be handed back along its direction. A criterion's cap on the
-// force bounds the equivalent force γ R(0); where it is met before yield, the joint breaks without
-// flow.
+// Break. Life is counted by p, and by the way along axes that have a limit (axis_life.hpp). Bounds
+// are lowered as those of one axis; excess is CoupledStep::release, along the step's direction. A
+// criterion's cap bounds the equivalent force γ R(0): met before yield, it breaks without flow.
 //
 // Limit cases: one axis is OneAxisJoint; independent axes are as many of them with one life.
 #pragma once
@@ -140,8 +138,9 @@ class CoupledJoint {
     /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
-    /// Books the step that `prepare` opened; same `dt` [s].
-    Step commit(const Reaction& reaction, Scalar dt) noexcept;
+    /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
+    /// (work_share.hpp).
+    Step commit(const Reaction& reaction, Scalar dt, Scalar granted = 1) noexcept;
 
   private:
     /// What all rows together did in a step.

@@ -27,8 +27,8 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt) noexcept
-    -> Step {
+auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
+                                                   Scalar granted) noexcept -> Step {
     Step step;
     if (state_.broken) {
         step.outcome = Outcome::broken;
@@ -46,14 +46,17 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         const RowBooking<Scalar> booked = reaction.on_surface
                                               ? open.book_on_surface(of_row, dt, flows, off[i])
                                               : open.book(of_row, dt);
-        taken.flow += booked.flow;
+        const Scalar share = 1 - implicit_[i] * (1 - granted); // of rows that were solved for
+        taken.flow += share * booked.flow;
+        step.claimed += implicit_[i] * booked.flow;
+        step.unclaimed += booked.travel == 0 ? implicit_[i] * booked.other : Scalar(0);
         if (booked.flow > most) {
             most = booked.flow;
             taken.axis = i;
         }
-        step.direction[i] = booked.travel;
+        step.direction[i] = share * booked.travel;
         step.elastic += booked.elastic;
-        step.other_work += booked.other;
+        step.other_work += booked.other + (1 - share) * booked.flow;
         step.residual = std::max(step.residual, booked.residual);
         taken.error += booked.error;
         taken.at_bound[i] = booked.at_bound;

@@ -22,6 +22,8 @@ struct Step {
     S other_work = 0; ///< solver residual, drift removal, numerical damping; either sign [J]
     S release = 0;    ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
     S lost = 0;       ///< stored energy that a break set free inside the part, >= 0 [J]
+    S claimed = 0;    ///< flow as this joint sees it (work_share.hpp), >= 0 [J]
+    S unclaimed = 0;  ///< work of its rows that did not flow, either sign [J]
     S gained = 0;   ///< given to the bodies beyond all that was taken from them so far, where that
                     ///< is too much to be believed (step_end.hpp), >= 0 [J]
     S residual = 0;   ///< largest violation of a row's complementarity, >= 0 [m/s | rad/s]

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "ductile/joint/any_link.hpp"
+#include "ductile/joint/work_share.hpp"
 
 namespace ductile {
 
@@ -37,7 +38,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
   public:
     using S = typename Joint::Scalar;
     using Axes = std::array<JointAxis, ruled_axes<Joint>>;
-    using JointStep = decltype(std::declval<Joint&>().commit({}, S(0)));
+    using JointStep = typename BookedStep<Joint>::JointStep;
 
     /// Plain value: copy, compare, save and restore it.
     struct State {
@@ -79,7 +80,8 @@ class Link final : public AnyLink<typename Joint::Scalar> {
 
     [[nodiscard]] std::span<const JointAxis> axes() const noexcept override { return axes_; }
     [[nodiscard]] const JointTotals<S>& totals() const noexcept override { return joint_.state(); }
-    [[nodiscard]] const JointStep& last() const noexcept override { return last_; }
+    [[nodiscard]] const JointStep& last() const noexcept override { return booked_.step(); }
+    void grant(S share) noexcept override { booked_.grant(joint_, share); }
     [[nodiscard]] std::optional<FractureEvent<S>> fracture() const noexcept override {
         return joint_.fracture();
     }
@@ -150,7 +152,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         if constexpr (one_axis) {
             return from_joint(JointVector::Constant(1));
         } else {
-            return from_joint(last_.direction);
+            return from_joint(last().direction);
         }
     }
     void take_mass(const Matrix6<S>& k) noexcept override { mass_ = mass_of_rows(k, axes_); }
@@ -168,7 +170,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         }
         state.flowing = false;
         joint_.restore(state);
-        last_ = {};
+        booked_.clear();
     }
 
     // ---- between the joint's rows and the six axes
@@ -211,7 +213,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     Axes axes_;
     JointMatrix mass_ = JointMatrix::Zero();   ///< M, where it is read
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
-    JointStep last_{};
+    BookedStep<Joint> booked_;
 };
 
 template <class Joint>
@@ -236,11 +238,12 @@ void Link<Joint>::commit_joint(const Vector6<S>& velocity, const BodyState<S>& a
     if constexpr (one_axis) {
         const std::size_t axis = index(axes_[0]);
         const auto i = Eigen::Index(axis);
-        last_ = joint_.commit({force_[i], velocity[i], strain_along(axis) + offset_[0]}, dt);
+        booked_.commit(joint_, Reaction<S>{force_[i], velocity[i], strain_along(axis) + offset_[0]},
+                       dt);
     } else {
-        last_ = joint_.commit(
-            {to_joint(force_), to_joint(velocity), from_rest(this->strain()), this->on_surface_},
-            dt);
+        const typename Joint::Reaction reaction{to_joint(force_), to_joint(velocity),
+                                                from_rest(this->strain()), this->on_surface_};
+        booked_.commit(joint_, reaction, dt);
     }
     JointVector flowed = joint_offset();
     bool flows = false;

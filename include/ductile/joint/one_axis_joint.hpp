@@ -19,23 +19,20 @@
 // drift towards q_p; at a bound it slips, which is plastic flow: solved, it is the exact implicit rule.
 //
 // Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what the
-// yield range allows, and the rest of the observed displacement is plastic. k → ∞ is the rigid row.
+// yield range allows; the rest of the observed displacement is plastic. k → ∞ is the rigid row.
 //
-// Account. With v' = v + M⁻¹(Jᵀλ + f_ext dt) the change of kinetic energy is exactly the sum over
-// all rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any dt,
-// where M_p |Δθ| is first order only. Plastic travel is counted by the same rule, so that a break is
-// invariant under the step.
+// Account. With v' = v + M⁻¹(Jᵀλ + f_ext dt) the change of kinetic energy is exactly the sum over all
+// rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any dt, where
+// M_p |Δθ| is first order only. Plastic travel is counted by the same rule: a break is invariant.
 //   Counted as plastic: steps that flow, and the step that brings a flowing (or just now jumped) rigid
 //   row to rest inside the bounds: a force R acting until rest would do the very same work. Everything
-//   else, such as the jitter of a solver below yield, drift being removed or numerical damping, is
-//   booked as `other_work` and never consumes life.
+//   else (jitter below yield, drift removed, numerical damping) is `other_work` and consumes no life.
 //
-// Break at the right energy. If the travel left, r, is less than the step would consume, the bounds
-// are lowered before the solve so that the row does about R r of work. What it did in excess is
-// returned as Step::release, for the adapter to hand back to the two bodies; with it the energy
-// taken is R r at every dt. In isolation u'² = u² - 2 R r / m, exactly. A brittle break, where a cap
-// on the force is reached before yield, absorbs nothing and releases all the work of its step. What
-// was stored in the part is set free inside it: Step::lost.
+// Break at the right energy. If the travel left, r, is less than the step would consume, the bounds are
+// lowered before the solve so that the row does about R r of work. What it did in excess is returned as
+// Step::release, to be handed back to the two bodies: the energy taken is R r at every dt. In isolation
+// u'² = u² - 2 R r / m. A brittle break, where a cap on the force is reached before yield, absorbs
+// nothing and releases all the work of its step. What was stored is set free inside: Step::lost.
 //
 // Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at the
 // lower one. The violation of that is the residual; where it is large the step is unreliable, and so is
@@ -75,6 +72,7 @@ class OneAxisJoint {
     using Cyclic = typename CyclicForm<Law>::type;
     using State = OneAxisState<Scalar, typename Cyclic::State, typename Criterion::State>;
     using Parameters = OneAxisParameters<Scalar>;
+    using Reaction = ductile::Reaction<Scalar>;
 
     /// @throws std::invalid_argument where a parameter is out of range.
     explicit OneAxisJoint(Law law, Criterion criterion = Criterion(), Parameters parameters = {})
@@ -119,8 +117,8 @@ class OneAxisJoint {
     /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept;
 
-    /// Books the step that `prepare` opened; same `dt` [s].
-    Step<Scalar> commit(const Reaction<Scalar>& reaction, Scalar dt) noexcept;
+    /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow (work_share.hpp).
+    Step<Scalar> commit(const Reaction& reaction, Scalar dt, Scalar granted = 1) noexcept;
 
   private:
     using Taken = RowTaken<Scalar>;
@@ -128,9 +126,7 @@ class OneAxisJoint {
     /// A force this close to its bound is at it; wider than the round-off of λ/dt in float.
     static constexpr Scalar bound_tolerance = Scalar(4e-6);
 
-    [[nodiscard]] bool rigid() const noexcept {
-        return parameters_.stiffness == std::numeric_limits<Scalar>::infinity();
-    }
+    [[nodiscard]] bool rigid() const noexcept { return std::isinf(parameters_.stiffness); }
 
     /// True where the force of an elastic row was given, not solved for.
     [[nodiscard]] bool given() const noexcept {
@@ -143,7 +139,6 @@ class OneAxisJoint {
     [[nodiscard]] Scalar cap(Scalar sign) const noexcept {
         return criterion_.force_cap(state_.criterion, sign);
     }
-
     /// The bounds of the row's force for this step.
     void bound(Scalar dt) noexcept {
         const Scalar fading = travel_to_nothing(law_, state_.plastic_travel);
@@ -174,8 +169,7 @@ class OneAxisJoint {
         return parameters_.absolute_residual + parameters_.relative_residual * speed;
     }
 
-    [[nodiscard]] Scalar violation(const Reaction<Scalar>& reaction,
-                                   const Taken& taken) const noexcept {
+    [[nodiscard]] Scalar violation(const Reaction& reaction, const Taken& taken) const noexcept {
         if (given()) return 0;
         const Scalar soft = compliance(taken.dt) * reaction.force * taken.dt;
         const Scalar excess = reaction.velocity + soft - bias_;
@@ -184,9 +178,8 @@ class OneAxisJoint {
         return std::abs(excess);
     }
 
-    [[nodiscard]] StepError<Scalar> error_of(const Step<Scalar>& step,
-                                             const Taken& taken) const noexcept {
-        if (rigid() && !(step.plastic_work > 0)) return {}; // one that holds misplaces nothing
+    [[nodiscard]] auto error_of(const Step<Scalar>& step, const Taken& taken) const noexcept {
+        if (rigid() && !(step.plastic_work > 0)) return StepError<Scalar>{}; // one that holds misplaces nothing
         return step_error<Scalar>({.force = taken.force,
                                    .start = start_,
                                    .travel = taken.travel,
@@ -288,6 +281,9 @@ class OneAxisJoint {
             step.other_work = work;
             return;
         }
+        step.claimed = solved_share() * std::max(work, Scalar(0));
+        const Scalar booked = 1 - solved_share() * (1 - taken.granted);
+        travel *= booked;
         const bool last = uses_up(std::abs(travel), left_);
         if (last) travel = std::copysign(left_, travel);
         const FlowWork<Scalar> done = law_.commit(state_.law, travel);
@@ -296,10 +292,15 @@ class OneAxisJoint {
         state_.plastic_travel += std::abs(travel);
         criterion_.update(state_.criterion,
                           {travel, state_.plastic_travel, taken.force, step.plastic_work, taken.dt});
-        const Scalar rest = work - step.plastic_work - done.stored * fade_;
+        const Scalar rest = booked * work - step.plastic_work - done.stored * fade_;
         state_.broken = last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         if (state_.broken) step.release = std::max(rest, Scalar(0));
-        step.other_work = rest - step.release;
+        step.other_work = rest - step.release + (1 - booked) * work;
+    }
+
+    /// θ; a law that rests by itself has its own account.
+    [[nodiscard]] Scalar solved_share() const noexcept {
+        return rigid() ? Scalar(1) : RestsByItself<Cyclic> ? Scalar(0) : implicit_;
     }
 
     /// Puts time and force of the state to the break, the step being booked as a whole by `settle`.
@@ -353,7 +354,7 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
 
 template <class Law, FractureCriterion Criterion>
     requires CyclicLaw<typename CyclicForm<Law>::type>
-auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scalar dt) noexcept
+auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt, Scalar granted) noexcept
     -> Step<Scalar> {
     Step<Scalar> step;
     if (state_.broken) {
@@ -366,7 +367,8 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scal
                       .position = reaction.position,
                       .dt = dt,
                       .at_upper = reaction.force >= upper_ - tolerance_,
-                      .at_lower = reaction.force <= lower_ + tolerance_};
+                      .at_lower = reaction.force <= lower_ + tolerance_,
+                      .granted = granted};
     step.residual = violation(reaction, taken);
     if (brittle(taken)) {
         snap(step, taken);
@@ -375,6 +377,7 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scal
     } else {
         commit_elastic(step, taken);
     }
+    if (!(step.claimed > 0)) step.unclaimed = solved_share() * step.other_work;
     settle(state_, step,
            StepEnd<Scalar, Scalar>{.start = start_,
                                    .velocity = reaction.velocity,
@@ -389,8 +392,7 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction<Scalar>& reaction, Scal
                                    .dt = dt,
                                    .at_bound = taken.at_bound()},
            [this]() noexcept { return least_travel(); });
-    if (state_.broken) [[unlikely]]
-        place_break(step, taken);
+    if (state_.broken) place_break(step, taken);
     return step;
 }
 

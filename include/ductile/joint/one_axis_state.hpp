@@ -21,6 +21,7 @@ struct RowTaken {
     S position; ///< q after the step [m | rad]
     S dt;       ///< [s]
     bool at_upper, at_lower;
+    S granted; ///< share of the flow's work that is booked
 
     [[nodiscard]] bool at_bound() const noexcept { return at_upper || at_lower; }
 };

@@ -91,9 +91,15 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     /// Opens a tick [s]; `erp`: the world's.
     void prepare(double tick, double erp);
     DUCTILE_INLINE void end_tick() override;
-    /// Commits the open tick some time after it.
+    DUCTILE_INLINE void finish_tick() override;
+    [[nodiscard]] const Step<double>* booked() const noexcept override {
+        return booked_ ? &link_.last() : nullptr;
+    }
+    void grant(double share) noexcept override { link_.grant(share); }
+    /// Commits the open tick, and lets go where that broke the joint, some time after it.
     void settle_late(bool in_solver);
-    void settle(bool late, bool in_solver);
+    void book(bool late);
+    void finish(bool in_solver);
     /// Forces of the six rows on A. With one plastic row its force is exact; the others are as
     /// exact as joint feedback, and zero where that is not read.
     [[nodiscard]] Vector6<double> reaction();
@@ -107,6 +113,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
 
     // what every pass over the constraints asks for comes first
     Open open_ = Open::nothing;
+    bool booked_ = false; ///< and not finished
     Feedback feedback_;
     int first_row_ = no_rows;                          ///< in the island that is being solved
     bool told_ = false;                                ///< the island said its forces

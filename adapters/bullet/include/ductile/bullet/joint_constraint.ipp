@@ -161,12 +161,16 @@ DUCTILE_INLINE void JointConstraint::end_tick() {
     if (open_ == Open::nothing) {
         lose_driven();
     } else {
-        settle(false, false);
+        book(false);
     }
 }
 
+DUCTILE_INLINE void JointConstraint::finish_tick() { finish(false); }
+
 DUCTILE_INLINE void JointConstraint::settle_late(bool in_solver) {
-    if (open_ != Open::nothing) settle(true, in_solver);
+    if (open_ == Open::nothing) return;
+    book(true);
+    finish(in_solver);
 }
 
 DUCTILE_INLINE void JointConstraint::settle() const {
@@ -174,13 +178,18 @@ DUCTILE_INLINE void JointConstraint::settle() const {
     if (open_ != Open::nothing) const_cast<JointConstraint*>(this)->settle_late(false);
 }
 
-DUCTILE_INLINE void JointConstraint::settle(bool late, bool in_solver) {
+DUCTILE_INLINE void JointConstraint::book(bool late) {
     const Open was = std::exchange(open_, Open::nothing);
     if (was == Open::hand_back) let_go();
     if (was != Open::tick) return;
     const Vector6<double> forces = reaction();
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
-    if (link_.commit_rows(a, b, forces, dt_, tick_share_).outcome != Outcome::broken) return;
+    link_.commit_rows(a, b, forces, dt_, tick_share_);
+    booked_ = true;
+}
+
+DUCTILE_INLINE void JointConstraint::finish(bool in_solver) {
+    if (!std::exchange(booked_, false) || !link_.broken()) return;
     const BodyState<double> now_a = body_state(m_rbA), now_b = body_state(m_rbB);
     release_ = link_.release(now_a, now_b);
     if (in_solver && release_.energy > 0) {

@@ -22,6 +22,7 @@
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/joint/coupled_joint.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/joint/work_share.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/numeric/lu.hpp"
 #include "ductile/surface/ellipsoid.hpp"
@@ -65,16 +66,16 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     /// Unreliable where the solver left a row unsolved, or out.
     [[nodiscard]] Outcome outcome() const noexcept {
         const bool believed = !left_out() && !(unseen_turn_ > 0);
-        return believed || broken() ? last_.outcome : Outcome::unreliable;
+        return believed || broken() ? last().outcome : Outcome::unreliable;
     }
     /// Certificate: largest violation of a row in the last tick, and so far [rad/s].
-    [[nodiscard]] double residual() const noexcept { return last_.residual; }
+    [[nodiscard]] double residual() const noexcept { return last().residual; }
     [[nodiscard]] double residual_max() const noexcept { return joint_.state().residual_max; }
 
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
     [[nodiscard]] State state() const noexcept { return {joint_.state(), tracker_}; }
     [[nodiscard]] JointReport<double> report() const noexcept override {
-        auto now = Base::report_of(joint_, last_, outcome());
+        auto now = Base::report_of(joint_, last(), outcome());
         now.unseen_turn = unseen_turn_;
         return now;
     }
@@ -109,15 +110,20 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
         const Vector3<double> missed =
             difference(difference(tracker_.follow(orientation()), before), due);
         unseen_turn_ = turned_otherwise(norm(due), norm(due) + norm(missed)) ? norm(due) : 0;
-        last_ = joint_.commit({force, velocity, tracker_.total}, dt);
-        if (!broken()) return;
-        moment_ = {0, 0, 0};
-        if (last_.release > 0) hand_back(last_.release, last_.direction);
+        booked_.commit(joint_, typename Joint::Reaction{force, velocity, tracker_.total}, dt);
     }
+    [[nodiscard]] const typename BookedStep<Joint>::JointStep& last() const noexcept override {
+        return booked_.step();
+    }
+    void let_go() override {
+        moment_ = {0, 0, 0};
+        if (last().release > 0) hand_back(last().release, last().direction);
+    }
+    void grant(double share) noexcept override { booked_.grant(joint_, share); }
 
     Joint joint_;
     RotationTracker<double> tracker_;
-    typename Joint::Step last_;
+    BookedStep<Joint> booked_;
     double unseen_turn_ = 0; ///< as JointReport's
     Vector3<double> moment_ = Vector3<double>::Zero();
 };

@@ -45,6 +45,7 @@
 #include <limits>
 #include <span>
 
+#include "ductile/bullet/tick_account.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/vocabulary/vector.hpp"
@@ -67,7 +68,9 @@ struct MultiBodyRelease {
 };
 
 /// Base is protected so that nobody adds the constraint to a world without its action.
-class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJoint {
+class MultiBodyPlasticConstraint : protected btMultiBodyConstraint,
+                                   public KeptJoint,
+                                   public TickMember {
   public:
     BT_DECLARE_ALIGNED_ALLOCATOR();
 
@@ -109,6 +112,9 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJ
     virtual void prepare(const Tick& tick, std::span<RowLimits<double>> limits) = 0;
     /// Books the tick; `force` λ/dt [N m], `velocity` u' [rad/s].
     virtual void commit(const Values& force, const Values& velocity, double dt) = 0;
+    /// The tick that was booked last broke the joint.
+    virtual void let_go() = 0;
+    [[nodiscard]] virtual const Step<double>& last() const noexcept = 0;
 
     /// True where Bullet left the rows out of its last tick although the multibody was awake.
     [[nodiscard]] bool left_out() const noexcept { return left_out_; }
@@ -135,7 +141,7 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJ
 
     struct CommitAction final : btActionInterface {
         explicit CommitAction(MultiBodyPlasticConstraint& owner) : owner_(owner) {}
-        void updateAction(btCollisionWorld*, btScalar) override { owner_.settle(); }
+        void updateAction(btCollisionWorld*, btScalar) override { owner_.end_tick_of_world(); }
         void debugDraw(btIDebugDraw*) override {}
         MultiBodyPlasticConstraint& owner_;
     };
@@ -181,8 +187,14 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJ
     /// them.
     void close_row(btMultiBodySolverConstraint& row,
                    const RowLimits<double>& limits) const noexcept;
-    /// End of the tick.
-    void settle();
+    DUCTILE_INLINE void end_tick() override;
+    DUCTILE_INLINE void finish_tick() override;
+    [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;
+    /// Another in the world; null: there is none.
+    [[nodiscard]] static const MultiBodyPlasticConstraint* any_of(btMultiBodyDynamicsWorld& world);
+    [[nodiscard]] const Step<double>* booked() const noexcept override {
+        return unfinished_ ? &last() : nullptr;
+    }
     /// The impulse h Δu with h = (J M⁻¹ Jᵀ)⁻¹ e along e; see ductile::release_impulse. Its work is
     /// impulse · (u + u')/2.
     void apply_release();
@@ -197,6 +209,7 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint, public KeptJ
     MultiBodyRelease release_;
     Values release_direction_{1, 0, 0};
     bool left_out_ = false;
+    bool unfinished_ = false; ///< booked, that is
 };
 
 } // namespace ductile::bullet

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "ductile/bullet/multibody_constraint.hpp"
@@ -59,6 +60,7 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::add_to(btMultiBodyDynamicsWorld&
             "MultiBodyPlasticConstraint.world: must split islands, or Bullet never solves the "
             "joints of multibodies");
     }
+    join_account(any_of(world));
     world.addMultiBodyConstraint(this);
     world.addAction(&action_);
     world_ = &world;
@@ -68,6 +70,7 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::remove_from(btMultiBodyDynamicsW
     world.removeAction(&action_);
     world.removeAction(&release_action_);
     world.removeMultiBodyConstraint(this);
+    leave_account();
     world_ = nullptr;
     phase_ = Phase::idle;
 }
@@ -177,7 +180,25 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::close_row(
     row.m_upperLimit = btScalar(upper * tick_.dt);
 }
 
-DUCTILE_INLINE void MultiBodyPlasticConstraint::settle() {
+DUCTILE_INLINE const MultiBodyPlasticConstraint* MultiBodyPlasticConstraint::any_of(
+    btMultiBodyDynamicsWorld& world) {
+    for (int i = world.getNumMultiBodyConstraints() - 1; i >= 0; --i) {
+        auto* other = dynamic_cast<MultiBodyPlasticConstraint*>(world.getMultiBodyConstraint(i));
+        if (other != nullptr && other->has_account()) return other;
+    }
+    return nullptr;
+}
+
+DUCTILE_INLINE std::size_t MultiBodyPlasticConstraint::island() const {
+    const btMultiBodyLinkCollider* c = collider();
+    return c != nullptr ? std::size_t(c->getIslandTag()) : 0;
+}
+
+DUCTILE_INLINE void MultiBodyPlasticConstraint::finish_tick() {
+    if (std::exchange(unfinished_, false) && broken()) let_go();
+}
+
+DUCTILE_INLINE void MultiBodyPlasticConstraint::end_tick() {
     const Phase was = phase_;
     phase_ = Phase::idle;
     left_out_ = was == Phase::watched && !asleep();
@@ -185,6 +206,7 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::settle() {
     Values force(0, 0, 0);
     for (int i = 0; i < m_numRows; ++i) force[i] = double(getAppliedImpulse(i)) / tick_.dt;
     commit(force, velocity(), tick_.dt);
+    unfinished_ = true;
 }
 
 DUCTILE_INLINE void MultiBodyPlasticConstraint::apply_release() {

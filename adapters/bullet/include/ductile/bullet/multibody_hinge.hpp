@@ -19,6 +19,7 @@
 
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
+#include "ductile/joint/work_share.hpp"
 #include "ductile/law/perfect.hpp"
 
 namespace ductile::bullet {
@@ -51,15 +52,15 @@ class MultiBodyPlasticHinge final : public MultiBodyPlasticConstraint {
     [[nodiscard]] bool broken() const noexcept override { return joint_.state().broken; }
     /// Unreliable where the solver left the row unsolved, or out.
     [[nodiscard]] Outcome outcome() const noexcept {
-        return left_out() && !broken() ? Outcome::unreliable : last_.outcome;
+        return left_out() && !broken() ? Outcome::unreliable : last().outcome;
     }
     /// Certificate: violation of the row in the last tick, and the largest so far [rad/s].
-    [[nodiscard]] double residual() const noexcept { return last_.residual; }
+    [[nodiscard]] double residual() const noexcept { return last().residual; }
     [[nodiscard]] double residual_max() const noexcept { return joint_.state().residual_max; }
 
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
     [[nodiscard]] JointReport<double> report() const noexcept override {
-        return Base::report_of(joint_, last_, outcome());
+        return Base::report_of(joint_, last(), outcome());
     }
     /// For a joint re-created from what was saved as joint().state().
     void restore(const typename Joint::State& state) noexcept { joint_.restore(state); }
@@ -75,14 +76,19 @@ class MultiBodyPlasticHinge final : public MultiBodyPlasticConstraint {
     }
     void commit(const Values& force, const Values& velocity, double dt) override {
         moment_ = force[0];
-        last_ = joint_.commit({moment_, velocity[0], rotation()}, dt);
-        if (!broken()) return;
-        moment_ = 0;
-        if (last_.release > 0) hand_back(last_.release, {1, 0, 0});
+        booked_.commit(joint_, typename Joint::Reaction{moment_, velocity[0], rotation()}, dt);
     }
+    [[nodiscard]] const typename BookedStep<Joint>::JointStep& last() const noexcept override {
+        return booked_.step();
+    }
+    void let_go() override {
+        moment_ = 0;
+        if (last().release > 0) hand_back(last().release, {1, 0, 0});
+    }
+    void grant(double share) noexcept override { booked_.grant(joint_, share); }
 
     Joint joint_;
-    Step<double> last_;
+    BookedStep<Joint> booked_;
     double moment_ = 0;
 };
 

@@ -35,6 +35,7 @@
 #include "ductile/bullet/joint_view.hpp"
 #include "ductile/bullet/self_solved_rows.hpp"
 #include "ductile/bullet/soft_rows.hpp"
+#include "ductile/bullet/tick_account.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/kept_joint.hpp"
@@ -50,7 +51,8 @@ class PlasticConstraint : public btTypedConstraint,
                           public IslandRows,
                           public SoftRows,
                           public SelfSolvedRows,
-                          public KeptJoint {
+                          public KeptJoint,
+                          public TickMember {
   public:
     DUCTILE_INLINE ~PlasticConstraint() override;
 
@@ -96,15 +98,16 @@ class PlasticConstraint : public btTypedConstraint,
     ForceShare force_share_;
 
   private:
-    /// Books the open tick at its end, with the bodies as they are.
-    virtual void end_tick() = 0;
+    [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;
+    /// Another in the world; null: there is none.
+    [[nodiscard]] static const PlasticConstraint* any_of(const btDynamicsWorld& world);
     [[nodiscard]] bool is_among_constraints_of(const btDynamicsWorld& world) const;
     /// Where it ends: its bodies may have ended before.
     void abandon_world();
 
     struct EndOfTick final : btActionInterface {
         explicit EndOfTick(PlasticConstraint& owner) : owner_(owner) {}
-        void updateAction(btCollisionWorld*, btScalar) override { owner_.end_tick(); }
+        void updateAction(btCollisionWorld*, btScalar) override { owner_.end_tick_of_world(); }
         DUCTILE_INLINE void debugDraw(btIDebugDraw* drawer) override;
         PlasticConstraint& owner_;
     };

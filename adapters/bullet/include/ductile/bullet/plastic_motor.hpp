@@ -73,7 +73,12 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
 
   private:
     DUCTILE_INLINE void end_tick() override;
-    void settle_tick(bool late);
+    DUCTILE_INLINE void finish_tick() override;
+    [[nodiscard]] const Step<double>* booked() const noexcept override {
+        return booked_ ? &joint_.last() : nullptr;
+    }
+    void grant(double share) noexcept override { joint_.grant(share); }
+    void book(bool late);
     [[nodiscard]] bool acts() const override { return is_awake() && hinge_.isEnabled(); }
     DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
@@ -110,6 +115,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     bool pending_ = false;
     double moment_ = 0;     ///< that the island gave it [N m]
     int row_ = no_row;      ///< in the island that is being solved
+    bool booked_ = false;   ///< and not finished
     bool restored_ = false; ///< the next position is measured, not compared
 };
 

@@ -177,12 +177,15 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
 
 DUCTILE_INLINE void MotorConstraint::settle() const {
     // a question: what it books has happened already, and only the books change
-    if (pending_) const_cast<MotorConstraint*>(this)->settle_tick(true);
+    if (!pending_) return;
+    auto* self = const_cast<MotorConstraint*>(this);
+    self->book(true);
+    self->finish_tick();
 }
 
-DUCTILE_INLINE void MotorConstraint::end_tick() { pending_ ? settle_tick(false) : lose_driven(); }
+DUCTILE_INLINE void MotorConstraint::end_tick() { pending_ ? book(false) : lose_driven(); }
 
-DUCTILE_INLINE void MotorConstraint::settle_tick(bool late) {
+DUCTILE_INLINE void MotorConstraint::book(bool late) {
     pending_ = false;
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
     const double speed = turning(a, b);
@@ -193,14 +196,18 @@ DUCTILE_INLINE void MotorConstraint::settle_tick(bool late) {
     const double position = measure(a, b, position_ + speed * tick_);
     see_turn(speed, tick_, position);
     position_ = position;
-    const Step<double>& step = joint_.commit({force_, speed, position_}, dt_);
-    if (step.outcome != Outcome::broken) return;
+    joint_.commit({force_, speed, position_}, dt_);
+    booked_ = true;
+}
+
+DUCTILE_INLINE void MotorConstraint::finish_tick() {
+    if (!std::exchange(booked_, false) || !joint_.broken()) return;
     if (at_break_ == AtBreak::disable_joint) {
         hinge_.setEnabled(false);
         detail::let_collide(hinge_);
         detail::let_collide(*this);
     }
-    if (step.release > 0) hand_back();
+    if (joint_.last().release > 0) hand_back();
 }
 
 DUCTILE_INLINE void MotorConstraint::read_own_row() {

@@ -69,8 +69,14 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     DUCTILE_INLINE void check() const override;
     /// Sets the motor for a step of `dt` [s]. Called by World::step.
     DUCTILE_INLINE void prepare(double dt) override;
-    /// Books the step; after a break lets go of the joint. Called by World::step.
+    /// Books the step. Called by World::step.
     DUCTILE_INLINE void commit(double dt) override;
+    /// After a break lets go of the joint. Called by World::step.
+    DUCTILE_INLINE void finish() override;
+    [[nodiscard]] const Step<double>* booked() const noexcept override {
+        return booked_ ? &joint_.last() : nullptr;
+    }
+    void grant(double share) noexcept override { joint_.grant(share); }
 
   protected:
     /// Takes over the motor `row`; where it is `owned`, its joint is destroyed with this object,
@@ -145,6 +151,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     DrivenPair driven_;
     double centre_ = 0;   ///< c [N | N m]
     double strength_ = 0; ///< h [N | N m]
+    bool booked_ = false; ///< and not finished
     bool acting_ = false; ///< between prepare and commit: the row takes part in this step
     bool detached_ = false;
     bool restored_ = false; ///< the next position is measured, not compared

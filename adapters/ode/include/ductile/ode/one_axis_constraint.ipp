@@ -148,14 +148,16 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
             : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
     if (row_.turns()) see_turn(velocity, dt, position);
     position_ = position;
-    const Step<double>& step =
-        joint_.commit({force_, velocity, position_}, force_share_.value * dt);
+    joint_.commit({force_, velocity, position_}, force_share_.value * dt);
     pose_.look(row_);
     joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
-    if (step.outcome == Outcome::broken) {
-        if (step.release > 0) hand_back(step.release);
-        part();
-    }
+    booked_ = true;
+}
+
+DUCTILE_INLINE void OneAxisConstraint::finish() {
+    if (!std::exchange(booked_, false) || !joint_.broken()) return;
+    if (joint_.last().release > 0) hand_back(joint_.last().release);
+    part();
 }
 
 // ---- the row

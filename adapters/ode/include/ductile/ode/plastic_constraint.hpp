@@ -15,6 +15,7 @@
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/driven_velocity.hpp"
 #include "ductile/world/joint_queries.hpp"
+#include "ductile/world/share_work.hpp"
 
 namespace ductile::ode {
 
@@ -47,7 +48,7 @@ class DrivenPair {
     std::array<DrivenVelocity, 2> velocity_;
 };
 
-class PlasticConstraint : public SteppedConstraint {
+class PlasticConstraint : public SteppedConstraint, public SharesWork {
   public:
     ~PlasticConstraint() override { leave_keepers(); }
 

@@ -72,8 +72,14 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
 
     /// Sets the rows for a step of `dt` [s]. Called by World::step.
     DUCTILE_INLINE void prepare(double dt) override;
-    /// Books the step; after a break lets go. Called by World::step.
+    /// Books the step. Called by World::step.
     DUCTILE_INLINE void commit(double dt) override;
+    /// After a break lets go. Called by World::step.
+    DUCTILE_INLINE void finish() override;
+    [[nodiscard]] const Step<double>* booked() const noexcept override {
+        return booked_ ? &link_.last() : nullptr;
+    }
+    void grant(double share) noexcept override { link_.grant(share); }
 
   protected:
     using Frame = JointFrame<double>;
@@ -115,6 +121,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     DrivenPair driven_;
     OutsideForce outside_;
     bool put_back_ = false; ///< a saved state, with which the bodies move back
+    bool booked_ = false;   ///< and not finished
     bool acting_ = false;   ///< between prepare and commit: the joint takes part in this step
     bool silent_ = true;    ///< no force
 };

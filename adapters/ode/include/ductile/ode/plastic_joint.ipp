@@ -161,7 +161,11 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
                  JointWrench<double>{.force = scaled(1 / share, outside_.force),
                                      .moment = scaled(1 / share, moment)},
                  share * dt, share);
-    if (!link_.broken()) return;
+    booked_ = true;
+}
+
+DUCTILE_INLINE void LinkConstraint::finish() {
+    if (!std::exchange(booked_, false) || !link_.broken()) return;
     hand_back();
     let_go();
 }

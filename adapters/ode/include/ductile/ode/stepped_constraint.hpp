@@ -19,6 +19,8 @@ class SteppedConstraint : public KeptJoint {
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
+    /// Called for all when all have committed.
+    virtual void finish() {}
 
   protected:
     friend class World;

@@ -103,6 +103,8 @@ class World final : public SteppedWorld {
     }
 
     void forget(PlasticConstraint& joint);
+    /// Of each plastic joint, by the first of those that hang together.
+    [[nodiscard]] std::vector<std::size_t> islands() const;
     /// Gravity on a body that is not known would not leapfrog.
     void require_bodies();
 
@@ -111,7 +113,7 @@ class World final : public SteppedWorld {
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
     std::vector<SteppedConstraint*> constraints_;
-    std::vector<const PlasticConstraint*> plastic_;
+    std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
     bool bodies_known_ = false;                               ///< all those of joints
     std::vector<std::pair<dJointID, dContactGeom>> contacts_; ///< of the coming step

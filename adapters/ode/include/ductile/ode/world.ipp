@@ -4,7 +4,9 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "ductile/ode/force_share.hpp"
 #include "ductile/ode/precision_check.hpp"
@@ -93,6 +95,8 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
         dWorldQuickStep(world_, dReal(dt));
     }
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
+    share_work(std::span<PlasticConstraint* const>(plastic_), [this] { return islands(); });
+    for (SteppedConstraint* constraint : constraints_) constraint->finish();
     if (meter_) meter_->after_step(dt, how.value);
 }
 
@@ -102,6 +106,30 @@ DUCTILE_INLINE bool World::has_body(const void* body) const {
            std::any_of(plastic_.begin(), plastic_.end(), [body](const PlasticConstraint* joint) {
                return joint->bodies().a == body || joint->bodies().b == body;
            });
+}
+
+DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
+    std::unordered_map<dBodyID, std::size_t> island_of;
+    std::vector<dBodyID> found;
+    const auto find = [&](dBodyID body, std::size_t island) {
+        if (can_move(body) && island_of.emplace(body, island).second) found.push_back(body);
+    };
+    std::vector<std::size_t> result;
+    for (const PlasticConstraint* joint : plastic_) {
+        const AttachedBodies pair = joint->bodies();
+        const dBodyID body = can_move(pair.a) ? pair.a : pair.b;
+        find(body, result.size());
+        while (!found.empty()) {
+            const dBodyID next = found.back();
+            found.pop_back();
+            for (int i = 0; i < dBodyGetNumJoints(next); ++i) {
+                const dJointID other = dBodyGetJoint(next, i);
+                for (const int side : {0, 1}) find(dJointGetBody(other, side), island_of[next]);
+            }
+        }
+        result.push_back(can_move(body) ? island_of[body] : result.size());
+    }
+    return result;
 }
 
 DUCTILE_INLINE void World::require_bodies() {

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+//
+// The plastic joints of one Bullet world at the end of a tick: all book it, share what they took
+// (world/share_work.hpp), and only then those that broke let go. Bullet calls the action of each
+// joint; that of the first does it for all.
+//
+// Not thread-safe: actions are called by one thread.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/world/share_work.hpp"
+
+namespace ductile::bullet {
+
+class TickMember;
+
+/// Of one world; owned by its joints.
+class TickAccount {
+  private:
+    friend class TickMember;
+    std::vector<TickMember*> members_;
+};
+
+/// A joint of it.
+class TickMember : public SharesWork {
+  public:
+    TickMember(const TickMember&) = delete;
+    TickMember& operator=(const TickMember&) = delete;
+
+  protected:
+    TickMember() = default;
+    ~TickMember() { leave_account(); }
+
+    /// Of `neighbour`, a joint of the same world; null: there is none.
+    void join_account(const TickMember* neighbour) {
+        leave_account();
+        account_ = neighbour != nullptr ? neighbour->account_ : nullptr;
+        if (account_ == nullptr) account_ = std::make_shared<TickAccount>();
+        account_->members_.push_back(this);
+    }
+    void leave_account() {
+        if (account_ != nullptr) std::erase(account_->members_, this);
+        account_.reset();
+    }
+    [[nodiscard]] bool has_account() const noexcept { return account_ != nullptr; }
+
+    /// From the joint's action.
+    void end_tick_of_world() {
+        if (std::exchange(ended_, false)) return;
+        const std::vector<TickMember*>& all = account_->members_;
+        for (TickMember* joint : all) {
+            joint->end_tick();
+            joint->ended_ = joint != this;
+        }
+        share_work(std::span<TickMember* const>(all), [&all] {
+            std::vector<std::size_t> islands;
+            for (const TickMember* joint : all) islands.push_back(joint->island());
+            return islands;
+        });
+        for (TickMember* joint : all) joint->finish_tick();
+    }
+
+  private:
+    /// Books the open tick, with the bodies as they are.
+    virtual void end_tick() = 0;
+    /// Lets go where that broke the joint.
+    virtual void finish_tick() = 0;
+    /// Bullet's tag.
+    [[nodiscard]] virtual std::size_t island() const = 0;
+
+    std::shared_ptr<TickAccount> account_;
+    bool ended_ = false; ///< by the action of another joint
+};
+
+} // namespace ductile::bullet
