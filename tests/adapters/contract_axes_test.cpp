@@ -537,5 +537,6 @@ TEST_CASE("rods that stop in one long step absorb together no more than they had
     const double lost = had - kinetic();
     CHECK(lost > 0.5 * had);
     CHECK(sum <= lost * (1 + (Rig::single ? 1e-3 : 1e-6)));
-    CHECK(sum > 0.9 * lost);
+    // a coupled spring that stops within its strength loses its energy as damping
+    if (!(elastic && six_axes)) CHECK(sum > 0.9 * lost);
 }

@@ -190,8 +190,6 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint,
     DUCTILE_INLINE void end_tick() override;
     DUCTILE_INLINE void finish_tick() override;
     [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;
-    /// Another in the world; null: there is none.
-    [[nodiscard]] static const MultiBodyPlasticConstraint* any_of(btMultiBodyDynamicsWorld& world);
     [[nodiscard]] const Step<double>* booked() const noexcept override {
         return unfinished_ ? &last() : nullptr;
     }

@@ -60,7 +60,7 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::add_to(btMultiBodyDynamicsWorld&
             "MultiBodyPlasticConstraint.world: must split islands, or Bullet never solves the "
             "joints of multibodies");
     }
-    join_account(any_of(world));
+    join_account(world);
     world.addMultiBodyConstraint(this);
     world.addAction(&action_);
     world_ = &world;
@@ -178,15 +178,6 @@ DUCTILE_INLINE void MultiBodyPlasticConstraint::close_row(
     row.m_cfm = btScalar(limits.compliance / stiff);
     row.m_lowerLimit = btScalar(lower * tick_.dt);
     row.m_upperLimit = btScalar(upper * tick_.dt);
-}
-
-DUCTILE_INLINE const MultiBodyPlasticConstraint* MultiBodyPlasticConstraint::any_of(
-    btMultiBodyDynamicsWorld& world) {
-    for (int i = world.getNumMultiBodyConstraints() - 1; i >= 0; --i) {
-        auto* other = dynamic_cast<MultiBodyPlasticConstraint*>(world.getMultiBodyConstraint(i));
-        if (other != nullptr && other->has_account()) return other;
-    }
-    return nullptr;
 }
 
 DUCTILE_INLINE std::size_t MultiBodyPlasticConstraint::island() const {

@@ -99,8 +99,6 @@ class PlasticConstraint : public btTypedConstraint,
 
   private:
     [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;
-    /// Another in the world; null: there is none.
-    [[nodiscard]] static const PlasticConstraint* any_of(const btDynamicsWorld& world);
     [[nodiscard]] bool is_among_constraints_of(const btDynamicsWorld& world) const;
     /// Where it ends: its bodies may have ended before.
     void abandon_world();

@@ -85,7 +85,7 @@ DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
             "remove_from that one first");
     }
     join(world);
-    join_account(any_of(world));
+    join_account(world);
     if (!is_there) world.addConstraint(this);
     if (disable_collisions_between_bodies) {
         m_rbA.addConstraintRef(this);
@@ -105,14 +105,6 @@ DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
     world_ = nullptr;
     leave();
     leave_account();
-}
-
-DUCTILE_INLINE const PlasticConstraint* PlasticConstraint::any_of(const btDynamicsWorld& world) {
-    for (int i = world.getNumConstraints() - 1; i >= 0; --i) {
-        const auto* other = dynamic_cast<const PlasticConstraint*>(world.getConstraint(i));
-        if (other != nullptr && other->has_account()) return other;
-    }
-    return nullptr;
 }
 
 DUCTILE_INLINE std::size_t PlasticConstraint::island() const {

@@ -7,10 +7,13 @@
 // Not thread-safe: actions are called by one thread.
 #pragma once
 
-#include <algorithm>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
+
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -37,18 +40,15 @@ class TickMember : public SharesWork {
     TickMember() = default;
     ~TickMember() { leave_account(); }
 
-    /// Of `neighbour`, a joint of the same world; null: there is none.
-    void join_account(const TickMember* neighbour) {
+    void join_account(const btDynamicsWorld& world) {
         leave_account();
-        account_ = neighbour != nullptr ? neighbour->account_ : nullptr;
-        if (account_ == nullptr) account_ = std::make_shared<TickAccount>();
+        account_ = account_of(world);
         account_->members_.push_back(this);
     }
     void leave_account() {
         if (account_ != nullptr) std::erase(account_->members_, this);
         account_.reset();
     }
-    [[nodiscard]] bool has_account() const noexcept { return account_ != nullptr; }
 
     /// From the joint's action.
     void end_tick_of_world() {
@@ -67,6 +67,18 @@ class TickMember : public SharesWork {
     }
 
   private:
+    /// Worlds may be in several threads.
+    [[nodiscard]] static std::shared_ptr<TickAccount> account_of(const btDynamicsWorld& world) {
+        static std::mutex mutex;
+        static std::unordered_map<const btDynamicsWorld*, std::weak_ptr<TickAccount>> accounts;
+        const std::lock_guard lock(mutex);
+        std::shared_ptr<TickAccount> account = accounts[&world].lock();
+        if (account != nullptr) return account;
+        std::erase_if(accounts, [](const auto& entry) { return entry.second.expired(); });
+        account = std::make_shared<TickAccount>();
+        accounts[&world] = account;
+        return account;
+    }
     /// Books the open tick, with the bodies as they are.
     virtual void end_tick() = 0;
     /// Lets go where that broke the joint.
