@@ -61,8 +61,10 @@ struct BatchState {
 /// Written by commit. The outcome is in BatchState::status.
 template <std::floating_point S>
 struct BatchStep {
-    std::span<S> release{};  ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
-    std::span<S> residual{}; ///< violation of the row's complementarity, >= 0 [m/s | rad/s]
+    std::span<S> release{}; ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
+    /// Violation of the row's complementarity, >= 0; infinite: an input was not finite, and of the
+    /// step nothing but `start_velocity` was written [m/s | rad/s].
+    std::span<S> residual{};
 };
 
 template <std::floating_point S>

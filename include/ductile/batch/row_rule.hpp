@@ -5,6 +5,9 @@
 // is that of OneAxisJoint, where the derivation is; with floating-point contraction off
 // (-ffp-contract=off) results do not depend on the compiler.
 //
+// A number that is not finite leaves the row without strength, and its step unbooked, as a row that
+// prepare left so.
+//
 // A quotient whose case is not selected is taken with the divisor 1, so that no division by zero
 // raises a floating-point exception.
 #pragma once
@@ -43,6 +46,11 @@ constexpr S select(Mask<S> choice, S a, S b) noexcept {
 template <std::floating_point S>
 constexpr S only(Mask<S> choice, S a) noexcept {
     return std::bit_cast<S>(choice & std::bit_cast<Mask<S>>(a));
+}
+/// Set where x is finite.
+template <std::floating_point S>
+constexpr Mask<S> finite(S x) noexcept {
+    return mask<S>(x * 0 == 0);
 }
 /// std::max(a, b).
 template <std::floating_point S>
@@ -107,7 +115,7 @@ template <std::floating_point S>
                                                       const StepNumbers<S>& step, S position,
                                                       S velocity, S offset, S travel, S start,
                                                       S last_velocity, Mask<S> status) noexcept {
-    const Mask<S> intact = ~broken<S>(status);
+    const Mask<S> intact = ~broken<S>(status) & finite(velocity) & finite(position);
     const S speed = std::abs(velocity);
     const S lost = larger(std::abs(start) - std::abs(last_velocity), S(0));
     const S slowed = only(flowing<S>(status), larger(speed - lost, S(0)));
@@ -143,7 +151,7 @@ template <std::floating_point S>
                                                       S velocity, S position, S lower, S upper,
                                                       S bias, S start,
                                                       const RowState<S>& old) noexcept {
-    const Mask<S> intact = ~broken<S>(old.status);
+    const Mask<S> whole = ~broken<S>(old.status);
     const S start_speed = std::abs(start);
     const S tolerated = step.absolute_residual + step.relative_residual * start_speed;
     const Mask<S> kicked = mask<S>(std::abs(start - old.velocity) > tolerated);
@@ -156,6 +164,8 @@ template <std::floating_point S>
 
     const S moved = (start + velocity) * step.half_dt;
     const S work = -(force * moved);
+    const Mask<S> sound = finite(work) & finite(position) & mask<S>(lower < upper);
+    const Mask<S> intact = whole & sound;
     // a row at its bound flows where it moves the way the bound resists, and so does one brought to
     // rest: both take work
     const Mask<S> settles = at_bound | flowing<S>(old.status) | kicked;
@@ -177,32 +187,34 @@ template <std::floating_point S>
     const S excess = velocity - bias;
     const S too_fast = only(at_upper | ~at_lower, excess); // at the lower bound it may be
     const S too_slow = only(~at_upper, -excess);
-    const S residual = only(intact, larger(too_fast, too_slow));
+    const S residual =
+        only(whole, select(sound, larger(too_fast, too_slow), std::numeric_limits<S>::infinity()));
     const S speed = larger(start_speed, std::abs(velocity));
     const S other_work = old.other_work + only(intact, other);
     const S taken = old.plastic_work + plastic + strength * step.least_travel;
     const S owed = allowed_gain<S> * taken + owed_steps<S> * (strength * speed * step.dt);
     const Mask<S> gains = mask<S>(-other > noticed_gain<S> * -other_work) &
                           mask<S>(other_work < 0) & mask<S>(-other_work > owed);
-    const Mask<S> unreliable =
-        gains | mask<S>(residual > step.absolute_residual + step.relative_residual * speed);
+    const S allowed = step.absolute_residual + step.relative_residual * speed;
+    const Mask<S> unreliable = gains | ~sound | ~mask<S>(residual <= allowed);
     const Mask<S> yields = flows & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
     // elastic 0, yielding 1, broken 2, unreliable 3
     const Mask<S> outcome =
         ((unreliable | yields) & ~breaks & Mask<S>(1)) | ((unreliable | breaks) & Mask<S>(2));
     const Mask<S> begins = mask<S>(plastic > 0) & mask<S>(!(old.plastic_work > 0));
+    const Mask<S> ended = (sound & at_bound) | (~sound & flowing<S>(old.status));
     const Mask<S> status =
-        outcome | (at_bound & flowing_bit) | (begins & first_yield_bit) | (breaks & fracture_bit);
+        outcome | (ended & flowing_bit) | (begins & first_yield_bit) | (breaks & fracture_bit);
 
     return {.state = {.offset = select(intact & (at_bound | flows), position, old.offset),
                       .travel = old.travel + travel,
                       .plastic_work = old.plastic_work + plastic,
                       .other_work = other_work,
                       .velocity = select(intact, velocity, old.velocity),
-                      .residual_max = larger(old.residual_max, residual),
-                      .status = (intact & status) |
-                                (~intact & old.status & ~Mask<S>(first_yield_bit | fracture_bit))},
+                      .residual_max = larger(old.residual_max, only(sound, residual)),
+                      .status = (whole & status) |
+                                (~whole & old.status & ~Mask<S>(first_yield_bit | fracture_bit))},
             .release = release,
             .residual = residual};
 }

@@ -43,7 +43,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
@@ -73,7 +72,8 @@ class AnyLink {
     void start(const BodyState<S>& a, const BodyState<S>& b) noexcept;
 
     /// The bodies were put elsewhere by the user since the last look, which is no deformation: the
-    /// plastic axes keep their strain, and their rest position moves with the bodies.
+    /// plastic axes keep their strain, and their rest position moves with the bodies; it stays
+    /// where one of them is or was nowhere.
     void teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept;
     /// Only looks where the bodies are now.
     void look(const BodyState<S>& a, const BodyState<S>& b) noexcept { pose_.look(a, b); }
@@ -97,13 +97,15 @@ class AnyLink {
     }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
-    /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all.
+    /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all, nor
+    /// does one of a body that is not at a finite place.
     const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
                           bool midway = false) noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
     /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it; `share`:
-    /// of the engine's step, dt is that for which forces acted.
+    /// of the engine's step, dt is that for which forces acted. Input that is not finite changes no
+    /// state: Step::residual.
     const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
                           const JointWrench<S>& wrench, S dt, S share = 1) noexcept;
     /// The same with the forces of the rows, in the order of JointAxis [N | N m].
@@ -243,11 +245,13 @@ class AnyLink {
     virtual void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a,
                               const BodyState<S>& b, S dt) noexcept = 0;
     virtual void pause_joint() noexcept = 0;
+    virtual void leave_unbooked() noexcept = 0; ///< the step was of input that is not finite
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
 
     /// LinkPose::rest_changes that M stays right for; the largest: that of the last prepare alone
     unsigned mass_at_ = std::numeric_limits<unsigned>::max();
+    bool sound_ = true; ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;
@@ -269,8 +273,10 @@ void AnyLink<S>::start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
 template <std::floating_point S>
 void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept {
     if (pose_.is_now(a, b)) return;
+    const bool was_somewhere = pose_.finite();
     const Vector6<S> before = strain();
     pose_.look(a, b);
+    if (!was_somewhere || !pose_.finite()) return;
     Vector6<S> moved = strain(), rest = offset();
     for (int i = 0; i < 6; ++i) {
         moved[i] = plastic_[std::size_t(i)] ? moved[i] - before[i] : S(0);
@@ -289,11 +295,13 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     pose_.look(a, b);
     on_surface_ = false;
     const Vector6<S> error = strain();
-    const bool whole = !broken();
+    sound_ = pose_.finite();
+    const bool whole = !broken() && sound_;
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
         if (!whole) limits_[i] = {.lower = 0, .upper = 0};
     }
+    if (!sound_) return limits_;
     if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
     prepare_joint(error, a, b, dt, midway);
     return limits_;
@@ -310,10 +318,18 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
                                        const Vector6<S>& forces, S dt, S share) noexcept {
     // velocities belong to the rows that were solved, positions to where the bodies are now
     const Vector6<S> velocity = pose_.twist(a, b);
-    force_ = forces;
+    const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
     unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
     pose_.look(a, b);
+    if (!broken() && !(sound && pose_.finite())) {
+        unseen_turn_ = 0;
+        rigid_residual_ = std::numeric_limits<S>::infinity();
+        rigid_unsolved_ = true;
+        leave_unbooked();
+        return last();
+    }
+    force_ = forces;
     commit_joint(velocity, a, b, dt);
     return last();
 }
@@ -348,14 +364,15 @@ inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         if (plastic_[i]) continue;
         const S residual = std::abs(velocity[Eigen::Index(i)] - limits_[i].bias);
-        worst[i / 3] = std::max(worst[i / 3], residual);
+        worst[i / 3] = worse(worst[i / 3], residual);
     }
-    rigid_residual_ = std::max(worst[0], worst[1]);
+    rigid_residual_ = worse(worst[0], worst[1]);
     const Allowed& allow = allowed_;
-    rigid_unsolved_ =
-        rigid_residual_ > allow.absolute_residual &&
-        (worst[0] > allow.absolute_residual + allow.relative_residual * pose_.speed_of_a(a) ||
-         worst[1] > allow.absolute_residual + allow.relative_residual * norm(a.spin));
+    const auto within = [&](S residual, S speed) {
+        return residual <= allow.absolute_residual + allow.relative_residual * speed;
+    };
+    rigid_unsolved_ = !(rigid_residual_ <= allow.absolute_residual) &&
+                      !(within(worst[0], pose_.speed_of_a(a)) && within(worst[1], norm(a.spin)));
 }
 
 template <std::floating_point S>

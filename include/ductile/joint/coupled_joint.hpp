@@ -103,7 +103,7 @@ class CoupledJoint {
     void restore(const State& state) noexcept { state_ = state; }
     /// The velocity that the step left, seen along the axes as they are now: not a jump [m/s |
     /// rad/s].
-    void carry(const Vector& velocity) noexcept { state_.velocity = velocity; }
+    void carry(const Vector& u) noexcept { state_.velocity = is_finite(u) ? u : state_.velocity; }
 
     /// γ of the last step's forces on the present surface: 1 where it flows [-].
     [[nodiscard]] Scalar utilisation() const noexcept {
@@ -135,11 +135,12 @@ class CoupledJoint {
     /// is at most this [-].
     [[nodiscard]] Scalar reach() const noexcept { return cap_ < grown_ ? cap_ : grown_ * share_; }
 
-    /// Rules the rows for a step of `dt` > 0 [s]. A broken joint asks for no force at all.
+    /// Rules the rows for a step of `dt` > 0 [s]; no force once broken, or where `motion` is not
+    /// finite.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
-    /// (work_share.hpp).
+    /// (work_share.hpp). Not finite: see Step::residual.
     Step commit(const Reaction& reaction, Scalar dt, Scalar granted = 1) noexcept;
 
   private:
@@ -341,6 +342,7 @@ class CoupledJoint {
     State state_;
 
     // between prepare and commit
+    bool sound_ = true; ///< the input of `prepare` was finite
     Rows rows_{};
     Vector start_ = Vector::Zero(), elastic_ = Vector::Zero(); ///< u, q_e at the start
     Vector lower_ = Vector::Zero(), upper_ = Vector::Zero();   ///< bounds of the forces

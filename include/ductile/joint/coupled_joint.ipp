@@ -16,10 +16,9 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     start_ = motion.velocity;
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
-    if (state_.broken) {
-        rows_.fill({.lower = 0, .upper = 0});
-        return rows_;
-    }
+    sound_ = is_finite(motion, dt);
+    rows_.fill({.lower = 0, .upper = 0});
+    if (state_.broken || !sound_) return rows_;
     bound(motion, dt);
     for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
     return rows_;
@@ -34,6 +33,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         step.outcome = Outcome::broken;
         return step;
     }
+    if (!sound_ || !is_finite(reaction, start_, dt)) return unbooked_step<Step>();
     Taken taken{.force = reaction.force};
     Scalar most = 0;
     const Scalar jump = allowed_residual(start_);
@@ -57,7 +57,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         step.direction[i] = share * booked.travel;
         step.elastic += booked.elastic;
         step.other_work += booked.other + (1 - share) * booked.flow;
-        step.residual = std::max(step.residual, booked.residual);
+        step.residual = worse(step.residual, booked.residual);
         taken.error += booked.error;
         taken.at_bound[i] = booked.at_bound;
         if (booked.moved) state_.plastic_offset[i] = reaction.position[i];

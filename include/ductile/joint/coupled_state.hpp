@@ -11,7 +11,9 @@
 
 #include "ductile/joint/joint_totals.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
+#include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
 
@@ -34,6 +36,21 @@ struct CoupledReaction {
     Eigen::Matrix<S, N, 1> position = Eigen::Matrix<S, N, 1>::Zero(); ///< q [m | rad]
     bool on_surface = false; ///< the solver met the surface itself, not the rows' bounds
 };
+
+/// True where every number is finite, and `dt` [s].
+template <std::floating_point S, int N>
+[[nodiscard]] bool is_finite(const CoupledMotion<S, N>& motion, S dt) noexcept {
+    return is_finite(motion.position) && is_finite(motion.velocity) && is_finite(motion.mass) &&
+           are_finite(dt);
+}
+/// The same, and the work from the velocities `start` on.
+template <std::floating_point S, int N>
+[[nodiscard]] bool is_finite(const CoupledReaction<S, N>& reaction,
+                             const Eigen::Matrix<S, N, 1>& start, S dt) noexcept {
+    S work = 0;
+    for (int i = 0; i < N; ++i) work += reaction.force[i] * (start[i] + reaction.velocity[i]) * dt;
+    return are_finite(work) && is_finite(reaction.position);
+}
 
 /// What one committed step did.
 template <std::floating_point S, int N>

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <concepts>
+#include <limits>
 
 #include "ductile/vocabulary/row.hpp"
 
@@ -24,13 +25,24 @@ struct Step {
     S lost = 0;       ///< stored energy that a break set free inside the part, >= 0 [J]
     S claimed = 0;    ///< flow as this joint sees it (work_share.hpp), >= 0 [J]
     S unclaimed = 0;  ///< work of its rows that did not flow, either sign [J]
-    S gained = 0;   ///< given to the bodies beyond all that was taken from them so far, where that
-                    ///< is too much to be believed (step_end.hpp), >= 0 [J]
-    S residual = 0;   ///< largest violation of a row's complementarity, >= 0 [m/s | rad/s]
+    S gained = 0; ///< given to the bodies beyond all that was taken from them so far, where that
+                  ///< is too much to be believed (step_end.hpp), >= 0 [J]
+    /// Largest violation of a row's complementarity, >= 0; infinite: an input was not finite, and
+    /// the step was not booked [m/s | rad/s].
+    S residual = 0;
     S step_error =
         0; ///< share of the plastic travel that steps may have misplaced (step_error.hpp)
     bool coarse = false; ///< the flow that ended in this step had steps too long for it
 };
+
+/// What a joint says of a step in which an input was not finite. Its state stays as it was.
+template <class Step>
+[[nodiscard]] Step unbooked_step() noexcept {
+    Step step;
+    step.outcome = Outcome::unreliable;
+    step.residual = std::numeric_limits<decltype(step.residual)>::infinity();
+    return step;
+}
 
 /// The part of a joint's state that does not depend on its law or its number of axes. Plain value.
 template <std::floating_point S>

@@ -160,6 +160,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
                        bool midway) noexcept override;
     void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a, const BodyState<S>& b,
                       S dt) noexcept override;
+    void leave_unbooked() noexcept override { booked_.leave_unbooked(); }
     void pause_joint() noexcept override {
         auto state = joint_.state();
         if constexpr (one_axis) {

@@ -51,6 +51,7 @@ class LinkPose {
         displacement_ =
             transposed_times(axes_, difference(arm_b_, times(b.orientation, in_b_.origin)));
         orientation_ = transposed_times(axes_, times(a.orientation, in_a_.axes));
+        finite_ = is_finite(axes_) && is_finite(displacement_) && is_finite(orientation_);
     }
 
     /// Largest turn of a body in a step of `time` [s], 0 where the joint could follow it, with the
@@ -62,6 +63,7 @@ class LinkPose {
 
     // ---- as last looked at
 
+    [[nodiscard]] bool finite() const noexcept { return finite_; } ///< both bodies were somewhere
     [[nodiscard]] const Matrix3<S>& axes() const noexcept { return axes_; }   ///< of B, world
     [[nodiscard]] const Vector3<S>& point() const noexcept { return point_; } ///< world [m]
     [[nodiscard]] const Vector3<S>& arm_a() const noexcept { return arm_a_; } ///< world [m]
@@ -181,6 +183,7 @@ class LinkPose {
     Matrix3<S> rest_ = Matrix3<S>::Identity();
     unsigned rest_changes_ = 0;
     Place seen_a_, seen_b_; ///< nowhere at first
+    bool finite_ = true;
     Matrix3<S> axes_ = Matrix3<S>::Identity();
     Vector3<S> point_ = Vector3<S>::Zero();
     Vector3<S> arm_a_ = Vector3<S>::Zero();

@@ -59,6 +59,7 @@
 #include "ductile/law/hardening.hpp"
 #include "ductile/law/law.hpp"
 #include "ductile/law/perfect.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -86,7 +87,7 @@ class OneAxisJoint {
     [[nodiscard]] const State& state() const noexcept { return state_; }
     void restore(const State& state) noexcept { state_ = state; }
     /// The velocity that the step left, seen along the axis as it is now: not a jump [m/s | rad/s].
-    void carry(Scalar velocity) noexcept { state_.velocity = velocity; }
+    void carry(Scalar u) noexcept { state_.velocity = are_finite(u) ? u : state_.velocity; }
 
     /// Force at which the row would flow now towards `direction` = ±1 [N | N m].
     [[nodiscard]] Scalar strength(Scalar direction = 1) const noexcept {
@@ -114,10 +115,11 @@ class OneAxisJoint {
                                      .force = state_.force};
     }
 
-    /// Rules the row for a step of `dt` > 0 [s] that starts with `motion`; none once broken.
+    /// Rules the row for a step of `dt` > 0 [s]; none once broken, or where `motion` is not finite.
     [[nodiscard]] RowLimits<Scalar> prepare(const Motion<Scalar>& motion, Scalar dt) noexcept;
 
-    /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow (work_share.hpp).
+    /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
+    /// (work_share.hpp). Not finite: see Step::residual.
     Step<Scalar> commit(const Reaction& reaction, Scalar dt, Scalar granted = 1) noexcept;
 
   private:
@@ -135,7 +137,6 @@ class OneAxisJoint {
     [[nodiscard]] Scalar compliance(Scalar dt) const noexcept {
         return rigid() ? Scalar(0) : 1 / (implicit_ * parameters_.stiffness * dt * dt);
     }
-
     [[nodiscard]] Scalar cap(Scalar sign) const noexcept {
         return criterion_.force_cap(state_.criterion, sign);
     }
@@ -172,10 +173,7 @@ class OneAxisJoint {
     [[nodiscard]] Scalar violation(const Reaction& reaction, const Taken& taken) const noexcept {
         if (given()) return 0;
         const Scalar soft = compliance(taken.dt) * reaction.force * taken.dt;
-        const Scalar excess = reaction.velocity + soft - bias_;
-        if (taken.at_upper) return std::max(excess, Scalar(0));
-        if (taken.at_lower) return std::max(-excess, Scalar(0));
-        return std::abs(excess);
+        return taken.violation(reaction.velocity + soft - bias_);
     }
 
     [[nodiscard]] auto error_of(const Step<Scalar>& step, const Taken& taken) const noexcept {
@@ -324,6 +322,7 @@ class OneAxisJoint {
     State state_;
 
     // between prepare and commit
+    bool sound_ = true; ///< the input of `prepare` was finite
     Scalar bias_ = 0, start_ = 0, elastic_ = 0; ///< b, u, q_e at the start
     FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
     Scalar lower_ = 0, upper_ = 0, tolerance_ = 0; ///< bounds of the row's force, how near is at them
@@ -339,7 +338,8 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
     start_ = motion.velocity;
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
-    if (state_.broken) return {.lower = 0, .upper = 0};
+    sound_ = are_finite(start_, elastic_, dt, rigid() ? Scalar(0) : motion.mass);
+    if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
     bound(dt);
     RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
     if (rigid()) {
@@ -369,6 +369,7 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt, S
                       .at_upper = reaction.force >= upper_ - tolerance_,
                       .at_lower = reaction.force <= lower_ + tolerance_,
                       .granted = granted};
+    if (!sound_ || !are_finite(taken.work, taken.position)) return unbooked_step<Step<Scalar>>();
     step.residual = violation(reaction, taken);
     if (brittle(taken)) {
         snap(step, taken);

@@ -3,6 +3,8 @@
 // What a plastic axis remembers between steps, and its numerical parameters.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 
@@ -24,6 +26,12 @@ struct RowTaken {
     S granted; ///< share of the flow's work that is booked
 
     [[nodiscard]] bool at_bound() const noexcept { return at_upper || at_lower; }
+    /// Of complementarity; `excess`: u' + C λ - b [m/s | rad/s].
+    [[nodiscard]] S violation(S excess) const noexcept {
+        if (at_upper) return std::max(excess, S(0));
+        if (at_lower) return std::max(-excess, S(0));
+        return std::abs(excess);
+    }
 };
 
 /// Everything a joint remembers between steps. Plain value: copy, compare, save and restore it.
@@ -43,9 +51,9 @@ template <std::floating_point S>
 struct OneAxisParameters {
     /// k of the elastic part [N/m | N m/rad], > 0; infinity: rigid below yield.
     S stiffness = std::numeric_limits<S>::infinity();
-    /// Time in which a rigid row that holds removes drift from q_p [s], > 0; five steps where that is
-    /// longer. A time, not a share of each step: a share would turn the drift left by a long step
-    /// into a kick in a short one.
+    /// Time in which a rigid row that holds removes drift from q_p [s], > 0; five steps where that
+    /// is longer. A time, not a share of each step: a share would turn the drift left by a long
+    /// step into a kick in a short one.
     S drift_time = S(0.02);
     /// A step is unreliable where its residual exceeds this plus `relative_residual` × |velocity|
     /// [m/s | rad/s], > 0.

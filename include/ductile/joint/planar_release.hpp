@@ -36,12 +36,14 @@
 //   I    inertia the hinge feels while its pin holds      [kg m²]
 //   v, ω velocity at the pin and spin of A minus B's      [m/s, rad/s]
 //
-// Source: as release_impulse of break_release.hpp, whose K without its rows out of the plane this is;
-// the closed form of 1/I is the Schur complement of K, written out here.
+// Source: as release_impulse of break_release.hpp, whose K without its rows out of the plane this
+// is; the closed form of 1/I is the Schur complement of K, written out here.
 #pragma once
 
 #include <cmath>
 #include <concepts>
+
+#include "ductile/vocabulary/finite.hpp"
 
 namespace ductile {
 
@@ -68,7 +70,7 @@ struct PlanarRelease {
 
 /// The changes that give `energy` >= 0 [J] to a hinge and leave the velocity at its pin as it is.
 /// They never turn the motion round; at rest A is turned forwards. Momentum is kept where both
-/// bodies can move. No change where the hinge cannot turn.
+/// bodies can move. No change where the hinge cannot turn, or a number is not finite.
 template <std::floating_point S>
 [[nodiscard]] PlanarRelease<S> planar_release(const PlanarBody<S>& a, const PlanarBody<S>& b,
                                               S energy) noexcept {
@@ -108,6 +110,7 @@ template <std::floating_point S>
     if (!(root > 0)) return {};
     // L, of a change of the spin by 2 E / (|p| + √(p² + 2 I E))
     const S moment = std::copysign(2 * inertia * energy / (std::abs(momentum) + root), momentum);
+    if (!are_finite(moment, push_x, push_y)) return {};
 
     const auto answer = [&](const PlanarBody<S>& body, S by) noexcept {
         const S turn = body.arm_x * push_y - body.arm_y * push_x + 1;

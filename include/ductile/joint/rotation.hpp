@@ -157,8 +157,10 @@ struct RotationTracker {
     Matrix3<S> last = Matrix3<S>::Identity(); ///< orientation seen last
     Vector3<S> total = Vector3<S>::Zero();    ///< q [rad]
 
-    /// Adds the increment that leads to `now` and returns the total [rad].
-    const Vector3<S>& follow(const Matrix3<S>& now) noexcept {
+    /// Adds the increment that leads to `now` and returns the total [rad]. What is not finite is
+    /// not followed, and the answer is NaN.
+    Vector3<S> follow(const Matrix3<S>& now) noexcept {
+        if (!is_finite(now)) return Vector3<S>::Constant(std::numeric_limits<S>::quiet_NaN());
         total = sum(total, rotation_vector<S>(transposed_times(last, now)));
         last = now;
         return total;

@@ -16,6 +16,7 @@
 
 #include "ductile/joint/step_error.hpp"
 #include "ductile/numeric/small_vector.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -52,8 +53,8 @@ template <class Axes, std::floating_point S>
     return numeric::dot(force, Axes(start.cwiseAbs().cwiseMax(end.cwiseAbs()))) * dt;
 }
 
-/// Steps whose largest work an account may lack: one that a spring acts late, one in which velocities
-/// are those of its middle [-].
+/// Steps whose largest work an account may lack: one that a spring acts late, one in which
+/// velocities are those of its middle [-].
 template <std::floating_point S>
 inline constexpr S owed_steps = 2;
 
@@ -92,7 +93,7 @@ void settle(State& state, Step& step, const StepEnd<S, Axes>& end,
     state.stored += step.elastic;
     state.other_work += step.other_work;
     state.lost += step.lost;
-    state.residual_max = std::max(state.residual_max, step.residual);
+    state.residual_max = worse(state.residual_max, step.residual);
     judge_step(state, step, end, least_travel);
     if (state.other_work < 0) {
         step.gained = energy_gained(state, -step.other_work, end, least_travel);
@@ -103,7 +104,7 @@ void settle(State& state, Step& step, const StepEnd<S, Axes>& end,
     state.flowing = end.at_bound;
     if (state.broken) {
         step.outcome = Outcome::broken;
-    } else if (step.residual > end.allowed_residual || step.gained > 0) {
+    } else if (!(step.residual <= end.allowed_residual) || step.gained > 0) {
         step.outcome = Outcome::unreliable;
     } else if (step.plastic_work > 0 && (end.at_bound || end.start_speed > end.absolute_residual)) {
         step.outcome = Outcome::yielding; // and not the round-off of a flow that has stopped

@@ -53,6 +53,7 @@ class BookedStep {
 
     [[nodiscard]] const JointStep& step() const noexcept { return step_; }
     void clear() noexcept { step_ = {}; }
+    void leave_unbooked() noexcept { step_ = unbooked_step<JointStep>(); }
 
     /// Commits the step that the joint has open; its rows may have given to each other.
     const JointStep& commit(Joint& joint, const typename Joint::Reaction& reaction, S dt) noexcept {

@@ -57,9 +57,12 @@ template <std::floating_point S>
 [[nodiscard]] inline bool is_zero(const Vector3<S>& v) noexcept {
     return v[0] == 0 && v[1] == 0 && v[2] == 0;
 }
-template <std::floating_point S>
-[[nodiscard]] inline bool is_finite(const Vector3<S>& v) noexcept {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+/// True where every entry is finite, without a branch.
+template <std::floating_point S, int Rows, int Columns>
+[[nodiscard]] inline bool is_finite(const Eigen::Matrix<S, Rows, Columns>& m) noexcept {
+    S zero = 0;
+    for (int i = 0; i < Rows * Columns; ++i) zero += m.data()[i] * 0;
+    return zero == 0;
 }
 
 /// Column i of m.

@@ -3,12 +3,12 @@
 // What a joint of any kind and engine says of the step just done.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <optional>
 
 #include "ductile/fracture/event.hpp"
 #include "ductile/joint/joint_totals.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -19,12 +19,12 @@ struct JointReport {
     Outcome outcome = Outcome::elastic;
     bool first_yield = false; ///< it flowed in this step for the first time
     bool coarse = false;      ///< the flow that ended had steps too long for it: step_error.hpp
-    S residual = 0;           ///< worst violation of any of its rows, >= 0 [m/s | rad/s]
+    S residual = 0;           ///< worst violation of any of its rows, as Step::residual
     S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
-    S plastic_travel = 0;     ///< p [m | rad]
-    S absorbed_energy = 0;    ///< D [J]
-    S step_error = 0;         ///< share of p that the steps so far may have misplaced [-]
+    S plastic_travel = 0;  ///< p [m | rad]
+    S absorbed_energy = 0; ///< D [J]
+    S step_error = 0;      ///< share of p that the steps so far may have misplaced [-]
     /// Speed now of the fastest axis that can flow, 0 once broken, >= 0.
     S rotation_rate = 0;                        ///< of rotations [rad/s]
     S elongation_rate = 0;                      ///< of displacements [m/s]
@@ -41,7 +41,7 @@ template <std::floating_point S>
     return {.outcome = totals.broken ? Outcome::broken : outcome,
             .first_yield = last.first_yield,
             .coarse = last.coarse,
-            .residual = std::max(last.residual, rigid_residual),
+            .residual = worse(last.residual, rigid_residual),
             .gained = last.gained,
             .plastic_travel = totals.plastic_travel,
             .absorbed_energy = totals.plastic_work,

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -38,7 +39,10 @@ inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n
 [[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
     std::ostringstream line;
     line << "ductile: joint \"" << event.name << "\" ";
-    if (event.report.unseen_turn > 0) {
+    if (!(event.report.residual <= std::numeric_limits<double>::max())) {
+        line << "was shown numbers that are not finite at t = " << event.time
+             << " s, and keeps its state";
+    } else if (event.report.unseen_turn > 0) {
         line << "turned by " << event.report.unseen_turn
              << " rad in the step that ended at t = " << event.time
              << " s, which its engine or its angle cannot follow; take shorter steps";
@@ -47,7 +51,7 @@ inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n
              << " J more than it took, at t = " << event.time << " s";
     } else {
         line << "was left unsolved by the solver at t = " << event.time << " s (off by "
-         << event.report.residual << " m/s or rad/s)";
+             << event.report.residual << " m/s or rad/s)";
     }
     return line.str();
 }
