@@ -531,6 +531,45 @@ TEST_CASE("a motor that turns faster than Bullet can says so", "[bullet][life]")
     world.world().removeConstraint(&stock);
 }
 
+TEST_CASE("a motor of a body whose numbers are not finite says so and keeps its state",
+          "[bullet][life][not_finite]") {
+    const double bad = GENERATE(as<double>{}, std::nan(""), infinity);
+    const bool turned = GENERATE(true, false);
+    INFO(bad << (turned ? ", at a place" : ", moving"));
+    BulletWorld world;
+    btRigidBody& body = rotor(world);
+    btHingeConstraint stock(body, {0, 0, 0}, {0, 0, 1}, true);
+    bullet::PlasticMotor motor(stock, one(40));
+    world.world().addConstraint(&stock);
+    motor.add_to(world.world());
+    world.step(1e-3);
+    REQUIRE(motor.outcome() == Outcome::yielding);
+    const auto state = motor.joint().state();
+    const double rotation = motor.rotation();
+    const btTransform at = body.getCenterOfMassTransform();
+    const btVector3 velocity = body.getLinearVelocity(), spin = body.getAngularVelocity();
+    if (turned) {
+        body.setCenterOfMassTransform(
+            btTransform(btMatrix3x3(btScalar(bad), 0, 0, 0, btScalar(bad), 0, 0, 0, 1)));
+    } else {
+        body.setAngularVelocity({0, 0, btScalar(bad)});
+    }
+    world.step(1e-3);
+    CHECK(motor.outcome() == Outcome::unreliable);
+    CHECK(motor.residual() == infinity);
+    CHECK(motor.joint().state() == state);
+    CHECK(motor.rotation() == rotation);
+    CHECK(std::isfinite(motor.moment()));
+    body.setCenterOfMassTransform(at);
+    body.setLinearVelocity(velocity);
+    body.setAngularVelocity(spin);
+    world.step(1e-3);
+    CHECK(motor.outcome() == Outcome::yielding);
+    CHECK(motor.absorbed_energy() == Approx(2 * state.plastic_work).epsilon(0.01));
+    motor.remove_from(world.world());
+    world.world().removeConstraint(&stock);
+}
+
 TEST_CASE("Bullet serialises a world with plastic joints", "[bullet][life]") {
     BulletWorld world;
     btRigidBody& body = rotor(world);

@@ -695,3 +695,43 @@ TEST_CASE("a joint of a multibody comes into a world once and leaves it when it 
     CHECK(rig.world().getNumMultiBodyConstraints() == 0);
     keeper.step(1e-3);
 }
+
+TEST_CASE("joints of a multibody whose numbers are not finite say so and keep their states",
+          "[multibody][not_finite]") {
+    // Bullet's multibody itself does not go on, wherever it is put back to
+    const std::string solver = GENERATE(as<std::string>{}, "si", "mlcp");
+    const double bad = GENERATE(as<double>{}, std::nan(""), infinity);
+    const bool turned = GENERATE(true, false);
+    INFO(solver << ", " << bad << (turned ? ", at a place" : ", moving"));
+    const double dt = 1.0 / 240;
+    SECTION("hinge") {
+        Rotors rig(solver, {2});
+        Hinge& hinge = rig.hinge(0, joint(40));
+        rig.body().setJointVel(0, 10);
+        rig.step(dt);
+        const auto state = hinge.joint().state();
+        if (turned) rig.body().setJointPos(0, btScalar(bad));
+        if (!turned) rig.body().setJointVel(0, btScalar(bad));
+        rig.step(dt);
+        CHECK(hinge.outcome() == Outcome::unreliable);
+        CHECK(hinge.residual() == infinity);
+        CHECK(hinge.joint().state() == state);
+    }
+    SECTION("ball") {
+        Pivot rig(solver);
+        Ball& ball = rig.ball({40, 40, 40});
+        rig.spin({0, 0, 10});
+        rig.step(dt);
+        const auto state = ball.state();
+        if (turned) {
+            const btScalar nowhere[4] = {0, btScalar(bad), 0, 1};
+            rig.body().setJointPosMultiDof(0, nowhere);
+        } else {
+            rig.spin({0, 0, bad});
+        }
+        rig.step(dt);
+        CHECK(ball.outcome() == Outcome::unreliable);
+        CHECK(ball.residual() == infinity);
+        CHECK(ball.state() == state);
+    }
+}

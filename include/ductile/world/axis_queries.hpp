@@ -38,6 +38,12 @@ class AxisQueries : public PairQueries {
     explicit AxisQueries(AxisJoint& joint) : joint_(joint) {}
     ~AxisQueries() = default;
 
+    /// What the engine showed of the step [m | rad, N | N m]; what is not finite is not kept.
+    void keep(double position, double force) {
+        if (std::isfinite(position)) position_ = position;
+        if (std::isfinite(force)) force_ = force;
+    }
+
     AxisJoint& joint_;
     double position_ = 0; ///< q
     double force_ = 0;

@@ -97,8 +97,8 @@ class MultiBodyPlasticBall final : public MultiBodyPlasticConstraint {
     }
 
     void prepare(const Tick& tick, std::span<RowLimits<double>> limits) override {
-        tracker_.follow(orientation()); // somebody may have turned it between the ticks
-        const auto rows = joint_.prepare({.position = tracker_.total,
+        // somebody may have turned it between the ticks
+        const auto rows = joint_.prepare({.position = tracker_.follow(orientation()),
                                           .velocity = tick.velocity,
                                           .mass = numeric::inverse(tick.response)},
                                          tick.dt);

@@ -98,8 +98,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// Of the pair as if nothing else acted on it in the tick [N m].
     [[nodiscard]] double moment_alone() const;
     void prepare();
-    /// Tells Bullet what it would know of a row of its own.
-    void read_own_row();
+    /// Of the open tick [N m s]. Tells Bullet what it would know of a row of its own.
+    [[nodiscard]] double impulse_of_own_row();
     void hand_back();
 
     static constexpr int no_row = -1;

@@ -164,14 +164,14 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     axis_ = column(times(a.orientation, to_core(hinge_.getAFrame().getBasis())), 2);
     const double now = measure(a, b, position_);
     // put elsewhere by hand, which is no deformation
-    const bool by_hand = !std::exchange(restored_, false) && now != position_;
+    const bool by_hand = std::isfinite(now) && !std::exchange(restored_, false) && now != position_;
     if (by_hand) {
         joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
     }
-    position_ = now;
+    keep(now, force_);
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
-    limits_ = joint_.prepare({position_, turning(a, b), mass, force_share_.midway}, dt_);
+    limits_ = joint_.prepare({now, turning(a, b), mass, force_share_.midway}, dt_);
     pending_ = true;
 }
 
@@ -189,14 +189,13 @@ DUCTILE_INLINE void MotorConstraint::book(bool late) {
     pending_ = false;
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
     const double speed = turning(a, b);
-    force_ = double(internalGetAppliedImpulse()) / dt_;
-    if (is_open()) read_own_row();
-    if (row_ != no_row) force_ = moment_;
+    double force = row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
+    if (is_open()) force = impulse_of_own_row() / dt_;
     row_ = no_row;
     const double position = measure(a, b, position_ + speed * tick_);
     see_turn(speed, tick_, position);
-    position_ = position;
-    joint_.commit({force_, speed, position_}, dt_);
+    joint_.commit({force, speed, position}, dt_);
+    keep(position, force);
     booked_ = true;
 }
 
@@ -210,13 +209,14 @@ DUCTILE_INLINE void MotorConstraint::finish_tick() {
     if (joint_.last().release > 0) hand_back();
 }
 
-DUCTILE_INLINE void MotorConstraint::read_own_row() {
-    force_ = impulses()[0] / dt_;
-    internalSetAppliedImpulse(btScalar(impulses()[0]));
-    if (m_jointFeedback == nullptr) return;
+DUCTILE_INLINE double MotorConstraint::impulse_of_own_row() {
+    const double impulse = impulses()[0];
+    internalSetAppliedImpulse(btScalar(impulse));
+    if (m_jointFeedback == nullptr) return impulse;
     const Vector3<double> none = Vector3<double>::Zero();
     write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none,
-                   scaled(impulses()[0] / tick_, axis_));
+                   scaled(impulse / tick_, axis_));
+    return impulse;
 }
 
 DUCTILE_INLINE void MotorConstraint::hand_back() {

@@ -117,7 +117,7 @@ class OneAxisConstraint : public PlasticConstraint, public AxisQueries {
     /// True where the bodies are as the last step left them, and nobody else can turn the axis.
     [[nodiscard]] bool is_where_left() const { return owned_ && pose_.is_now(row_); }
     /// The bodies were put elsewhere since the last step: the rest position goes along.
-    void follow_teleport();
+    [[nodiscard]] double follow_teleport();
     void part();
 
     [[nodiscard]] Vector6<double> direction() const;

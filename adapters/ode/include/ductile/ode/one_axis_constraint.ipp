@@ -3,7 +3,6 @@
 // Bodies of one_axis_constraint.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/one_axis_constraint.hpp"
 #include "ductile/ode/precision_check.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 
@@ -86,13 +86,14 @@ DUCTILE_INLINE void OneAxisConstraint::suspend() {
     rigid_unsolved_ = false;
 }
 
-DUCTILE_INLINE void OneAxisConstraint::follow_teleport() {
+DUCTILE_INLINE double OneAxisConstraint::follow_teleport() {
     const double now = row_.measure(position_);
+    if (!std::isfinite(now)) return now;
     if (now != position_ && !restored_) {
         joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
     }
-    position_ = now;
     restored_ = false;
+    return position_ = now;
 }
 
 DUCTILE_INLINE void OneAxisConstraint::part() {
@@ -119,11 +120,12 @@ DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
         return;
     }
     acting_ = true;
+    double position = position_;
     if (restored_ || !is_where_left()) {
         pose_.look(row_);
-        follow_teleport();
+        position = follow_teleport();
     }
-    Motion<double> motion{position_, start_velocity(dt), 0, force_share_.midway};
+    Motion<double> motion{position, start_velocity(dt), 0, force_share_.midway};
     if (!joint_.rigid()) motion.mass = mass();
     set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
     rigid_target_ = rigid_target(dt);
@@ -141,14 +143,14 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     driven_.booked(0, row_.bodies().a, dt);
     driven_.booked(1, row_.bodies().b, dt);
     certify_rigid_rows(twist);
-    force_ = row_force();
+    const double force = row_force();
     const double position =
         row_.measured()
             ? row_.measure(position_ + velocity * dt)
             : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
     if (row_.turns()) see_turn(velocity, dt, position);
-    position_ = position;
-    joint_.commit({force_, velocity, position_}, force_share_.value * dt);
+    joint_.commit({force, velocity, position}, force_share_.value * dt);
+    keep(position, force);
     pose_.look(row_);
     joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
     booked_ = true;
@@ -245,17 +247,17 @@ DUCTILE_INLINE void OneAxisConstraint::certify_rigid_rows(const Vector6<double>&
     const Vector3<double> turning = off(angular(twist), angular(rigid_target_), row_.turns());
     rigid_residual_ = 0;
     for (int i = 0; i < 3; ++i) {
-        rigid_residual_ = std::max({rigid_residual_, std::abs(moving[i]), std::abs(turning[i])});
+        rigid_residual_ = worse(rigid_residual_, worse(std::abs(moving[i]), std::abs(turning[i])));
     }
 
     const double speed = norm(moving), spin = norm(turning);
     rigid_unsolved_ = false;
-    if (std::max(speed, spin) <= joint_.allowed_residual(0)) return;
+    if (worse(speed, spin) <= joint_.allowed_residual(0)) return;
     const dBodyID a = row_.bodies().a;
     const Vector3<double> w = angular_velocity(a);
     const Vector3<double> v = sum(linear_velocity(a), cross(w, pose_.arm_a()));
     rigid_unsolved_ =
-        speed > joint_.allowed_residual(norm(v)) || spin > joint_.allowed_residual(norm(w));
+        !(speed <= joint_.allowed_residual(norm(v)) && spin <= joint_.allowed_residual(norm(w)));
 }
 
 DUCTILE_INLINE double OneAxisConstraint::row_force() const {
