@@ -8,10 +8,11 @@
 //   nu   Poisson's ratio            [-]
 //   f_y  yield stress               [Pa]
 //   G    shear modulus E/(2(1+nu))  [Pa]
+//   f_u  ultimate stress            [Pa]
 //   eps_y, eps_u  strain at yield f_y/E and at fracture [-]
 //
-// Stress beyond yield is a curve of its own, material/stress_strain_curve.hpp; named materials are in
-// material/named.hpp.
+// Stress beyond yield is a curve of its own, material/stress_strain_curve.hpp; named materials are
+// in material/named.hpp.
 #pragma once
 
 #include <concepts>
@@ -29,6 +30,8 @@ struct MaterialParameters {
     S youngs_modulus = std::numeric_limits<S>::quiet_NaN(); ///< E [Pa], > 0
     S poisson_ratio = std::numeric_limits<S>::quiet_NaN();  ///< nu [-], in (-1, 0.5)
     S yield_stress = std::numeric_limits<S>::quiet_NaN();   ///< f_y [Pa], > 0
+    /// f_u [Pa], largest engineering stress, >= f_y; none: not known
+    std::optional<S> ultimate_stress = std::nullopt;
     /// eps_u [-], total engineering strain at which a fibre parts, > f_y/E; infinity: never
     S ultimate_strain = std::numeric_limits<S>::infinity();
     std::optional<FatigueConstants<S>> fatigue = std::nullopt; ///< none: no low-cycle fatigue
@@ -43,10 +46,12 @@ class Material {
     /// @throws std::invalid_argument where a parameter is missing (NaN) or out of range.
     explicit Material(const MaterialParameters<S>& parameters)
         : density_(check::positive("Material.density", parameters.density, "kg/m^3")),
-          youngs_modulus_(check::positive("Material.youngs_modulus", parameters.youngs_modulus, "Pa")),
+          youngs_modulus_(
+              check::positive("Material.youngs_modulus", parameters.youngs_modulus, "Pa")),
           poisson_ratio_(check::between("Material.poisson_ratio", parameters.poisson_ratio, S(-1),
                                         S(0.5), "")),
           yield_stress_(check::positive("Material.yield_stress", parameters.yield_stress, "Pa")),
+          ultimate_stress_(checked_ultimate_stress(parameters)),
           ultimate_strain_(checked_ultimate_strain(parameters)),
           fatigue_(parameters.fatigue) {
         if (fatigue_) checked(*fatigue_);
@@ -57,6 +62,10 @@ class Material {
     [[nodiscard]] S poisson_ratio() const noexcept { return poisson_ratio_; }   ///< nu [-]
     [[nodiscard]] S yield_stress() const noexcept { return yield_stress_; }     ///< f_y [Pa]
 
+    /// f_u [Pa], where it is known.
+    [[nodiscard]] const std::optional<S>& ultimate_stress() const noexcept {
+        return ultimate_stress_;
+    }
     [[nodiscard]] S ultimate_strain() const noexcept { return ultimate_strain_; } ///< eps_u [-]
     [[nodiscard]] S yield_strain() const noexcept { return yield_stress_ / youngs_modulus_; }
 
@@ -71,6 +80,15 @@ class Material {
     }
 
   private:
+    static std::optional<S> checked_ultimate_stress(const MaterialParameters<S>& parameters) {
+        if (!parameters.ultimate_stress) return std::nullopt;
+        constexpr auto field = "Material.ultimate_stress";
+        check::positive(field, *parameters.ultimate_stress, "Pa");
+        if (*parameters.ultimate_stress < parameters.yield_stress) {
+            check::fail(field, *parameters.ultimate_stress, "Pa", ">= yield_stress");
+        }
+        return parameters.ultimate_stress;
+    }
     static S checked_ultimate_strain(const MaterialParameters<S>& parameters) {
         constexpr auto field = "Material.ultimate_strain";
         check::positive_or_infinite(field, parameters.ultimate_strain, "");
@@ -85,6 +103,7 @@ class Material {
     S youngs_modulus_;
     S poisson_ratio_;
     S yield_stress_;
+    std::optional<S> ultimate_stress_;
     S ultimate_strain_;
     std::optional<FatigueConstants<S>> fatigue_;
 };

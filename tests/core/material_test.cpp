@@ -94,3 +94,16 @@ TEST_CASE("a material names the limit of strain or fatigue constant that is out 
                 .strength_coefficient = 900e6,
                 .strength_exponent = -0.09}) == "nothing thrown");
 }
+
+TEST_CASE("a material names an ultimate stress that is out of range", "[material]") {
+    auto parameters = steel;
+    CHECK_FALSE(Material(parameters).ultimate_stress().has_value());
+    parameters.ultimate_stress = 400e6;
+    CHECK(Material(parameters).ultimate_stress() == 400e6);
+    parameters.ultimate_stress = 399e6;
+    CHECK(message_of([&] { Material<double>{parameters}; }) ==
+          "Material.ultimate_stress = 399000000 Pa: must be >= yield_stress");
+    parameters.ultimate_stress = std::numeric_limits<double>::quiet_NaN();
+    CHECK(message_of([&] { Material<double>{parameters}; }) ==
+          "Material.ultimate_stress = nan Pa: must be finite and > 0");
+}

@@ -58,6 +58,7 @@
 #include "ductile/joint/link_pose.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // Monotonic stress-strain curve as pairs, straight between them and through the origin to the first
-// pair. Strain and stress are engineering values (change of length and force over the original length
-// and area), as a tensile test reports them and as a section with its original area needs them;
-// `engineering_from_true` and `true_from_engineering` convert up to the onset of necking.
+// pair. Strain and stress are engineering values (change of length and force over the original
+// length and area), as a tensile test reports them and as a section with its original area needs
+// them; `engineering_from_true` and `true_from_engineering` convert up to the onset of necking.
 //
-// Compression mirrors tension. Beyond the last pair the stress stays at its last value: fracture is a
-// criterion of its own, not a hole in the curve.
+// Compression mirrors tension. Beyond the last pair the stress stays at its last value: fracture is
+// a criterion of its own, not a hole in the curve.
 //
-// Source: conversion of a uniformly stretched bar of constant volume, e.g. Dieter (1986), Mechanical
-// Metallurgy, ch. 8: eps_true = ln(1 + eps), sigma_true = sigma (1 + eps).
+// Source: conversion of a uniformly stretched bar of constant volume, e.g. Dieter (1986),
+// Mechanical Metallurgy, ch. 8: eps_true = ln(1 + eps), sigma_true = sigma (1 + eps).
 //
 // Symbols
 //   eps   engineering strain               [-]
@@ -27,6 +27,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/material.hpp"
 #include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
@@ -72,8 +73,8 @@ class StressStrainCurve {
     /// @throws std::invalid_argument where E is missing or a pair breaks the rules above.
     explicit StressStrainCurve(StressStrainCurveParameters<S> parameters)
         : points_(std::move(parameters.points)) {
-        check_points(check::positive("StressStrainCurve.youngs_modulus", parameters.youngs_modulus,
-                                     "Pa"));
+        check_points(
+            check::positive("StressStrainCurve.youngs_modulus", parameters.youngs_modulus, "Pa"));
         points_.shrink_to_fit();
     }
 
@@ -81,6 +82,7 @@ class StressStrainCurve {
     [[nodiscard]] S stress(S strain) const noexcept {
         const S size = std::abs(strain);
         const std::size_t end = piece_end(size);
+        if (end == 0) return slope(0) * strain; // without round-off at zero
         const S value = end == points_.size()
                             ? points_.back().stress
                             : points_[end].stress - slope(end) * (points_[end].strain - size);
@@ -150,9 +152,25 @@ StressStrainCurve(StressStrainCurveParameters<S>) -> StressStrainCurve<S>;
 template <std::floating_point S>
 [[nodiscard]] StressStrainCurve<S> elastic_perfectly_plastic(S youngs_modulus, S yield_stress,
                                                              S last_strain) {
-    return StressStrainCurve<S>({.youngs_modulus = youngs_modulus,
-                                 .points = {{yield_stress / youngs_modulus, yield_stress},
-                                            {last_strain, yield_stress}}});
+    return StressStrainCurve<S>(
+        {.youngs_modulus = youngs_modulus,
+         .points = {{yield_stress / youngs_modulus, yield_stress}, {last_strain, yield_stress}}});
+}
+
+/// Elastic to f_y, then straight to f_u at eps_u, as EN 1992-1-1, 3.2.7(2)a has it for reinforcing
+/// steel. Where eps_u is the elongation after fracture the line is below the curve of a test, which
+/// has its largest stress before. Of such a curve moment_rotation makes the hardening law of a
+/// hinge.
+/// @throws std::invalid_argument where the material has no ultimate stress or no limit of strain.
+template <std::floating_point S>
+[[nodiscard]] StressStrainCurve<S> elastic_hardening(const Material<S>& material) {
+    const S stress = check::positive(
+        "Material.ultimate_stress",
+        material.ultimate_stress().value_or(std::numeric_limits<S>::quiet_NaN()), "Pa");
+    const S strain = check::positive("Material.ultimate_strain", material.ultimate_strain(), "");
+    return StressStrainCurve<S>(
+        {.youngs_modulus = material.youngs_modulus(),
+         .points = {{material.yield_strain(), material.yield_stress()}, {strain, stress}}});
 }
 
 } // namespace ductile
