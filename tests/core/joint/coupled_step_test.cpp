@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+//
+// What a coupled joint's step rests on, each against a closed form or the one-axis joint: strength
+// at the midpoint of the travel, bounds lowered before a break, a cap that is met first, when it
+// broke.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/fracture/any_of.hpp"
+#include "ductile/fracture/brittle_force.hpp"
+#include "ductile/fracture/softening_damage.hpp"
+#include "ductile/joint/coupled_joint.hpp"
+#include "ductile/joint/link.hpp"
+#include "ductile/joint/one_axis_joint.hpp"
+#include "ductile/law/linear.hpp"
+#include "ductile/law/perfect.hpp"
+#include "ductile/surface/ellipsoid.hpp"
+
+using namespace ductile;
+
+namespace {
+
+using V2 = Eigen::Matrix<double, 2, 1>;
+using Ellipse = Ellipsoid<double, 2>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+double solve(const RowLimits<double>& row, double mass, double free, double dt) {
+    const double wanted = (row.bias - free) / (1 / mass + row.compliance);
+    return std::clamp(wanted, row.lower * dt, row.upper * dt);
+}
+
+/// Two decoupled axes of mass 2.
+template <class Joint>
+struct Plate {
+    typename Joint::Step step(double dt, const V2& load = V2::Zero()) {
+        const auto rows =
+            joint.prepare({position, velocity, mass * Eigen::Matrix2d::Identity()}, dt);
+        V2 force;
+        for (int i = 0; i < 2; ++i) {
+            const double free = velocity[i] + dt * load[i] / mass;
+            const double impulse = solve(rows[std::size_t(i)], mass, free, dt);
+            velocity[i] = free + impulse / mass;
+            force[i] = impulse / dt;
+        }
+        position += velocity * dt;
+        return joint.commit({force, velocity, position}, dt);
+    }
+    typename Joint::Step run_to_break(double dt) {
+        typename Joint::Step last;
+        for (int i = 0; i < 100'000 && !joint.state().broken; ++i) last = step(dt);
+        REQUIRE(joint.fracture());
+        return last;
+    }
+
+    Joint joint;
+    V2 velocity;
+    V2 position = V2::Zero();
+    double mass = 2;
+};
+
+} // namespace
+
+TEST_CASE("a coupled joint hardens at the midpoint of each step's travel", "[coupled_joint]") {
+    // R₀ p + H p²/2 = E; strength as it stands at the start, or as it will at the end, of a step is
+    // off by first order in the step
+    const double travel = (-40 + std::sqrt(1600 + 2 * 300 * 100.0)) / 300;
+    const auto stop = [](double dt) {
+        Plate plate{CoupledJoint(Ellipse({.capacity = V2(40, 40)}),
+                                 Linear<double>({.strength = 40, .hardening = 300})),
+                    V2(8, 6)};
+        for (double t = 0; t < 1; t += dt) plate.step(dt);
+        return plate.joint.state().plastic_travel;
+    };
+    const double coarse = std::abs(stop(1.0 / 60) - travel),
+                 fine = std::abs(stop(1.0 / 240) - travel);
+    INFO("off by " << coarse << " and " << fine << " of " << travel);
+    CHECK(coarse < 0.01 * travel);
+    CHECK(fine < coarse / 8);
+}
+
+TEST_CASE("bounds lowered before a coupled break leave little to hand back", "[coupled_joint]") {
+    // a step of the full strength takes up to 40 N · 10 m/s · dt, of which the travel left is a
+    // part
+    for (const double dt : {1.0 / 15, 1.0 / 60, 1.0 / 1000}) {
+        Plate plate{
+            CoupledJoint(Ellipse({.capacity = V2(40, 40)}), Perfect<double>({.strength = 40}),
+                         TravelLimit<double>({.limit = 1.1})),
+            V2(8, 6)};
+        const auto last = plate.run_to_break(dt);
+        INFO("dt = " << dt << ", to be handed back " << last.release << " J");
+        CHECK(last.release < 0.01 * 40 * 10 * dt);
+        CHECK(plate.velocity.squaredNorm() == Approx(100 - 44 - last.release).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a cap that is met before the travel is used up bounds the force as it is",
+          "[coupled_joint]") {
+    // brittle at half the strength, with hardly any travel left: bounds at the cap, not at a share
+    Plate plate{CoupledJoint(Ellipse({.capacity = V2(40, 40)}), Perfect<double>({.strength = 40}),
+                             AnyOf(BrittleForce<double>({.limit = 20}),
+                                   TravelLimit<double>({.limit = 0.03}))),
+                V2(6, 8)};
+    const auto rows =
+        plate.joint.prepare({V2::Zero(), V2(6, 8), 2 * Eigen::Matrix2d::Identity()}, 0.01);
+    CHECK(V2(rows[0].lower, rows[1].lower).norm() == Approx(20).epsilon(1e-9));
+    plate.run_to_break(0.01);
+    CHECK(plate.joint.fracture()->criterion == CriterionKind::brittle_force);
+    CHECK(plate.joint.fracture()->absorbed_energy == 0);
+}
+
+TEST_CASE("a coupled joint of which one axis moves breaks when the one-axis joint does",
+          "[coupled_joint]") {
+    for (const double dt : {1.0 / 60, 1.0 / 240, 1e-3}) {
+        INFO("dt = " << dt);
+        const Perfect<double> forty({.strength = 40});
+        const TravelLimit<double> limit({.limit = 0.03});
+        Plate plate{CoupledJoint(Ellipse({.capacity = V2(40, 40)}), forty, limit), V2(8, 0)};
+        plate.run_to_break(dt);
+        OneAxisJoint one(forty, limit);
+        double velocity = 8, position = 0;
+        for (int i = 0; i < 1000 && !one.state().broken; ++i) {
+            const double impulse = solve(one.prepare({position, velocity, 2}, dt), 2, velocity, dt);
+            velocity += impulse / 2;
+            position += velocity * dt;
+            one.commit({impulse / dt, velocity, position}, dt);
+        }
+        REQUIRE(one.fracture());
+        CHECK(plate.joint.fracture()->time == Approx(one.fracture()->time).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("the spring of a joint whose criterion fades holds what is left of the strength",
+          "[joint]") {
+    // driven at a given speed: f = R (1 - p/p_failure), and the spring holds f²/(2 k)
+    for (const double stiffness : {400.0, 4e4, 4e6}) {
+        const double failure = 0.5, speed = 0.2, dt = 1e-3, heavy = 1e7;
+        OneAxisJoint joint(Perfect<double>({.strength = 40}),
+                           SofteningDamage<double>({.onset = 0, .failure = failure}),
+                           {.stiffness = stiffness});
+        double position = 0, force = 0;
+        while (joint.state().plastic_travel < failure / 2) {
+            const double impulse =
+                solve(joint.prepare({position, speed, heavy}, dt), heavy, speed, dt);
+            position += speed * dt;
+            force = impulse / dt;
+            REQUIRE(joint.commit({force, speed, position}, dt).outcome != Outcome::unreliable);
+        }
+        INFO("stiffness " << stiffness);
+        CHECK(-force == Approx(20).epsilon(1e-2));
+        CHECK(joint.state().stored == Approx(force * force / (2 * stiffness)).epsilon(1e-2));
+    }
+}
+
+TEST_CASE("a link that the engine left out of a step knows of no motion before it",
+          "[joint][link]") {
+    using Hinge = OneAxisJoint<Perfect<double>>;
+    Link<Hinge> link(Hinge(Perfect<double>({.strength = 40})), {JointAxis::torsion}, {}, {});
+    BodyState<double> wheel, ground;
+    wheel.inverse_mass = 1;
+    wheel.inverse_inertia.setIdentity();
+    wheel.spin = {0, 0, 3};
+    link.start(wheel, ground);
+    link.prepare(wheel, ground, 0.01, 20);
+    wheel.spin.z() -= 0.4;
+    Vector6<double> forces = Vector6<double>::Zero();
+    forces[5] = -40;
+    link.commit_rows(wheel, ground, forces, 0.01);
+    REQUIRE(link.joint().state().velocity == Approx(2.6));
+    REQUIRE(link.joint().state().flowing);
+    const double work = link.totals().plastic_work;
+    link.pause();
+    CHECK(link.joint().state().velocity == 0);
+    CHECK(link.joint().state().start_velocity == 0);
+    CHECK_FALSE(link.joint().state().flowing);
+    CHECK(link.last().plastic_work == 0);
+    CHECK(link.totals().plastic_work == work);
+}
