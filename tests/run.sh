@@ -12,5 +12,3 @@ for preset in "${@:-release}"; do
     cmake --build --preset "$preset"
     ctest --preset "$preset" -j "$(nproc)"
 done
-# what the contract of the last preset showed, solver by solver
-python3 tests/features.py build/"${preset}"/tests/features_*.csv >tests/features.md
