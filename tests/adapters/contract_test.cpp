@@ -334,7 +334,7 @@ class Cantilever {
     void step(double dt) {
         rig_.step(dt);
         for (auto* hinge : hinges_) {
-            reliable_ = reliable_ && !says_unsolved(*hinge);
+            reliable_ = reliable_ && !says_wrong(*hinge);
         }
     }
     /// True while every joint was solved in every step.

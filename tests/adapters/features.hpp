@@ -78,15 +78,16 @@ inline Features& features() {
     return all;
 }
 
-/// True where a joint says of the step just done that its rows were left unsolved, and its own
-/// certificate bears that out: a row is off by more than any joint here allows. A joint that is
-/// unreliable for another reason, or for none, reports no unsolved row.
+/// True where a joint says of the step just done that it is wrong. Checks that what it says bears that
+/// out: a row that is off by more than any joint here allows, or energy made from nothing.
 template <class JointOfRig>
-[[nodiscard]] bool says_unsolved(const JointOfRig& joint) {
+[[nodiscard]] bool says_wrong(const JointOfRig& joint) {
     constexpr double least_allowed = 1e-3; // OneAxisParameters::absolute_residual [m/s | rad/s]
     const auto report = joint.report();
-    return report.outcome == Outcome::unreliable && report.residual > least_allowed &&
-           std::isfinite(report.residual);
+    if (report.outcome != Outcome::unreliable) return false;
+    CHECK(std::isfinite(report.residual));
+    CHECK((report.residual > least_allowed || report.gained > 0));
+    return true;
 }
 
 /// One run that shows a feature: what it compares is what the table says. A run in which nothing is
@@ -116,11 +117,11 @@ class Shown {
         note(std::abs(error), tolerance);
         CHECK(std::abs(error) <= tolerance);
     }
-    /// Checks that a run is right, or that a joint whose rows it needs said `says_unsolved`.
-    void right_or_reported(bool right, bool unsolved) {
-        unsolved_ = unsolved_ || unsolved;
-        wrong_ = wrong_ || (!right && !unsolved);
-        CHECK((right || unsolved));
+    /// Checks that a run is right, or that a joint of it `says_wrong`.
+    void right_or_reported(bool right, bool reported) {
+        unsolved_ = unsolved_ || reported;
+        wrong_ = wrong_ || (!right && !reported);
+        CHECK((right || reported));
     }
 
   private:
