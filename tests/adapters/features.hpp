@@ -78,8 +78,8 @@ inline Features& features() {
     return all;
 }
 
-/// True where a joint says of the step just done that it is wrong. Checks that what it says bears that
-/// out: a row that is off by more than any joint here allows, or energy made from nothing.
+/// True where a joint says of the step just done that it is wrong. Checks that what it says bears
+/// that out: a row that is off by more than any joint here allows, or energy made from nothing.
 template <class JointOfRig>
 [[nodiscard]] bool says_wrong(const JointOfRig& joint) {
     constexpr double least_allowed = 1e-3; // OneAxisParameters::absolute_residual [m/s | rad/s]

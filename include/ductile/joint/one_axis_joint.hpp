@@ -338,7 +338,7 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
     start_ = motion.velocity;
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
-    sound_ = are_finite(start_, elastic_, dt, rigid() ? Scalar(0) : motion.mass);
+    sound_ = are_finite(start_, elastic_, dt) && (rigid() || motion.mass >= 0);
     if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
     bound(dt);
     RowLimits<Scalar> row{.lower = lower_, .upper = upper_};

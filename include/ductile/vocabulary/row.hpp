@@ -43,7 +43,7 @@ struct Motion {
     Scalar position = 0; ///< q, not wrapped: a hinge may turn many times [m | rad]
     Scalar velocity = 0; ///< u [m/s | rad/s]
     /// m = 1/(J M⁻¹ Jᵀ) with the joint's rigid rows holding; read only by rows with an elastic part,
-    /// 0: not known [kg | kg m²]
+    /// 0: not known, infinite: driven [kg | kg m²]
     Scalar mass = 0;
     /// Velocities are those in the middle of steps: world/leapfrog.hpp. Only the certificate asks.
     bool midway = false;
