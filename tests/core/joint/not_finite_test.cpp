@@ -257,6 +257,22 @@ void check_link(const Link<Joint>& link) {
 
 } // namespace
 
+TEST_CASE("the spring between driven bodies is ruled and booked", "[joint][not_finite]") {
+    // nothing moves them: the force is the spring's at the start of the step
+    OneAxisJoint<Perfect<double>> joint(Perfect<double>({.strength = 40}), {}, {.stiffness = 1000});
+    for (int i = 0; i < 2; ++i) {
+        const double from = 0.01 * i, to = from + 0.01;
+        const RowLimits<double> row = joint.prepare({from, 1, infinity}, dt);
+        REQUIRE(is_number(row));
+        CHECK(row.lower == Approx(-1000 * from));
+        CHECK(row.upper == row.lower);
+        const Step<double> step = joint.commit({row.lower, 1, to}, dt);
+        CHECK(step.outcome != Outcome::unreliable);
+        CHECK(step.elastic == Approx(1000 * (to * to - from * from) / 2));
+    }
+    CHECK(joint.state().stored == Approx(0.2));
+}
+
 TEST_CASE("a one-axis joint keeps its state where a number is not finite, and says so",
           "[joint][not_finite]") {
     check_one_axis(
