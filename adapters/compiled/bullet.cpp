@@ -9,14 +9,9 @@
 #include <ductile/bullet/front_solver.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
-#include <ductile/bullet/kept_mass.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
-#include <ductile/bullet/self_solved_rows.ipp>
-#include <ductile/bullet/shifted_lcp.ipp>
-#include <ductile/bullet/soft_mlcp_solver.ipp>
-#include <ductile/bullet/suspect_solver.ipp>
 #include <ductile/bullet/world.ipp>
 
 namespace ductile::bullet {

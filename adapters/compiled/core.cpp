@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // What of the core is compiled once (DUCTILE_COMPILED).
-#include <ductile/joint/row_sweep.hpp>
 #include <ductile/joint/usual_joints.hpp>
 #include <ductile/numeric/block_ldlt.hpp>
 #include <ductile/numeric/block_ldlt.ipp>
@@ -24,6 +23,5 @@ template class AnyLink<double>;
 template class Link<UsualAxisJoint>;
 template class Link<UsualSixAxisJoint>;
 template class AxisJointOf<UsualAxisJoint>;
-template class RowSweep<double>;
 
 } // namespace ductile

@@ -58,13 +58,19 @@ class Field {
         const int bodies = settings.chain ? settings.count + 1 : 2 * settings.count;
         bodies_.reserve(std::size_t(bodies));
         for (int i = 0; i < bodies; ++i) add_body(i);
+        if (settings.joint == Joint::plastic_hinge || settings.joint == Joint::plastic_joint) {
+            solves_.emplace(*world_, ductile::bullet::WorldParameters{.ledger = false});
+        }
         const double before = heap_in_use();
         constraints_.reserve(std::size_t(settings.count));
         for (int i = 0; i < settings.count; ++i) add_joint(i);
         heap_ = heap_in_use() - before;
     }
     /// The world goes first: Bullet looks for all that is taken out of it one by one.
-    ~Field() { world_.reset(); }
+    ~Field() {
+        solves_.reset();
+        world_.reset();
+    }
     Field(const Field&) = delete;
     Field& operator=(const Field&) = delete;
 
@@ -182,6 +188,7 @@ class Field {
     btSequentialImpulseConstraintSolver solver_;
     std::optional<btDiscreteDynamicsWorld> world_{std::in_place, &dispatcher_, &broadphase_, &solver_,
                                                   &configuration_};
+    std::optional<ductile::bullet::World> solves_; ///< islands of plastic joints
     btSphereShape shape_{btScalar(0.1)};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<Held>> constraints_;

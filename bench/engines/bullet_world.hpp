@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world.hpp"
 #include "engines/settings.hpp"
 #include "methods/bullet/all.hpp"
@@ -30,12 +31,10 @@ class BulletWorld {
     static constexpr std::string_view precision =
         sizeof(btScalar) == sizeof(double) ? "double" : "float";
     static constexpr int default_iterations = 10; ///< of btContactSolverInfo
-    static constexpr std::string_view exact_solver = "soft-mlcp"; ///< elastic rows included
-    static constexpr std::array<SolverName, 5> solvers{{{"mlcp", Iterations::fallback},
-                                                        {"soft-mlcp", Iterations::fallback},
-                                                        {"si", Iterations::solve},
-                                                        {"nncg", Iterations::solve},
-                                                        {"soft-nncg", Iterations::solve}}};
+    static constexpr std::string_view exact_solver =
+        "si"; ///< of our joints, whose islands a front solves
+    static constexpr std::array<SolverName, 3> solvers{
+        {{"mlcp", Iterations::fallback}, {"si", Iterations::solve}, {"nncg", Iterations::solve}}};
 
     [[nodiscard]] static bool has(std::string_view method) {
         return std::any_of(bullet_methods::all.begin(), bullet_methods::all.end(),
@@ -97,22 +96,17 @@ class BulletWorld {
         if (settings.solver == "mlcp") {
             dantzig_ = std::make_unique<btDantzigSolver>();
             solver_ = std::make_unique<btMLCPSolver>(dantzig_.get());
-        } else if (settings.solver == "soft-mlcp") {
-            dantzig_ = std::make_unique<btDantzigSolver>();
-            solver_ = std::make_unique<ductile::bullet::SoftMlcpSolver>(
-                *dantzig_, ductile::bullet::Answer::exact);
         } else if (settings.solver == "si") {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
         } else if (settings.solver == "nncg") {
             solver_ = std::make_unique<btNNCGConstraintSolver>();
-        } else if (settings.solver == "soft-nncg") {
-            solver_ = std::make_unique<ductile::bullet::SoftNncgSolver>();
         } else {
             throw std::invalid_argument("solver = " + settings.solver +
-                                        ": must be mlcp, soft-mlcp, si, nncg or soft-nncg");
+                                        ": must be mlcp, si or nncg");
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_,
                                                            solver_.get(), &configuration_);
+        front_ = std::make_unique<ductile::bullet::FrontHold>(*world_); // islands of our joints
         world_->setGravity(ductile::bullet::to_bullet(scene_.gravity));
         btContactSolverInfo& info = world_->getSolverInfo();
         if (settings.iterations > 0) info.m_numIterations = settings.iterations;
@@ -228,6 +222,7 @@ class BulletWorld {
     std::unique_ptr<btMLCPSolverInterface> dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::unique_ptr<ductile::bullet::FrontHold> front_;
     btSphereShape shape_{1};
     /// What touches the ground: Bullet's fixed body has no shape, and manifolds ask for one.
     btRigidBody ground_{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape_)};

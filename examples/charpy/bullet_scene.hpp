@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// The Charpy test in Bullet. Contacts are set up so that the engine neither adds nor takes energy with
-// them: the contact points are those of edge_contact.hpp, handed to Bullet as manifolds, and split
-// impulse corrects positions apart from velocities at any depth. Bodies do not collide otherwise.
+// The Charpy test in Bullet. Contacts are set up so that the engine neither adds nor takes energy
+// with them: the contact points are those of edge_contact.hpp, handed to Bullet as manifolds, and
+// split impulse corrects positions apart from velocities at any depth. Bodies do not collide
+// otherwise.
 //
-// The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of the
-// blow gravity would move it by 0.1 mm.
+// The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of
+// the blow gravity would move it by 0.1 mm.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
-#include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>
-#include <BulletDynamics/MLCPSolvers/btSolveProjectedGaussSeidel.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <algorithm>
@@ -89,8 +90,8 @@ class BulletScene {
 
     [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
     [[nodiscard]] double hammer_energy() const {
-        return kinetic(*hammer_) + s_.total_hammer_mass() * s_.gravity *
-                                       double(hammer_->getCenterOfMassPosition().y());
+        return kinetic(*hammer_) +
+               s_.total_hammer_mass() * s_.gravity * double(hammer_->getCenterOfMassPosition().y());
     }
     [[nodiscard]] double nose_speed() const {
         const btVector3 arm = hammer_->getCenterOfMassTransform().getBasis() * nose_local_;
@@ -117,8 +118,9 @@ class BulletScene {
     }
     /// Angle between the outermost parts: the bend of the whole specimen [rad].
     [[nodiscard]] double rotation() const {
-        const btMatrix3x3 relative = parts_.front()->getCenterOfMassTransform().getBasis().transposeTimes(
-            parts_.back()->getCenterOfMassTransform().getBasis());
+        const btMatrix3x3 relative =
+            parts_.front()->getCenterOfMassTransform().getBasis().transposeTimes(
+                parts_.back()->getCenterOfMassTransform().getBasis());
         return std::atan2(double(relative[0][2]), double(relative[0][0]));
     }
     [[nodiscard]] bool broken() {
@@ -152,7 +154,8 @@ class BulletScene {
     }
     static double kinetic(const btRigidBody& body) {
         const auto v = ductile::bullet::to_core(body.getLinearVelocity());
-        const btVector3 turned = body.getAngularVelocity() * body.getCenterOfMassTransform().getBasis();
+        const btVector3 turned =
+            body.getAngularVelocity() * body.getCenterOfMassTransform().getBasis();
         const auto w = ductile::bullet::to_core(turned);
         const auto inertia = ductile::bullet::to_core(body.getLocalInertia());
         return double(body.getMass()) * v.squaredNorm() / 2 + w.cwiseAbs2().dot(inertia) / 2;
@@ -162,23 +165,19 @@ class BulletScene {
         configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
         dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
         broadphase_ = std::make_unique<btDbvtBroadphase>();
-        using ductile::bullet::Answer;
         if (solver == "mlcp") {
-            solve_lcp(std::make_unique<btDantzigSolver>(), Answer::exact);
-        } else if (solver == "lemke") {
-            solve_lcp(std::make_unique<btLemkeSolver>(), Answer::exact);
-        } else if (solver == "pgs") {
-            solve_lcp(std::make_unique<btSolveProjectedGaussSeidel>(), Answer::iterated);
+            solver_ = std::make_unique<btMLCPSolver>(&dantzig_);
         } else if (solver == "si") {
-            solver_ = std::make_unique<ductile::bullet::SoftSequentialImpulseSolver>();
+            solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
         } else if (solver == "nncg") {
-            solver_ = std::make_unique<ductile::bullet::SoftNncgSolver>();
+            solver_ = std::make_unique<btNNCGConstraintSolver>();
         } else {
             throw std::invalid_argument("--solver = " + solver + ": must be " +
                                         std::string(bullet_solvers) + " with --engine bullet");
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), broadphase_.get(),
                                                            solver_.get(), configuration_.get());
+        front_ = std::make_unique<ductile::bullet::FrontHold>(*world_); // islands of plastic joints
         world_->setGravity(vector(0, -s_.gravity, 0));
         btContactSolverInfo& info = world_->getSolverInfo();
         info.m_numIterations = s_.iterations;
@@ -187,12 +186,6 @@ class BulletScene {
         info.m_globalCfm = scalar(compliance(s_.restitution));
         // manifolds made by hand do not merge islands: one island for all
         world_->getSimulationIslandManager()->setSplitIslands(false);
-    }
-
-    /// Bullet's own solvers, made to honour the compliance of elastic rows.
-    void solve_lcp(std::unique_ptr<btMLCPSolverInterface> lcp, ductile::bullet::Answer answer) {
-        lcp_ = std::move(lcp);
-        solver_ = std::make_unique<ductile::bullet::SoftMlcpSolver>(*lcp_, answer);
     }
 
     btRigidBody& add_body(btCollisionShape& shape, double mass, const btVector3& inertia,
@@ -215,8 +208,8 @@ class BulletScene {
             const double z = side * (s_.anvil_gap + s_.anvil_width) / 2;
             const btTransform at(btQuaternion::getIdentity(),
                                  vector(-depth / 2, s_.specimen_bottom + s_.width / 2, z));
-            anvils_.push_back(&add_body(box(depth, 5 * s_.width, s_.anvil_width), 0,
-                                        vector(0, 0, 0), at));
+            anvils_.push_back(
+                &add_body(box(depth, 5 * s_.width, s_.anvil_width), 0, vector(0, 0, 0), at));
         }
     }
 
@@ -239,8 +232,8 @@ class BulletScene {
         const btTransform at(raised, pivot + quatRotate(raised, vector(0, -centre, 0)));
         hammer_ = &add_body(*shape, mass, vector(about_centre, about_centre, about_centre), at);
         shapes_.push_back(std::move(shape));
-        add_constraint(std::make_unique<btHingeConstraint>(*hammer_, vector(0, centre, 0),
-                                                           vector(0, 0, 1)));
+        add_constraint(
+            std::make_unique<btHingeConstraint>(*hammer_, vector(0, centre, 0), vector(0, 0, 1)));
     }
 
     void add_specimen() {
@@ -278,8 +271,8 @@ class BulletScene {
         }
     }
     void pair(const btRigidBody& striker, const Edge& edge, const btRigidBody& part, double side) {
-        pairs_.push_back({&striker, edge, &part, side,
-                          dispatcher_->getNewManifold(&striker, &part), false});
+        pairs_.push_back(
+            {&striker, edge, &part, side, dispatcher_->getNewManifold(&striker, &part), false});
     }
 
     /// Fills the manifolds with this step's contact points; impulses carry over for warm starting.
@@ -289,7 +282,8 @@ class BulletScene {
         for (Pair& pair : pairs_) {
             const btTransform& striker = pair.striker->getCenterOfMassTransform();
             const auto world = [&striker](const Vector& local) {
-                return Vector(ductile::bullet::to_core(striker * ductile::bullet::to_bullet(local)));
+                return Vector(
+                    ductile::bullet::to_core(striker * ductile::bullet::to_bullet(local)));
             };
             const btTransform& part = pair.part->getCenterOfMassTransform();
             const EdgeContact contact =
@@ -363,7 +357,8 @@ class BulletScene {
         constexpr int bending = 5; // rotation about the frames' z
         const double moment = notched ? s_.notched_moment() : s_.full_moment();
         switch (method_) {
-            case Method::rigid: return;
+            case Method::rigid:
+                return;
             case Method::plastic_hinge:
                 return add_plastic<PlasticHinge>(a, b, in_a, in_b, hinge_law(s_, notched));
             case Method::elastic_plastic:
@@ -378,7 +373,8 @@ class BulletScene {
                 return;
             }
             case Method::spring: {
-                auto joint = std::make_unique<btGeneric6DofSpringConstraint>(a, b, in_a, in_b, true);
+                auto joint =
+                    std::make_unique<btGeneric6DofSpringConstraint>(a, b, in_a, in_b, true);
                 lock(*joint, bending);
                 joint->enableSpring(bending, true);
                 joint->setStiffness(bending, scalar(moment)); // the seed's: M_p per radian
@@ -423,7 +419,9 @@ class BulletScene {
         return ductile::bullet::to_core(velocity(part) - velocity(striker)).dot(point.normal);
     }
 
-    [[nodiscard]] btVector3 nose_tip() const { return hammer_->getCenterOfMassTransform() * nose_local_; }
+    [[nodiscard]] btVector3 nose_tip() const {
+        return hammer_->getCenterOfMassTransform() * nose_local_;
+    }
     /// x of the struck face at the middle of the specimen [m].
     [[nodiscard]] double front() const {
         return double(parts_[parts_.size() / 2]->getCenterOfMassPosition().x()) + s_.height / 2;
@@ -437,9 +435,10 @@ class BulletScene {
     std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
     std::unique_ptr<btCollisionDispatcher> dispatcher_;
     std::unique_ptr<btDbvtBroadphase> broadphase_;
-    std::unique_ptr<btMLCPSolverInterface> lcp_;
+    btDantzigSolver dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::unique_ptr<ductile::bullet::FrontHold> front_;
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;

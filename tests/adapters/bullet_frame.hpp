@@ -26,7 +26,7 @@ struct FrameSettings {
     int crates = 0;        ///< of 1 t on every beam
     int frames = 1;        ///< one on the other, jointed by their columns
     bool contacts = false; ///< members collide
-    bullet::WorldParameters world{.solve_islands = true};
+    bullet::WorldParameters world{};
 };
 
 class BulletFrame {

@@ -5,8 +5,7 @@
 
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
-#include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>
-#include <BulletDynamics/MLCPSolvers/btSolveProjectedGaussSeidel.h>
+#include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
@@ -30,43 +29,39 @@ class Rig {
     using HardeningHinge = bullet::PlasticHinge<OneAxisJoint<Linear<double>>>;
     using Body = btRigidBody*;
     static constexpr const char* engine = "Bullet";
+    static constexpr bool meets_surfaces = true; ///< in the solve, not by bounds
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
     /// Upper bound of what rows of a softened world give per force [m/s/N].
     static constexpr double softness = single ? 1e-9 : 1e-13;
 
-    /// Solvers to run every test with.
-    static std::vector<std::string> solvers() {
-        return {"si", "nncg", "mlcp-dantzig", "mlcp-lemke", "mlcp-pgs"};
-    }
+    /// Bullet's default solver behind the front of a World, and an independent direct one with
+    /// plain rows, which knows no compliance.
+    static std::vector<std::string> solvers() { return {"world", "mlcp-dantzig"}; }
 
     [[nodiscard]] static bool can(const std::string& solver, Capability capability) {
         switch (capability) {
-            case Capability::coupled: // Lemke inverts A, which costs it the digits that float has
-                return solver == "mlcp-dantzig" || (solver == "mlcp-lemke" && !single);
+            case Capability::coupled:
+                return true;
             case Capability::chains:
-                return solver == "mlcp-dantzig" && !single;
+                return solver == "world" || !single;
+            case Capability::any_rows:
+                return solver == "world";
         }
         return false;
     }
 
     Rig(const std::string& solver, const V3& gravity) {
-        if (solver == "si") {
+        if (solver == "world") {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
-        } else if (solver == "nncg") {
-            solver_ = std::make_unique<bullet::SoftNncgSolver>();
         } else if (solver == "mlcp-dantzig") {
-            solve_at_once(std::make_unique<btDantzigSolver>(), bullet::Answer::exact);
-        } else if (solver == "mlcp-lemke") {
-            solve_at_once(std::make_unique<btLemkeSolver>(), bullet::Answer::exact);
-        } else if (solver == "mlcp-pgs") {
-            solve_at_once(std::make_unique<btSolveProjectedGaussSeidel>(),
-                          bullet::Answer::iterated);
+            solver_ = std::make_unique<btMLCPSolver>(&dantzig_);
         } else {
             throw std::invalid_argument("Rig: no solver " + solver);
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_,
                                                            solver_.get(), &configuration_);
+        if (solver == "world") front_ = std::make_unique<bullet::FrontHold>(*world_);
         world_->setGravity(bullet::to_bullet(gravity));
         world_->getSolverInfo().m_splitImpulsePenetrationThreshold = btScalar(1e30);
         world_->getSimulationIslandManager()->setSplitIslands(false); // the contact is made by hand
@@ -83,8 +78,8 @@ class Rig {
         for (auto& body : bodies_) world_->removeRigidBody(body.get());
     }
 
-    /// Nothing to be done: SoftMlcpSolver makes rows that depend on each other regular itself.
-    void soften() {}
+    /// Rows that depend on each other made regular; the front does so itself.
+    void soften() { world_->getSolverInfo().m_globalCfm = btScalar(softness); }
 
     Body body(double mass, const V3& inertia, const V3& at, const V3& velocity, const V3& spin) {
         btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape_,
@@ -255,11 +250,6 @@ class Rig {
                            bullet::to_bullet(frame.origin));
     }
 
-    void solve_at_once(std::unique_ptr<btMLCPSolverInterface> lcp, bullet::Answer answer) {
-        lcp_ = std::move(lcp);
-        solver_ = std::make_unique<bullet::SoftMlcpSolver>(*lcp_, answer);
-    }
-
     static btTransform frame_along(const V3& origin, const V3& axis) {
         const btVector3 z = bullet::to_bullet(axis.normalized());
         btVector3 x, y;
@@ -299,9 +289,10 @@ class Rig {
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
-    std::unique_ptr<btMLCPSolverInterface> lcp_;
+    btDantzigSolver dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::unique_ptr<bullet::FrontHold> front_;
     btSphereShape shape_{1};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<Hinge>> hinges_;

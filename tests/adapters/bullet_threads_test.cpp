@@ -9,7 +9,6 @@
 #include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorldMt.h>
 #include <BulletDynamics/Dynamics/btSimulationIslandManagerMt.h>
-#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <LinearMath/btThreads.h>
 #include <btBulletDynamicsCommon.h>
 
@@ -67,13 +66,9 @@ class PlainSolver {
     explicit PlainSolver(const std::string& name) {
         if (name == "si") {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
-        } else if (name == "soft-si") {
-            solver_ = std::make_unique<bullet::SoftSequentialImpulseSolver>();
-        } else if (name == "soft-nncg") {
-            solver_ = std::make_unique<bullet::SoftNncgSolver>();
-        } else if (name == "soft-mlcp-dantzig") {
-            dantzig_ = std::make_unique<btDantzigSolver>();
-            solver_ = std::make_unique<bullet::SoftMlcpSolver>(*dantzig_, bullet::Answer::exact);
+        } else if (name == "front") {
+            usual_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+            solver_ = std::make_unique<bullet::FrontSolver>(*usual_, false);
         } else {
             throw std::invalid_argument("no solver " + name);
         }
@@ -81,8 +76,7 @@ class PlainSolver {
     [[nodiscard]] btConstraintSolver& operator*() { return *solver_; }
 
   private:
-    std::unique_ptr<btDantzigSolver> dantzig_;
-    std::unique_ptr<btConstraintSolver> solver_;
+    std::unique_ptr<btConstraintSolver> usual_, solver_;
 };
 
 /// A world of separate pairs of any kind of world.
@@ -197,8 +191,7 @@ constexpr int steps = 120;
 
 TEST_CASE("islands solved by four threads are those of one thread, bit for bit",
           "[bullet][threads]") {
-    const std::string name =
-        GENERATE(as<std::string>(), "si", "soft-si", "soft-nncg", "soft-mlcp-dantzig");
+    const std::string name = GENERATE(as<std::string>(), "si", "front");
     // with the action at the end of the tick, or in the next tick's solve, by the solver's thread
     const bool commit_at_end_of_tick = GENERATE(true, false);
     INFO(name << (commit_at_end_of_tick ? ", committed at the tick's end" : ", committed late"));
@@ -215,24 +208,23 @@ TEST_CASE("Bullet's world for threads is its world for one, bit for bit", "[bull
         btCreateDefaultTaskScheduler()); // null: not BT_THREADSAFE
     btSetTaskScheduler(own != nullptr ? own.get() : btGetSequentialTaskScheduler());
     const bool exact = GENERATE(false, true);
-    INFO((exact ? "Dantzig" : "sequential impulse"));
-    std::vector<std::unique_ptr<btDantzigSolver>> dantzigs;
+    INFO((exact ? "front" : "sequential impulse"));
+    std::vector<std::unique_ptr<PlainSolver>> usual;
     std::vector<btConstraintSolver*> pool_of;
     for (int i = 0; i < 4; ++i) { // the pool deletes its solvers
-        dantzigs.push_back(std::make_unique<btDantzigSolver>());
         if (exact) {
-            pool_of.push_back(new bullet::SoftMlcpSolver(*dantzigs.back(), bullet::Answer::exact));
+            usual.push_back(std::make_unique<PlainSolver>("si"));
+            pool_of.push_back(new bullet::FrontSolver(**usual.back(), false));
         } else {
-            pool_of.push_back(new bullet::SoftSequentialImpulseSolver);
+            pool_of.push_back(new btSequentialImpulseConstraintSolver);
         }
     }
     btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
-    PlainSolver alone(exact ? "soft-mlcp-dantzig" : "soft-si");
+    PlainSolver alone(exact ? "front" : "si");
     {
         Scene<btDiscreteDynamicsWorld> serial(true, &*alone);
         Scene<btDiscreteDynamicsWorldMt> parallel(true, &pool, nullptr);
-        // islands of their own, not gathered to batches: NNCG and early exits look at the whole
-        // batch
+        // islands of their own, not gathered to batches: early exits look at the whole batch
         serial.world.getSolverInfo().m_minimumSolverBatchSize = 1;
         static_cast<btSimulationIslandManagerMt*>(parallel.world.getSimulationIslandManager())
             ->setMinimumSolverBatchSize(1);
@@ -245,7 +237,7 @@ TEST_CASE("Bullet's world for threads is its world for one, bit for bit", "[bull
 
 TEST_CASE("worlds in threads of their own do not know of each other", "[bullet][threads]") {
     const auto state_after = [](std::size_t count) {
-        std::vector<PlainSolver> own = solvers("soft-mlcp-dantzig", count);
+        std::vector<PlainSolver> own = solvers("front", count);
         std::vector<std::unique_ptr<Scene<btDiscreteDynamicsWorld>>> scenes;
         for (PlainSolver& solver : own) {
             scenes.push_back(std::make_unique<Scene<btDiscreteDynamicsWorld>>(true, &*solver));

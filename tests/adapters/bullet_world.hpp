@@ -23,24 +23,20 @@ class BulletWorld {
     using V3 = Vector3<double>;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
-    /// Bullet's own two, and those that honour compliance.
-    static std::vector<std::string> solvers() { return {"si", "mlcp", "soft-si", "soft-mlcp"}; }
-    static std::vector<std::string> soft_solvers() { return {"soft-si", "soft-mlcp"}; }
+    /// Bullet's own two, and its default one behind the front that a World puts there.
+    static std::vector<std::string> solvers() { return {"si", "mlcp", "world"}; }
 
-    explicit BulletWorld(const std::string& solver = "soft-mlcp", const V3& gravity = V3::Zero()) {
-        if (solver == "si") {
+    explicit BulletWorld(const std::string& solver = "world", const V3& gravity = V3::Zero()) {
+        if (solver == "si" || solver == "world") {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
         } else if (solver == "mlcp") {
             solver_ = std::make_unique<btMLCPSolver>(&dantzig_);
-        } else if (solver == "soft-si") {
-            solver_ = std::make_unique<bullet::SoftSequentialImpulseSolver>();
-        } else if (solver == "soft-mlcp") {
-            solver_ = std::make_unique<bullet::SoftMlcpSolver>(dantzig_, bullet::Answer::exact);
         } else {
             throw std::invalid_argument("no solver " + solver);
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_,
                                                            solver_.get(), &configuration_);
+        if (solver == "world") front_ = std::make_unique<bullet::FrontHold>(*world_);
         world_->setGravity(bullet::to_bullet(gravity));
         world_->getSolverInfo().m_numIterations = 50;
     }
@@ -92,6 +88,7 @@ class BulletWorld {
     btDantzigSolver dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
+    std::unique_ptr<bullet::FrontHold> front_;
     btSphereShape shape_{1};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
 };

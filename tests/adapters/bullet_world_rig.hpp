@@ -4,7 +4,6 @@
 // ode_world_rig.hpp.
 #pragma once
 
-#include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <memory>
@@ -28,13 +27,12 @@ class WorldRig {
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
-    explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
+    /// Whatever the solver, the World solves its joints at once.
+    static constexpr bool may_be_iterative = false;
+
+    explicit WorldRig(bool /*iterative*/, EffortParameters effort = {}, Warn warn = nullptr,
                       bool ledger = true, bool leapfrog = false)
-        : solver_(iterative
-                      ? std::unique_ptr<btConstraintSolver>(
-                            std::make_unique<btSequentialImpulseConstraintSolver>())
-                      : std::make_unique<bullet::SoftMlcpSolver>(dantzig_, bullet::Answer::exact)),
-          dynamics_(&dispatcher_, &broadphase_, solver_.get(), &configuration_),
+        : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
           world_(
               dynamics_,
               {.effort = effort, .ledger = ledger, .leapfrog = leapfrog, .warn = std::move(warn)}) {
@@ -130,8 +128,7 @@ class WorldRig {
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
-    btDantzigSolver dantzig_;
-    std::unique_ptr<btConstraintSolver> solver_;
+    btSequentialImpulseConstraintSolver solver_;
     btDiscreteDynamicsWorld dynamics_;
     btSphereShape shape_{1};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;

@@ -18,7 +18,6 @@
 
 #include "adapters/bullet_world.hpp"
 #include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/suspect_solver.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -121,124 +120,14 @@ class CountingSolver final : public btSequentialImpulseConstraintSolver {
     int solved = 0;
 };
 
-bullet::WorldParameters direct() {
-    return {.effort = {.action = OnUnconverged::direct_solver}, .warn = nullptr};
-}
-
 } // namespace
-
-TEST_CASE("joints need no World: they are the same without one, bit for bit", "[bullet][world]") {
-    btSequentialImpulseConstraintSolver one, two;
-    Beams<btDiscreteDynamicsWorld> with({.warn = nullptr}, &one);
-    Beams<btDiscreteDynamicsWorld> without({.warn = nullptr}, &two);
-    without.world.reset();
-    for (int i = 0; i < 200; ++i) {
-        with.world->step(1e-3);
-        without.dynamics.stepSimulation(btScalar(1e-3), 0);
-    }
-    CHECK(with.state() == without.state());
-}
-
-TEST_CASE("only islands suspect go to the direct solver, and the user's is put back",
-          "[bullet][world]") {
-    CountingSolver own;
-    Beams<btDiscreteDynamicsWorld> beams(direct(), &own);
-    beams.dynamics.getSolverInfo().m_minimumSolverBatchSize = 1;
-    CHECK(beams.dynamics.getConstraintSolver() != &own);
-    using Scene = Beams<btDiscreteDynamicsWorld>;
-    constexpr int chains = Scene::count / 2 * Scene::segments, alone = Scene::count / 2;
-    beams.world->step(1e-3);
-    CHECK(own.solved == chains + alone);
-    CHECK(beams.world->effort().direct);
-    own.solved = 0;
-    beams.world->step(1e-3);
-    CHECK(own.solved == alone);
-    beams.world.reset();
-    CHECK(beams.dynamics.getConstraintSolver() == &own);
-}
-
-TEST_CASE("a solver that cannot be exchanged is refused", "[bullet][world]") {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher(&configuration);
-    btDbvtBroadphase broadphase;
-    btDiscreteDynamicsWorld owner(&dispatcher, &broadphase, nullptr, &configuration);
-    CHECK(message_of([&] { bullet::World(owner, direct()); })
-              .find("World.effort.action = direct_solver: must not be asked of a world that made "
-                    "its solver") == 0);
-    bullet::World(owner, {.effort = {.action = OnUnconverged::split_step}});
-    btMultiBodyConstraintSolver solver;
-    btMultiBodyDynamicsWorld reduced(&dispatcher, &broadphase, &solver, &configuration);
-    CHECK(message_of([&] { bullet::World(reduced, direct()); })
-              .find("World.effort.action = direct_solver: must not be asked of a "
-                    "btMultiBodyDynamicsWorld") == 0);
-    CHECK(message_of([&] { bullet::World(reduced, {.leapfrog = true}); }) ==
-          "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
-}
-
-TEST_CASE("a World over Bullet's world for threads does what it does over that for one",
-          "[bullet][world][threads]") {
-    std::unique_ptr<btITaskScheduler> own(
-        btCreateDefaultTaskScheduler()); // null: not BT_THREADSAFE
-    btSetTaskScheduler(own != nullptr ? own.get() : btGetSequentialTaskScheduler());
-    const auto run_threads = [] {
-        std::vector<btConstraintSolver*> pool_of; // the pool deletes its solvers
-        for (int i = 0; i < 4; ++i) pool_of.push_back(new btSequentialImpulseConstraintSolver);
-        btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
-        Beams<btDiscreteDynamicsWorldMt> beams(direct(), &pool, nullptr);
-        static_cast<btSimulationIslandManagerMt*>(beams.dynamics.getSimulationIslandManager())
-            ->setMinimumSolverBatchSize(1);
-        beams.world->step(1e-3);
-        CHECK(beams.world->effort().direct);
-        for (int i = 1; i < 200; ++i) beams.world->step(1e-3);
-        CHECK(beams.dynamics.getConstraintSolver() != &pool);
-        beams.world.reset();
-        CHECK(beams.dynamics.getConstraintSolver() == &pool);
-        return beams.state();
-    };
-    const std::vector<double> parallel = run_threads();
-    CHECK(parallel == run_threads());
-    btSequentialImpulseConstraintSolver alone;
-    Beams<btDiscreteDynamicsWorld> serial(direct(), &alone);
-    serial.dynamics.getSolverInfo().m_minimumSolverBatchSize = 1;
-    for (int i = 0; i < 200; ++i) serial.world->step(1e-3);
-    // the two hand an island's constraints over in different orders, which iterations feel until
-    // the direct solver takes over: 2.5e-5 of the root's rotation
-    CHECK(parallel[0] == Approx(serial.state()[0]).epsilon(1e-3));
-    btSetTaskScheduler(nullptr);
-}
-
-TEST_CASE("one proxy solver serves several threads at once", "[bullet][world][threads]") {
-    // as Bullet built with BT_THREADSAFE does it: islands by threads, a usual solver that may
-    btSequentialImpulseConstraintSolver usual;
-    bullet::SuspectSolver proxy(usual);
-    std::array<std::unique_ptr<BulletWorld>, 4> worlds;
-    std::vector<std::unique_ptr<Hinge>> hinges;
-    for (auto& world : worlds) {
-        world = std::make_unique<BulletWorld>("si");
-        btRigidBody& body = world->body(1, 2);
-        body.setAngularVelocity({0, 0, 10});
-        hinges.push_back(std::make_unique<Hinge>(body, at(0, 0), joint(64)));
-        hinges.back()->add_to(world->world());
-        world->world().setConstraintSolver(&proxy);
-        proxy.suspect(static_cast<btTypedConstraint*>(hinges.back().get()));
-    }
-    std::vector<std::thread> threads;
-    for (auto& world : worlds) threads.emplace_back([&world] { world->step(1e-3, 300); });
-    for (auto& thread : threads) thread.join();
-    for (auto& hinge : hinges) {
-        CHECK(hinge->absorbed_energy() == hinges[0]->absorbed_energy());
-        CHECK(hinge->absorbed_energy() == Approx(99.84).epsilon(single ? 1e-4 : 1e-9));
-    }
-    CHECK(proxy.fallbacks() == 0);
-    for (std::size_t i = 0; i < worlds.size(); ++i) hinges[i]->remove_from(worlds[i]->world());
-}
 
 TEST_CASE("islands without plastic joints are the same beside a World, bit for bit",
           "[bullet][world]") {
     // a heap of loose bodies beside beams that a World looks after
     const auto heap = [](bool with_beams) {
         btSequentialImpulseConstraintSolver solver;
-        Beams<btDiscreteDynamicsWorld> beams({.solve_islands = true, .warn = nullptr}, &solver);
+        Beams<btDiscreteDynamicsWorld> beams({.warn = nullptr}, &solver);
         if (!with_beams) beams.leave();
         beams.dynamics.setGravity({0, btScalar(-9.81), 0});
         btBoxShape floor_shape({50, 1, 50}), box({btScalar(0.5), btScalar(0.5), btScalar(0.5)});
@@ -272,7 +161,7 @@ TEST_CASE("islands without plastic joints are the same beside a World, bit for b
 TEST_CASE("islands with a plastic joint never reach the user's solver, which is put back",
           "[bullet][world]") {
     CountingSolver own;
-    Beams<btDiscreteDynamicsWorld> beams({.solve_islands = true, .warn = nullptr}, &own);
+    Beams<btDiscreteDynamicsWorld> beams({.warn = nullptr}, &own);
     CHECK(beams.dynamics.getConstraintSolver() != &own);
     beams.world->step(1e-3);
     CHECK(own.solved == 0);
@@ -289,15 +178,57 @@ TEST_CASE("a World and the solver that Bullet's world made itself end in either 
         btDiscreteDynamicsWorld owner(&dispatcher, &broadphase, nullptr, &configuration);
         btConstraintSolver* made = owner.getConstraintSolver();
         {
-            bullet::World world(owner, {.solve_islands = true});
+            bullet::World world(owner);
             CHECK(owner.getConstraintSolver() != made);
         }
         CHECK(owner.getConstraintSolver() == made);
     }
     auto owner = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher, &broadphase, nullptr,
                                                            &configuration);
-    const bullet::World world(*owner, {.solve_islands = true});
+    const bullet::World world(*owner);
     owner.reset(); // the sanitizers see what is freed twice or not at all
+}
+
+TEST_CASE("a world of multibodies keeps its solver and does not leapfrog", "[bullet][world]") {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher(&configuration);
+    btDbvtBroadphase broadphase;
+    btMultiBodyConstraintSolver solver;
+    btMultiBodyDynamicsWorld reduced(&dispatcher, &broadphase, &solver, &configuration);
+    const bullet::World world(reduced);
+    CHECK(reduced.getConstraintSolver() == &solver);
+    CHECK(message_of([&] { bullet::World(reduced, {.leapfrog = true}); }) ==
+          "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
+}
+
+TEST_CASE("a World over Bullet's world for threads does what it does over that for one",
+          "[bullet][world][threads]") {
+    std::unique_ptr<btITaskScheduler> own(
+        btCreateDefaultTaskScheduler()); // null: not BT_THREADSAFE
+    btSetTaskScheduler(own != nullptr ? own.get() : btGetSequentialTaskScheduler());
+    const auto run_threads = [] {
+        std::vector<btConstraintSolver*> pool_of; // the pool deletes its solvers
+        for (int i = 0; i < 4; ++i) pool_of.push_back(new btSequentialImpulseConstraintSolver);
+        btConstraintSolverPoolMt pool(pool_of.data(), int(pool_of.size()));
+        Beams<btDiscreteDynamicsWorldMt> beams(bullet::WorldParameters{.warn = nullptr}, &pool,
+                                               nullptr);
+        static_cast<btSimulationIslandManagerMt*>(beams.dynamics.getSimulationIslandManager())
+            ->setMinimumSolverBatchSize(1);
+        for (int i = 0; i < 200; ++i) beams.world->step(1e-3);
+        CHECK(beams.dynamics.getConstraintSolver() != &pool);
+        beams.world.reset();
+        CHECK(beams.dynamics.getConstraintSolver() == &pool);
+        return beams.state();
+    };
+    const std::vector<double> parallel = run_threads();
+    CHECK(parallel == run_threads());
+    btSequentialImpulseConstraintSolver alone;
+    Beams<btDiscreteDynamicsWorld> serial(bullet::WorldParameters{.warn = nullptr}, &alone);
+    serial.dynamics.getSolverInfo().m_minimumSolverBatchSize = 1;
+    for (int i = 0; i < 200; ++i) serial.world->step(1e-3);
+    // the two hand an island's constraints over in different orders: round-off
+    CHECK(parallel[0] == Approx(serial.state()[0]).epsilon(single ? 1e-4 : 1e-9));
+    btSetTaskScheduler(nullptr);
 }
 
 TEST_CASE("one front serves several threads at once", "[bullet][world][threads]") {
@@ -341,7 +272,7 @@ TEST_CASE("feedback that the ledger lent is taken back from a joint that leaves"
 }
 
 TEST_CASE("a motor taken over and a sleeping joint are told of too", "[bullet][world]") {
-    BulletWorld rig("soft-mlcp");
+    BulletWorld rig("si");
     btRigidBody& body = rig.body(1, 2);
     btHingeConstraint own(body, {0, 0, 0}, {0, 0, 1});
     rig.world().addConstraint(&own);

@@ -29,6 +29,8 @@ class WorldRig {
     using Body = dBodyID;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
+    static constexpr bool may_be_iterative = true;
+
     explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
                       bool ledger = true, bool leapfrog = false)
         : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,

@@ -44,8 +44,8 @@ Peak first_peak(int steps, StepOnce&& step, PositionOf&& position) {
     return peak;
 }
 
-/// Order of every error, over an octave of eight steps: where in its step a yield falls makes single
-/// errors uneven (four steps see 1.74 to 1.77).
+/// Order of every error, over an octave of eight steps: where in its step a yield falls makes
+/// single errors uneven (four steps see 1.74 to 1.77).
 void falls_as_second_order(const reference::Run& run) {
     if (Rig::single) return;
     const double dt = 1.0 / 240;

@@ -75,8 +75,7 @@ TEST_CASE("a body falls by a t^2/2 under gravity and an applied force", "[leapfr
 TEST_CASE("a hinge that stops a rotor rests where it should to second order", "[leapfrog]") {
     const double exact = 100.0 / 64, rate = 64.0 / 2;
     for (const double dt : {1.0 / 60, 1.0 / 100, 1.0 / 240}) {
-        CHECK(std::abs(rotation_at_rest(dt, true) - exact) <
-              rate * dt * dt / 8 + 10 * round_off);
+        CHECK(std::abs(rotation_at_rest(dt, true) - exact) < rate * dt * dt / 8 + 10 * round_off);
         // without it, by half a step of the first speed
         CHECK(std::abs(rotation_at_rest(dt, false) - exact) > 0.4 * 10 * dt);
     }
@@ -139,7 +138,8 @@ TEST_CASE("what carries its weight stays still however steps change", "[leapfrog
     if (share < 1) {
         CHECK(hinge.absorbed_energy() == 0);
         CHECK(std::abs(hinge.rotation()) < round_off);
-        CHECK(std::abs(hinge.moment()) == Approx(20).epsilon(round_off)); // whatever the step's share
+        CHECK(std::abs(hinge.moment()) ==
+              Approx(20).epsilon(round_off)); // whatever the step's share
     } else {
         // falls by what it cannot carry, I = 2.5 kg m² about the hinge
         const double t = rig.world().time(), rate = (20 - 20 / share) / 2.5;
@@ -168,9 +168,9 @@ TEST_CASE("six axes leapfrog as one does", "[leapfrog]") {
     const auto capacity = Vector6<double>::Constant(64).eval();
     const auto rest = [&capacity](double dt, bool leapfrog) {
         WorldRig rig(false, {}, nullptr, true, leapfrog);
-        auto& six = rig.six_axes(
-            rotor(rig, 10), none,
-            SixAxes(Ellipsoid<double, 6>({.capacity = capacity}), Perfect<double>({.strength = 64})));
+        auto& six = rig.six_axes(rotor(rig, 10), none,
+                                 SixAxes(Ellipsoid<double, 6>({.capacity = capacity}),
+                                         Perfect<double>({.strength = 64})));
         while (rig.world().time() < 0.5) rig.world().step(dt);
         CHECK(six.absorbed_energy() == Approx(100).epsilon(10 * round_off));
         CHECK(std::abs(rig.world().ledger().unexplained()) < 100 * round_off);

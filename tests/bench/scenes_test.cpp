@@ -19,7 +19,7 @@ namespace {
 
 constexpr bool single = World::precision == "float";
 /// A direct solver; where it gives up, a well converged iterative one.
-const std::string direct = World::engine == "ode" ? "direct" : "soft-mlcp";
+const std::string direct = World::engine == "ode" ? "direct" : "si";
 constexpr int fallback = 200;
 
 double expected(const Scene& scene, const std::string& quantity) {

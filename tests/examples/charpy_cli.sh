@@ -38,7 +38,7 @@ refuses '--parts = 3: must be an even number' $one --parts 3
 refuses '--max-plastic-rotation = 0 rad' $one --max-plastic-rotation 0
 refuses '--method: rubber not in' --engine bullet --method rubber
 refuses '--engine: physx not in' --engine physx
-refuses '--solver = direct: must be mlcp, lemke, pgs, si or nncg with --engine bullet' $one --solver direct
+refuses '--solver = direct: must be mlcp, si or nncg with --engine bullet' $one --solver direct
 refuses '--solver = nncg: must be direct or quick with --engine ode' --engine ode --solver nncg
 refuses '--solver: newton not in' $one --solver newton
 refuses '--hammer-thickness = 0.04 m: must be in [0.002, 0.04) m' $one --hammer-thickness 0.04

@@ -166,10 +166,20 @@ template <std::floating_point S>
     const S work = -(force * moved);
     const Mask<S> sound = finite(work) & finite(position) & mask<S>(lower < upper);
     const Mask<S> intact = whole & sound;
+    const S excess = velocity - bias;
+    const S too_fast = only(at_upper | ~at_lower, excess); // at the lower bound it may be
+    const S too_slow = only(~at_upper, -excess);
+    const S residual =
+        only(whole, select(sound, larger(too_fast, too_slow), std::numeric_limits<S>::infinity()));
+    const S speed = larger(start_speed, std::abs(velocity));
+    // what the solver left undone is nobody's flow: no travel, no life, no break
+    const S allowed = step.absolute_residual + step.relative_residual * speed;
+    const Mask<S> unsolved = ~mask<S>(residual <= allowed);
+
     // a row at its bound flows where it moves the way the bound resists, and so does one brought to
     // rest: both take work
     const Mask<S> settles = at_bound | flowing<S>(old.status) | kicked;
-    const Mask<S> flows = intact & settles & mask<S>(work > 0);
+    const Mask<S> flows = intact & settles & ~unsolved & mask<S>(work > 0);
     const S strength =
         select(mask<S>(moved * start < 0), behind, ahead); // turned round: as it stood
     const S left = law.remaining(old.travel);
@@ -184,19 +194,12 @@ template <std::floating_point S>
     const S release = only(breaks, larger(rest, S(0)));
     const S other = rest - release;
 
-    const S excess = velocity - bias;
-    const S too_fast = only(at_upper | ~at_lower, excess); // at the lower bound it may be
-    const S too_slow = only(~at_upper, -excess);
-    const S residual =
-        only(whole, select(sound, larger(too_fast, too_slow), std::numeric_limits<S>::infinity()));
-    const S speed = larger(start_speed, std::abs(velocity));
     const S other_work = old.other_work + only(intact, other);
     const S taken = old.plastic_work + plastic + strength * step.least_travel;
     const S owed = allowed_gain<S> * taken + owed_steps<S> * (strength * speed * step.dt);
     const Mask<S> gains = mask<S>(-other > noticed_gain<S> * -other_work) &
                           mask<S>(other_work < 0) & mask<S>(-other_work > owed);
-    const S allowed = step.absolute_residual + step.relative_residual * speed;
-    const Mask<S> unreliable = gains | ~sound | ~mask<S>(residual <= allowed);
+    const Mask<S> unreliable = gains | unsolved;
     const Mask<S> yields = flows & (at_bound | mask<S>(start_speed > step.absolute_residual));
 
     // elastic 0, yielding 1, broken 2, unreliable 3
@@ -207,7 +210,7 @@ template <std::floating_point S>
     const Mask<S> status =
         outcome | (ended & flowing_bit) | (begins & first_yield_bit) | (breaks & fracture_bit);
 
-    return {.state = {.offset = select(intact & (at_bound | flows), position, old.offset),
+    return {.state = {.offset = select(intact & ~unsolved & (at_bound | flows), position, old.offset),
                       .travel = old.travel + travel,
                       .plastic_work = old.plastic_work + plastic,
                       .other_work = other_work,

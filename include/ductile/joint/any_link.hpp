@@ -83,19 +83,7 @@ class AnyLink {
 
     /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
     /// out of what it is shown.
-    [[nodiscard]] bool reads_mass() const noexcept {
-        return one_axis_ ? !all_rigid_ : mass_at_ != pose_.rest_changes();
-    }
-    /// True where M only serves to predict forces: that of the rest position will do there for as
-    /// long as the joint does not flow.
-    [[nodiscard]] bool takes_mass_at_rest() const noexcept {
-        return !one_axis_ && all_rigid_ && !totals().flowing;
-    }
-    /// K at the rest position (inverse_mass_along_b): used until that changes.
-    void set_inverse_mass_at_rest(const Matrix6<S>& k) noexcept {
-        take_mass(k);
-        mass_at_ = pose_.rest_changes();
-    }
+    [[nodiscard]] bool reads_mass() const noexcept { return !one_axis_ || !all_rigid_; }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
     /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all, nor
@@ -250,8 +238,6 @@ class AnyLink {
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
 
-    /// LinkPose::rest_changes that M stays right for; the largest: that of the last prepare alone
-    unsigned mass_at_ = std::numeric_limits<unsigned>::max();
     bool sound_ = true; ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;

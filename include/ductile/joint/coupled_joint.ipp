@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "ductile/joint/coupled_joint.hpp"
 
@@ -39,34 +41,41 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     const Scalar jump = allowed_residual(start_);
     const bool flows = surface_.value(reaction.force) >= reach() * (1 - bound_tolerance);
     const Vector off = reaction.on_surface ? off_normal(reaction, flows, dt) : Vector::Zero();
+    std::array<RowBooking<Scalar>, std::size_t(dimension)> rows;
     for (int i = 0; i < dimension; ++i) {
         const OpenRow<Scalar> open = open_row(i, jump);
         const ductile::Reaction<Scalar> of_row{reaction.force[i], reaction.velocity[i],
                                                reaction.position[i]};
-        const RowBooking<Scalar> booked = reaction.on_surface
-                                              ? open.book_on_surface(of_row, dt, flows, off[i])
-                                              : open.book(of_row, dt);
+        RowBooking<Scalar>& booked = rows[std::size_t(i)];
+        booked = reaction.on_surface ? open.book_on_surface(of_row, dt, flows, off[i])
+                                     : open.book(of_row, dt);
+        step.residual = worse(step.residual, booked.residual);
+    }
+    // what the solver left undone is nobody's flow: no travel, no life, no break
+    const bool solved = step.residual <= allowed_residual(reaction.velocity);
+    for (int i = 0; i < dimension; ++i) {
+        const RowBooking<Scalar>& booked = rows[std::size_t(i)];
         const Scalar share = 1 - implicit_[i] * (1 - granted); // of rows that were solved for
-        taken.flow += share * booked.flow;
-        step.claimed += implicit_[i] * booked.flow;
-        step.unclaimed += booked.travel == 0 ? implicit_[i] * booked.other : Scalar(0);
+        (solved ? taken.flow : step.other_work) += share * booked.flow;
         if (booked.flow > most) {
             most = booked.flow;
             taken.axis = i;
         }
-        step.direction[i] = share * booked.travel;
         step.elastic += booked.elastic;
         step.other_work += booked.other + (1 - share) * booked.flow;
-        step.residual = worse(step.residual, booked.residual);
+        if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
+        if (!solved) continue;
+        step.claimed += implicit_[i] * booked.flow;
+        step.unclaimed += booked.travel == 0 ? implicit_[i] * booked.other : Scalar(0);
+        step.direction[i] = share * booked.travel;
         taken.error += booked.error;
         taken.at_bound[i] = booked.at_bound;
         if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
-        if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
     }
     const Scalar misdirected =
         off_normal_work(surface_, reaction.force, step.direction, taken.flow);
     taken.error.flow = std::max(taken.error.flow, misdirected);
-    if (brittle(reaction.force)) {
+    if (solved && brittle(reaction.force)) {
         snap(step, taken, reaction, dt);
     } else {
         flow(step, taken, reaction, dt);

@@ -94,11 +94,7 @@ class LinkPose {
     void set_rest(const Matrix3<S>& rest) noexcept {
         rest_ = rest;
         turned_ = true;
-        ++rest_changes_;
     }
-    /// How often R_p was set, as it is with every flow: who keeps what depends on the rest position
-    /// need not compare.
-    [[nodiscard]] unsigned rest_changes() const noexcept { return rest_changes_; }
 
     /// Velocity of A minus that of B at the joint, and of their turning, world axes [m/s, rad/s].
     [[nodiscard]] Vector6<S> twist_in_world(const BodyState<S>& a,
@@ -181,7 +177,6 @@ class LinkPose {
 
     JointFrame<S> in_a_, in_b_;
     Matrix3<S> rest_ = Matrix3<S>::Identity();
-    unsigned rest_changes_ = 0;
     Place seen_a_, seen_b_; ///< nowhere at first
     bool finite_ = true;
     Matrix3<S> axes_ = Matrix3<S>::Identity();

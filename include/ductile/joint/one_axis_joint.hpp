@@ -15,8 +15,9 @@
 //   k       stiffness; infinite: rigid                        [N/m | N m/rad]
 //   W       work the row took from the bodies                 [J]
 //
-// Rigid row. C = 0 and |f| <= R. Inside the bounds the row is rigid, and the target velocity removes
-// drift towards q_p; at a bound it slips, which is plastic flow: solved, it is the exact implicit rule.
+// Rigid row. C = 0 and |f| <= R. Inside the bounds the row is rigid, and the target velocity
+// removes drift towards q_p; at a bound it slips, which is plastic flow: solved, it is the exact
+// implicit rule.
 //
 // Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what the
 // yield range allows; the rest of the observed displacement is plastic. k → ∞ is the rigid row.
@@ -34,9 +35,10 @@
 // u'² = u² - 2 R r / m. A brittle break, where a cap on the force is reached before yield, absorbs
 // nothing and releases all the work of its step. What was stored is set free inside: Step::lost.
 //
-// Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at the
-// lower one. The violation of that is the residual; where it is large the step is unreliable, and so is
-// one that gives energy never taken (step_end.hpp). (A closed ledger proves nothing: it closes in both.)
+// Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at
+// the lower one. The violation of that is the residual; where it is large the step is unreliable,
+// and so is one that gives energy never taken (step_end.hpp). (A closed ledger proves nothing: it
+// closes in both.)
 //
 // Source: work-conjugate account and break derived here; row bounds as Nikula (2017), section 2.8.
 #pragma once
@@ -66,7 +68,7 @@ namespace ductile {
 
 /// Not thread-safe. After construction nothing allocates or throws, and both calls are O(1).
 template <class Law, FractureCriterion Criterion = TravelLimit<typename Law::Scalar>>
-    requires CyclicLaw<typename CyclicForm<Law>::type>
+requires CyclicLaw<typename CyclicForm<Law>::type>
 class OneAxisJoint {
   public:
     using Scalar = typename Law::Scalar;
@@ -153,7 +155,8 @@ class OneAxisJoint {
         fade_ = midway_factor(criterion_, state_.criterion, ahead, strength);
         flow_ = {{flow_.lower * fade_, flow_.upper * fade_}};
         const Scalar travel = std::max(ahead, parameters_.absolute_residual * dt);
-        const Scalar loss = dissipation<Law>(law_, state_.law, direction * travel, strength) * fade_;
+        const Scalar loss =
+            dissipation<Law>(law_, state_.law, direction * travel, strength) * fade_;
         left_ = std::min(criterion_.remaining(state_.criterion, loss, direction), fading);
         share_ = unspent_share(left_, least);
         upper_ = std::min(-flow_.lower * share_, cap(1));
@@ -214,6 +217,17 @@ class OneAxisJoint {
         state_.broken = true;
     }
 
+    /// What the solver left undone is nobody's flow: no travel, no life, no break.
+    void commit_unsolved(Step<Scalar>& step, const Taken& taken) noexcept {
+        if (!rigid()) {
+            const Scalar k = parameters_.stiffness, trial = taken.position - state_.plastic_offset;
+            const Scalar beyond = spring_slip(law_, state_.law, k, fade_, trial);
+            const Scalar strained = trial - beyond;
+            state_.plastic_offset += beyond; // a spring holds no more than at yield
+            step.elastic = k * (strained * strained - elastic_ * elastic_) / 2;
+        }
+        step.other_work = taken.work - step.elastic;
+    }
     void commit_rigid(Step<Scalar>& step, const Taken& taken) noexcept {
         const Scalar direction = std::copysign(Scalar(1), taken.travel);
         const bool stops = !taken.at_bound() && taken.work > 0 && (state_.flowing || jumped());
@@ -288,10 +302,11 @@ class OneAxisJoint {
         step.plastic_work = done.dissipated * fade_;
         step.elastic += done.stored * fade_;
         state_.plastic_travel += std::abs(travel);
-        criterion_.update(state_.criterion,
-                          {travel, state_.plastic_travel, taken.force, step.plastic_work, taken.dt});
+        criterion_.update(state_.criterion, {travel, state_.plastic_travel, taken.force,
+                                             step.plastic_work, taken.dt});
         const Scalar rest = booked * work - step.plastic_work - done.stored * fade_;
-        state_.broken = last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
+        state_.broken =
+            last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         if (state_.broken) step.release = std::max(rest, Scalar(0));
         step.other_work = rest - step.release + (1 - booked) * work;
     }
@@ -325,76 +340,13 @@ class OneAxisJoint {
     bool sound_ = true; ///< the input of `prepare` was finite
     Scalar bias_ = 0, start_ = 0, elastic_ = 0; ///< b, u, q_e at the start
     FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
-    Scalar lower_ = 0, upper_ = 0, tolerance_ = 0; ///< bounds of the row's force, how near is at them
+    Scalar lower_ = 0, upper_ = 0,
+           tolerance_ = 0;           ///< bounds of the row's force, how near is at them
     Scalar fade_ = 1, implicit_ = 1; ///< strength factor of the criterion; θ of an elastic row
-    Scalar left_ = 0, share_ = 1; ///< travel left before a break; of the strength, what bounds allow
+    Scalar left_ = 0,
+           share_ = 1; ///< travel left before a break; of the strength, what bounds allow
     Predicted<Scalar> predicted_{};
 };
-
-template <class Law, FractureCriterion Criterion>
-    requires CyclicLaw<typename CyclicForm<Law>::type>
-auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar dt) noexcept
-    -> RowLimits<Scalar> {
-    start_ = motion.velocity;
-    predicted_ = predict(state_, motion.midway, dt);
-    elastic_ = motion.position - state_.plastic_offset;
-    sound_ = are_finite(start_, elastic_, dt) && (rigid() || motion.mass >= 0);
-    if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
-    bound(dt);
-    RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
-    if (rigid()) {
-        row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
-    } else {
-        implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
-        row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
-    }
-    bias_ = row.bias;
-    return row;
-}
-
-template <class Law, FractureCriterion Criterion>
-    requires CyclicLaw<typename CyclicForm<Law>::type>
-auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt, Scalar granted) noexcept
-    -> Step<Scalar> {
-    Step<Scalar> step;
-    if (state_.broken) {
-        step.outcome = Outcome::broken;
-        return step;
-    }
-    const Taken taken{.force = reaction.force,
-                      .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
-                      .travel = (start_ + reaction.velocity) / 2 * dt,
-                      .position = reaction.position,
-                      .dt = dt,
-                      .at_upper = reaction.force >= upper_ - tolerance_,
-                      .at_lower = reaction.force <= lower_ + tolerance_,
-                      .granted = granted};
-    if (!sound_ || !are_finite(taken.work, taken.position)) return unbooked_step<Step<Scalar>>();
-    step.residual = violation(reaction, taken);
-    if (brittle(taken)) {
-        snap(step, taken);
-    } else if (rigid()) {
-        commit_rigid(step, taken);
-    } else {
-        commit_elastic(step, taken);
-    }
-    if (!(step.claimed > 0)) step.unclaimed = solved_share() * step.other_work;
-    settle(state_, step,
-           StepEnd<Scalar, Scalar>{.start = start_,
-                                   .velocity = reaction.velocity,
-                                   .force = reaction.force,
-                                   .start_speed = std::abs(start_),
-                                   .absolute_residual = parameters_.absolute_residual,
-                                   .allowed_residual = allowed_residual(reaction.velocity),
-                                   .error = error_of(step, taken),
-                                   .strength = flow_.resistance(taken.travel),
-                                   .largest_force = flow_.resistance(taken.travel),
-                                   .allowed_step_error = parameters_.allowed_step_error,
-                                   .dt = dt,
-                                   .at_bound = taken.at_bound()},
-           [this]() noexcept { return least_travel(); });
-    if (state_.broken) place_break(step, taken);
-    return step;
-}
-
 } // namespace ductile
+
+#include "ductile/joint/one_axis_joint.ipp" // IWYU pragma: export

@@ -209,61 +209,6 @@ TEST_CASE("bent about one axis and then about another, a joint stays as it was b
     CHECK(std::abs(state.other_work) < 1e-3 * state.plastic_work);
 }
 
-TEST_CASE("a joint that holds predicts its forces with the mass of its rest position",
-          "[joint][link]") {
-    Body a = body(2, 0.3, V3(0.4, 0, 0.5)), b = body(3, 0.5, V3(0, -0.2, -0.6));
-    a.spin = V3(0.1, 0.2, 0.3);
-    const JointFrame<double> in_a{V3(-0.4, 0, -0.5), turned(0.4, V3(1, 2, 3))};
-    const JointFrame<double> in_b{V3(0, 0.2, 0.6), turned(0.4, V3(1, 2, 3))};
-    const double dt = 1.0 / 240;
-    const auto limits = [&](auto& link, const Body& of_a, const Body& of_b) {
-        std::vector<double> all;
-        for (const auto& row : link.prepare(of_a, of_b, dt, 0)) {
-            all.push_back(row.lower);
-            all.push_back(row.upper);
-        }
-        return all;
-    };
-    Link told(six(capacities()), all_joint_axes, in_a, in_b);
-    told.start(a, b);
-    Link looks = told;
-    CHECK(told.reads_mass());
-    REQUIRE(told.takes_mass_at_rest());
-    told.set_inverse_mass_at_rest(
-        inverse_mass_of_rows(a, b, told.point(), told.axes_in_world()));
-    CHECK_FALSE(told.reads_mass());
-    Body without_a = a, without_b = b; // as body_motion of an adapter shows them
-    without_a.inverse_mass = without_b.inverse_mass = 0;
-    without_a.inverse_inertia.setZero();
-    without_b.inverse_inertia.setZero();
-    CHECK(limits(told, without_a, without_b) == limits(looks, a, b));
-
-    // flow moves the rest position, a restored one may be another
-    const auto flow = [&](auto& link) {
-        Vector6<double> forces = Vector6<double>::Zero();
-        forces[3] = -40;
-        Body turned_a = a;
-        turned_a.spin = V3(2, 0, 0);
-        turned_a.orientation = turned(2 * dt, V3(1, 0, 0)) * a.orientation;
-        link.commit_rows(turned_a, b, forces, dt);
-    };
-    const auto before = told.state();
-    flow(told);
-    CHECK(told.joint().state().plastic_work > 0);
-    CHECK(told.reads_mass());
-    CHECK_FALSE(told.takes_mass_at_rest());
-    told.restore(before);
-    CHECK(told.reads_mass());
-    CHECK(told.takes_mass_at_rest());
-
-    const Vector6<double> stiffness = Vector6<double>::Constant(400);
-    const Link soft(six(capacities(), infinity, stiffness), all_joint_axes, in_a, in_b);
-    CHECK_FALSE(soft.takes_mass_at_rest()); // M rules its rows
-    const Link one(hinge(40), {JointAxis::torsion}, in_a, in_b);
-    CHECK_FALSE(one.reads_mass());
-    CHECK_FALSE(one.takes_mass_at_rest());
-}
-
 TEST_CASE("hands that move a body bend nothing", "[joint][link]") {
     const double stiffness = GENERATE(as<double>{}, 500.0, infinity);
     INFO("k = " << stiffness);

@@ -19,8 +19,5 @@
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
 #include "ductile/bullet/plastic_slider.hpp"
-#include "ductile/bullet/shifted_lcp.hpp"
-#include "ductile/bullet/soft_mlcp_solver.hpp"
-#include "ductile/bullet/soft_solvers.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/ductile.hpp"

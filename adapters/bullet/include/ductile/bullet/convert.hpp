@@ -9,7 +9,6 @@
 #include <LinearMath/btTransform.h>
 #include <LinearMath/btVector3.h>
 
-#include "ductile/joint/decoupled_rows.hpp"
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 
@@ -73,11 +72,6 @@ namespace ductile::bullet {
         state.spin = to_core(body.getInterpolationAngularVelocity());
     }
     return state;
-}
-
-/// What the solvers move the body by.
-[[nodiscard]] inline PrincipalMass<double> principal_mass(const btRigidBody& body) noexcept {
-    return {double(body.getInvMass()), to_core(body.getInvInertiaDiagLocal())};
 }
 
 /// The velocities that the body would have after a tick of `dt` [s] if nothing held it.

@@ -5,9 +5,9 @@
 // plasticity its joint. Signs and frames are those of any_link.hpp, booking and life in a world
 // those of plastic_constraint.hpp.
 //
-// Rows. Rigid ones first, those of the joint last; link_rows.hpp says what becomes of compliance,
-// and how rigid rows are combined. In sequential impulse and NNCG a constraint that was added by
-// `add_to` solves them by itself (self_solved_rows.hpp).
+// Rows. In a World the island's (island_solver.hpp), with exact reactions. Elsewhere six plain rows
+// for the user's solver, rigid ones first, those of the joint last; link_rows.hpp says what becomes
+// of compliance. What that solver leaves unsolved the joint calls unreliable.
 //
 // Traps of Bullet 3.24 that this header deals with
 //   - The solver leaves the impulse of a constraint's last row in `m_appliedImpulse`: with one
@@ -30,7 +30,6 @@
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/kept_mass.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/any_link.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -103,9 +102,6 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     /// Forces of the six rows on A. With one plastic row its force is exact; the others are as
     /// exact as joint feedback, and zero where that is not read.
     [[nodiscard]] Vector6<double> reaction();
-    /// The same where the constraint solved them by itself: exact. Tells Bullet what it would know
-    /// of rows of its own.
-    [[nodiscard]] Vector6<double> reaction_of_own_rows();
     [[nodiscard]] Reading& reading();
 
     [[nodiscard]] bool acts() const override { return is_awake(); }
@@ -119,11 +115,9 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     bool told_ = false;                                ///< the island said its forces
     Vector6<double> forces_ = Vector6<double>::Zero(); ///< these, in the open tick [N | N m]
     btScalar rigid_erp_ = -1;                          ///< negative: the world's
-    double dt_ = 0;                            ///< for which the rows' forces act in the open tick
-    double tick_share_ = 1;                    ///< as a share of the tick
-    std::array<std::size_t, 6> order_;         ///< axis of each row
-    std::unique_ptr<DecoupledLink> decoupled_; ///< where there are rigid rows
-    MassAtRest mass_at_rest_;
+    double dt_ = 0;                    ///< for which the rows' forces act in the open tick
+    double tick_share_ = 1;            ///< as a share of the tick
+    std::array<std::size_t, 6> order_; ///< axis of each row
     std::unique_ptr<Reading> reading_; ///< where Bullet ever solved the rows
     JointImpulse<double> handed_;      ///< what Open::hand_back gives
 };

@@ -22,9 +22,6 @@ DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBo
       LinkQueries(link),
       feedback_(feedback),
       order_(rigid_rotations_first(link.axes())) {
-    if (link_.axes().size() < 6) {
-        decoupled_ = std::make_unique<DecoupledLink>(order_, int(link_.axes().size()));
-    }
     link_.start(body_motion(m_rbA), body_motion(m_rbB));
     require_meeting("JointConstraint", link_);
 }
@@ -59,26 +56,15 @@ DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
 DUCTILE_INLINE void JointConstraint::buildJacobian() {
     settle_late(true);
     told_ = false;
-    if (feedback_ == Feedback::all_rows && m_jointFeedback == nullptr &&
-        sweeps_of_solver(*this, world_) == nullptr) {
-        m_jointFeedback = &reading().feedback;
-    }
 }
 
 DUCTILE_INLINE void JointConstraint::getInfo1(btConstraintInfo1* info) {
     *info = {.m_numConstraintRows = 0, .nub = 0};
-    close();
     if (link_.broken() && open_ != Open::hand_back) return;
-    SweepGroup* sweeps = open_ == Open::hand_back ? nullptr : sweeps_of_solver(*this, world_);
-    if (sweeps == nullptr) {
-        info->m_numConstraintRows = 6;
-        return;
+    if (feedback_ == Feedback::all_rows && m_jointFeedback == nullptr) {
+        m_jointFeedback = &reading().feedback;
     }
-    const btContactSolverInfo& solver_info = world_->getSolverInfo();
-    prepare(double(solver_info.m_timeStep), double(solver_info.m_erp));
-    if (decoupled_) decoupled_->look(link_, order_, m_rbA, m_rbB);
-    add_rows(open(*sweeps, m_rbA, m_rbB, link_.pose().arm_a(), link_.pose().arm_b()), link_, order_,
-             decoupled_.get(), dt_);
+    info->m_numConstraintRows = 6;
 }
 
 DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
@@ -90,12 +76,7 @@ DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
     if (feedback_ == Feedback::all_rows) {
         reading().arm = reaction_arm(m_rbA, m_rbB, link_.pose().arm_a(), link_.pose().arm_b());
     }
-    if (decoupled_ && all_hard(link_)) {
-        decoupled_->look(link_, order_, m_rbA, m_rbB);
-        write_hard_rows(*info, link_, order_, decoupled_->rows(), dt_);
-        return;
-    }
-    write_rows(*info, m_rbA, m_rbB, link_, order_, compliance_is_exact(), dt_);
+    write_rows(*info, m_rbA, m_rbB, link_, order_, dt_);
 }
 
 // ---- an island's side
@@ -103,7 +84,6 @@ DUCTILE_INLINE void JointConstraint::getInfo2(btConstraintInfo2* info) {
 DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const IslandSeat& a,
                                                const IslandSeat& b, double tick, double erp) {
     first_row_ = no_rows;
-    close();
     if (open_ == Open::hand_back) {
         add_given_rows(island, a, b, link_.pose(), handed_);
         return;
@@ -148,7 +128,6 @@ DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
     tell_keepers_of_step();
     dt_ = force_share_.value * tick;
     tick_share_ = force_share_.value;
-    if (!one_axis()) mass_at_rest_.tell(link_, m_rbA, m_rbB);
     const bool masses = link_.reads_mass();
     const BodyState<double> a = at_start(0, tick, masses), b = at_start(1, tick, masses);
     link_.teleport(a, b);
@@ -208,32 +187,12 @@ DUCTILE_INLINE void JointConstraint::finish(bool in_solver) {
 
 DUCTILE_INLINE Vector6<double> JointConstraint::reaction() {
     if (told_) return forces_;
-    if (is_open()) return reaction_of_own_rows();
     Vector6<double> forces = Vector6<double>::Zero();
     if (feedback_ == Feedback::all_rows && m_jointFeedback != nullptr) {
         forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_share_);
     }
     if (one_axis()) {
         forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;
-    }
-    return forces;
-}
-
-DUCTILE_INLINE Vector6<double> JointConstraint::reaction_of_own_rows() {
-    const double last = impulses()[5];
-    internalSetAppliedImpulse(btScalar(last));
-    if (one_axis() && feedback_ == Feedback::plastic_row && m_jointFeedback == nullptr) {
-        Vector6<double> forces = Vector6<double>::Zero();
-        forces[Eigen::Index(order_.back())] = last / dt_;
-        return forces;
-    }
-    const Vector6<double> forces = forces_of_impulses(order_, decoupled_.get(), impulses(), dt_);
-    if (m_jointFeedback != nullptr) {
-        const LinkPose<double>& pose = link_.pose();
-        const Vector3<double> force = times(pose.axes(), linear(forces));
-        const Vector3<double> moment = times(pose.moment_axes(), angular(forces));
-        write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
-                       scaled(tick_share_, force), scaled(tick_share_, moment));
     }
     return forces;
 }

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// The six rows of a link as Bullet's solvers want them. A row of compliance C goes to Bullet as
-//   C itself        where a solver of soft_solvers.hpp or soft_mlcp_solver.hpp asks;
-//   C m             where another solver asks and C m <= 1/2: right in sequential impulse, whose
-//                   error each sweep multiplies by C m;
-//   a given force   otherwise: that of the pair as if it were alone (isolated_pair.hpp). Exact
-//                   where nothing else acts on the two bodies within the step.
+// The six rows of a link as Bullet's own solvers want them, for a joint in a world that no World
+// looks after. A row of compliance C goes to Bullet as
+//   C m             where C m <= 1/2: right in sequential impulse, whose error each sweep
+//   multiplies
+//                   by C m;
+//   a given force   otherwise: that of the spring as it is, which a step can resolve that is so
+//   short.
 // Where that is not right (a chain of stiff rows; btMLCPSolver, which does not read C m) the row
-// misses u' + C λ = b, and the joint's certificate says so. Where no row is soft, the rigid ones
-// are combined so that they do not push each other (decoupled_rows.hpp).
+// misses u' + C λ = b, and the joint's certificate says so.
 //
-// btMLCPSolver also wants bounds that enclose zero: for solvers other than our own a given force is
-// a row of bounds 0 and f whose target velocity is out of reach.
+// btMLCPSolver also wants bounds that enclose zero: a given force is a row of bounds 0 and f whose
+// target velocity is out of reach.
 //
 // Symbols
 //   u'  row velocity after the solve   [m/s | rad/s]
@@ -30,12 +30,8 @@
 #include <span>
 
 #include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/kept_mass.hpp"
 #include "ductile/joint/any_link.hpp"
-#include "ductile/joint/decoupled_rows.hpp"
-#include "ductile/joint/isolated_pair.hpp"
 #include "ductile/joint/joint_axis.hpp"
-#include "ductile/joint/row_sweep.hpp"
 
 namespace ductile::bullet {
 
@@ -131,141 +127,35 @@ inline void write_impulse(btTypedConstraint::btConstraintInfo2& info, const btRi
     return order;
 }
 
-/// Bounds, target velocity and compliance of `wanted`, which acts at `joint`, as row `row`.
-/// `exact`: the solver honours C. `force_alone()`: of the pair as if it were alone [N | N m]. `dt`:
+/// Bounds, target velocity and compliance of `wanted`, which acts at `joint`, as row `row`. `dt`:
 /// for which the force acts [s].
-template <class ForceAlone>
-void write_limits(btTypedConstraint::btConstraintInfo2& info, int row,
-                  const LinkRow<double>& wanted, const btRigidBody& a, const btRigidBody& b,
-                  const Vector3<double>& joint, bool exact, double dt,
-                  const ForceAlone& force_alone) noexcept {
+inline void write_limits(btTypedConstraint::btConstraintInfo2& info, int row,
+                         const LinkRow<double>& wanted, const btRigidBody& a, const btRigidBody& b,
+                         const Vector3<double>& joint, double dt) noexcept {
     constexpr double largest_slack = 0.5; // C m
     const RowLimits<double>& limits = wanted.limits;
     const int at = row * info.rowskip;
     info.m_constraintError[at] = btScalar(limits.bias);
     info.m_lowerLimit[at] = as_impulse(limits.lower, dt);
     info.m_upperLimit[at] = as_impulse(limits.upper, dt);
-    info.cfm[at] = btScalar(limits.compliance);
-    if (exact) return;
+    info.cfm[at] = 0;
     if (limits.lower == limits.upper) write_given(info, row, limits.lower * dt);
     if (!(limits.compliance > 0)) return;
     const double slack = limits.compliance / inverse_mass_of(wanted, a, b, joint);
     info.cfm[at] = btScalar(slack);
-    if (slack > largest_slack) write_given(info, row, force_alone() * dt);
-}
-
-/// True where no row of the link's last `prepare` is soft or given.
-[[nodiscard]] inline bool all_hard(const AnyLink<double>& link) noexcept {
-    for (const JointAxis axis : link.axes()) {
-        const RowLimits<double>& limits = link.limits()[index(axis)];
-        if (limits.compliance > 0 || !(limits.lower < limits.upper)) return false;
-    }
-    return true;
-}
-
-/// Hard rows of the link's last `prepare`, combined as `combined` says; that of axis `order[i]` is
-/// row i. `dt`: for which its forces act [s].
-inline void write_hard_rows(btTypedConstraint::btConstraintInfo2& info, const AnyLink<double>& link,
-                            const std::array<std::size_t, 6>& order,
-                            const CombinedRows<double>& combined, double dt) noexcept {
-    const LinkPose<double>& pose = link.pose();
-    const auto& rows = link.limits();
-    const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
-    const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
-    int at = 0;
-    for (const CombinedRow<double>& row : combined) {
-        const Vector3<double> about = times(pose.moment_axes(), row.moment);
-        double target = dot(row.moment, turning);
-        if (is_zero(row.force)) {
-            write_moment(info, at, about);
-        } else {
-            const Vector3<double> along = times(pose.axes(), row.force);
-            write_jacobian(info, at, pose.arm_a(), pose.arm_b(), along, about);
-            target += dot(row.force, moving);
-        }
-        info.m_constraintError[at] = btScalar(target);
-        info.cfm[at] = 0;
-        at += info.rowskip;
-    }
-    // Bullet leaves a row without bounds
-    for (int row = 6 - int(link.axes().size()); row < 6; ++row) {
-        const RowLimits<double>& limits = rows[order[std::size_t(row)]];
-        info.m_lowerLimit[row * info.rowskip] = as_impulse(limits.lower, dt);
-        info.m_upperLimit[row * info.rowskip] = as_impulse(limits.upper, dt);
+    const double spring = limits.bias / limits.compliance; // λ at u' = 0
+    if (slack > largest_slack) {
+        write_given(info, row, std::clamp(spring, limits.lower * dt, limits.upper * dt));
     }
 }
 
-/// The rows of the link's last `prepare`, not pushing each other as `decoupled` says, for the
-/// constraint to solve by itself (null: all are the joint's); that of axis `order[i]` is row i.
-/// `dt`: for which they act [s].
-inline void add_rows(RowSweep<double>& sweep, const AnyLink<double>& link,
-                     const std::array<std::size_t, 6>& order, const DecoupledLink* decoupled,
-                     double dt) noexcept {
-    const auto dimension = int(link.axes().size());
-    const Matrix3<double>& axes = link.pose().axes();
-    const Matrix3<double>& moment_axes = link.pose().moment_axes();
-    const auto& rows = link.limits();
-    const Vector3<double> moving(rows[0].bias, rows[1].bias, rows[2].bias);
-    const Vector3<double> turning(rows[3].bias, rows[4].bias, rows[5].bias);
-    const Vector3<double> none = Vector3<double>::Zero();
-    for (std::size_t i = 0; i < 6; ++i) {
-        RowLimits<double> limits = rows[order[i]];
-        limits.lower *= dt;
-        limits.upper *= dt;
-        if (decoupled == nullptr) {
-            const int column_of_axis = int(order[i] % 3);
-            order[i] < 3 ? sweep.add(column(axes, column_of_axis), none, limits)
-                         : sweep.add(none, column(moment_axes, column_of_axis), limits);
-        } else {
-            const CombinedRow<double>& row = decoupled->rows()[i];
-            limits.bias = dot(row.force, moving) + dot(row.moment, turning);
-            // Eigen's own products, in packets: six rows a tick
-            sweep.add(axes * row.force, moment_axes * row.moment, limits);
-        }
-    }
-    if (dimension > 1) sweep.join_last(dimension);
-}
-/// Forces along the axes of the link from the impulses of such rows [N | N m].
-[[nodiscard]] inline Vector6<double> forces_of_impulses(const std::array<std::size_t, 6>& order,
-                                                        const DecoupledLink* decoupled,
-                                                        const RowSweep<double>::Impulses& impulses,
-                                                        double dt) noexcept {
-    Vector6<double> forces = Vector6<double>::Zero();
-    for (std::size_t i = 0; i < 6; ++i) {
-        const double force = impulses[Eigen::Index(i)] / dt;
-        if (decoupled == nullptr) {
-            forces[Eigen::Index(order[i])] = force;
-        } else {
-            const CombinedRow<double>& row = decoupled->rows()[i];
-            for (int k = 0; k < 3; ++k) {
-                forces[k] += force * row.force[k];
-                forces[3 + k] += force * row.moment[k];
-            }
-        }
-    }
-    return forces;
-}
-
-/// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `exact`: the solver
-/// honours C. `dt`: for which the forces act [s].
+/// The rows of the link's last `prepare`, that of axis `order[i]` as row i. `dt`: for which the
+/// forces act [s].
 inline void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigidBody& a,
                        const btRigidBody& b, const AnyLink<double>& link,
-                       const std::array<std::size_t, 6>& order, bool exact, double dt) noexcept {
-    const double tick = 1 / double(info.fps);
-    Vector6<double> alone = Vector6<double>::Zero();
-    bool solved_alone = false;
-    const auto force_alone = [&](std::size_t axis) {
-        if (!solved_alone) {
-            const Matrix6<double> k = link.pose().inverse_mass(body_state(a), body_state(b));
-            alone = forces_of_isolated_pair(
-                link.limits(), k, link.velocities(free_state(a, tick), free_state(b, tick)), dt);
-            solved_alone = true;
-        }
-        return alone[Eigen::Index(axis)];
-    };
+                       const std::array<std::size_t, 6>& order, double dt) noexcept {
     for (int row = 0; row < 6; ++row) {
-        const std::size_t axis = order[std::size_t(row)];
-        const LinkRow<double> wanted = link.row(all_joint_axes[axis]);
+        const LinkRow<double> wanted = link.row(all_joint_axes[order[std::size_t(row)]]);
         const int at = row * info.rowskip;
         if (wanted.turns) {
             write_moment(info, at, wanted.direction);
@@ -273,8 +163,7 @@ inline void write_rows(btTypedConstraint::btConstraintInfo2& info, const btRigid
             write_jacobian(info, at, link.pose().arm_a(), link.pose().arm_b(), wanted.direction,
                            Vector3<double>::Zero());
         }
-        write_limits(info, row, wanted, a, b, link.point(), exact, dt,
-                     [&] { return force_alone(axis); });
+        write_limits(info, row, wanted, a, b, link.point(), dt);
     }
 }
 

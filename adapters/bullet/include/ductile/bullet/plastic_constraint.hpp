@@ -33,8 +33,6 @@
 #include "ductile/bullet/driven_body.hpp"
 #include "ductile/bullet/island_rows.hpp"
 #include "ductile/bullet/joint_view.hpp"
-#include "ductile/bullet/self_solved_rows.hpp"
-#include "ductile/bullet/soft_rows.hpp"
 #include "ductile/bullet/tick_account.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
@@ -49,8 +47,6 @@ inline constexpr auto plastic_constraint_type = btTypedConstraintType(int(MAX_CO
 /// Everything but the joint.
 class PlasticConstraint : public btTypedConstraint,
                           public IslandRows,
-                          public SoftRows,
-                          public SelfSolvedRows,
                           public KeptJoint,
                           public TickMember {
   public:
@@ -72,11 +68,6 @@ class PlasticConstraint : public btTypedConstraint,
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     /// True from add_to to remove_from, whoever else took the constraint out.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
-
-    /// Bullet's own: sequential impulse calls it in each sweep.
-    void solveConstraintObsolete(btSolverBody& a, btSolverBody& b, btScalar) override {
-        if (is_open()) sweep(a, b);
-    }
 
   protected:
     PlasticConstraint(btRigidBody& a, btRigidBody& b);

@@ -84,7 +84,6 @@ DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
             "PlasticConstraint.add_to.world: must not be given while the constraint is in a world: "
             "remove_from that one first");
     }
-    join(world);
     join_account(world);
     if (!is_there) world.addConstraint(this);
     if (disable_collisions_between_bodies) {
@@ -103,7 +102,6 @@ DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
     world.removeConstraint(this);
     if (world_ != &world) return;
     world_ = nullptr;
-    leave();
     leave_account();
 }
 

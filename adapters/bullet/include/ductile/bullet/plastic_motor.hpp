@@ -10,7 +10,7 @@
 // constraint of one row beside it, about the hinge's axis, in place of the hinge's own motor, which
 // is off meanwhile: Bullet's motor takes one impulse for both directions, has no compliance, and
 // shares its row with the limits. Compliance, and where the row is solved, are as for a
-// PlasticHinge (link_rows.hpp, self_solved_rows.hpp). Where the bodies are when the motor is taken
+// PlasticHinge (joint_constraint.hpp). Where the bodies are when the motor is taken
 // over is the rest position. The hinge must be in the world too; in which order does
 // not matter. A hinge that is disabled, or asleep, is neither ruled nor booked.
 //
@@ -95,11 +95,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// Of A minus B at the pivot, world.
     [[nodiscard]] Vector6<double> twist(const BodyState<double>& a,
                                         const BodyState<double>& b) const;
-    /// Of the pair as if nothing else acted on it in the tick [N m].
-    [[nodiscard]] double moment_alone() const;
     void prepare();
-    /// Of the open tick [N m s]. Tells Bullet what it would know of a row of its own.
-    [[nodiscard]] double impulse_of_own_row();
     void hand_back();
 
     static constexpr int no_row = -1;
@@ -113,10 +109,10 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     double tick_ = 0;               ///< [s]
     double dt_ = 0;                 ///< for which the row's moment acts in it [s]
     bool pending_ = false;
-    double moment_ = 0;     ///< that the island gave it [N m]
-    int row_ = no_row;      ///< in the island that is being solved
     bool booked_ = false;   ///< and not finished
     bool restored_ = false; ///< the next position is measured, not compared
+    double moment_ = 0; ///< that the island gave it [N m]
+    int row_ = no_row;  ///< in the island that is being solved
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>

@@ -9,7 +9,6 @@
 
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
-#include "ductile/joint/isolated_pair.hpp"
 #include "ductile/joint/joint_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -61,26 +60,15 @@ DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) con
 
 DUCTILE_INLINE void MotorConstraint::getInfo1(btConstraintInfo1* info) {
     *info = {.m_numConstraintRows = 0, .nub = 0};
-    close();
     row_ = no_row;
     if (world_ == nullptr || !hinge_.isEnabled() || joint_.broken()) return;
     prepare();
-    SweepGroup* sweeps = sweeps_of_solver(*this, world_);
-    if (sweeps == nullptr) {
-        info->m_numConstraintRows = 1;
-        return;
-    }
-    RowLimits<double> limits = limits_;
-    limits.lower *= dt_;
-    limits.upper *= dt_;
-    const Vector3<double> none = Vector3<double>::Zero();
-    open(*sweeps, m_rbA, m_rbB, none, none).add(none, axis_, limits);
+    info->m_numConstraintRows = 1;
 }
 
 DUCTILE_INLINE void MotorConstraint::getInfo2(btConstraintInfo2* info) {
     write_moment(*info, 0, axis_);
-    write_limits(*info, 0, {axis_, true, limits_}, m_rbA, m_rbB, pivot(), compliance_is_exact(),
-                 dt_, [this] { return moment_alone(); });
+    write_limits(*info, 0, {axis_, true, limits_}, m_rbA, m_rbB, pivot(), dt_);
 }
 
 // ---- an island's side
@@ -89,7 +77,6 @@ DUCTILE_INLINE void MotorConstraint::open_rows(solve::Island& island, const Isla
                                                const IslandSeat& b, double /*tick*/,
                                                double /*erp*/) {
     row_ = no_row;
-    close();
     if (world_ == nullptr || !hinge_.isEnabled() || joint_.broken()) return;
     prepare();
     const Vector3<double> none = Vector3<double>::Zero();
@@ -141,17 +128,6 @@ DUCTILE_INLINE Vector6<double> MotorConstraint::twist(const BodyState<double>& a
     };
     return twist_of(difference(velocity(a), velocity(b)), difference(a.spin, b.spin));
 }
-DUCTILE_INLINE double MotorConstraint::moment_alone() const {
-    const Vector6<double> free = twist(free_state(m_rbA, tick_), free_state(m_rbB, tick_));
-    const Matrix3<double> frame = axes();
-    const Vector6<double> along_axes =
-        twist_of(transposed_times(frame, linear(free)), transposed_times(frame, angular(free)));
-    std::array<RowLimits<double>, 6> rows{};
-    rows[index(JointAxis::torsion)] = limits_;
-    return forces_of_isolated_pair(rows, inverse_mass(), along_axes,
-                                   dt_)[Eigen::Index(index(JointAxis::torsion))];
-}
-
 // ---- a tick
 
 DUCTILE_INLINE void MotorConstraint::prepare() {
@@ -189,8 +165,8 @@ DUCTILE_INLINE void MotorConstraint::book(bool late) {
     pending_ = false;
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
     const double speed = turning(a, b);
-    double force = row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
-    if (is_open()) force = impulse_of_own_row() / dt_;
+    const double force =
+        row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
     row_ = no_row;
     const double position = measure(a, b, position_ + speed * tick_);
     see_turn(speed, tick_, position);
@@ -207,16 +183,6 @@ DUCTILE_INLINE void MotorConstraint::finish_tick() {
         detail::let_collide(*this);
     }
     if (joint_.last().release > 0) hand_back();
-}
-
-DUCTILE_INLINE double MotorConstraint::impulse_of_own_row() {
-    const double impulse = impulses()[0];
-    internalSetAppliedImpulse(btScalar(impulse));
-    if (m_jointFeedback == nullptr) return impulse;
-    const Vector3<double> none = Vector3<double>::Zero();
-    write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none,
-                   scaled(impulse / tick_, axis_));
-    return impulse;
 }
 
 DUCTILE_INLINE void MotorConstraint::hand_back() {

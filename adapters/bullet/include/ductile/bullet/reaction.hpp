@@ -72,4 +72,18 @@ struct ReactionArm {
     return result;
 }
 
+/// A wrench on A at the joint, acting for a tick, as Bullet's joint feedback; world axes.
+inline void write_feedback(btJointFeedback& feedback, const btRigidBody& a, const btRigidBody& b,
+                           const Vector3<double>& arm_a, const Vector3<double>& arm_b,
+                           const Vector3<double>& force, const Vector3<double>& moment) {
+    const auto felt = [](const Vector3<double>& given, const btVector3& factor) {
+        return to_bullet(given) * factor;
+    };
+    feedback.m_appliedForceBodyA = felt(force, a.getLinearFactor());
+    feedback.m_appliedForceBodyB = felt(scaled(-1, force), b.getLinearFactor());
+    feedback.m_appliedTorqueBodyA = felt(sum(cross(arm_a, force), moment), a.getAngularFactor());
+    feedback.m_appliedTorqueBodyB =
+        felt(scaled(-1, sum(cross(arm_b, force), moment)), b.getAngularFactor());
+}
+
 } // namespace ductile::bullet

@@ -16,9 +16,9 @@
 // for the step; a kinematic body moved by hand makes its whole motion in the first part. A step
 // throws std::invalid_argument where it, or its part, is shorter than Bullet steps.
 //
-// OnUnconverged::direct_solver: the group of islands with a joint suspect goes to Dantzig's method
-// (suspect_solver.hpp) until all is calm. The user's solver is in place again when this object
-// ends. Not for btMultiBodyDynamicsWorld, whose solver has to be direct from the start
+// Islands with a plastic joint are solved at once, contacts and friction too (front_solver.hpp),
+// whatever the user's solver is, which gets all others and is in place again when this object ends.
+// Not in a btMultiBodyDynamicsWorld, whose solver has to be direct from the start
 // (multibody_solver.hpp); a btDiscreteDynamicsWorldMt with a solver for large islands of its own
 // gives those to that.
 //
@@ -50,15 +50,10 @@
 namespace ductile::bullet {
 
 class FrontHold;
-class SuspectSolver;
 
 struct WorldParameters {
-    EffortParameters effort{}; ///< what is done where the solver did not converge
-    bool ledger = true;        ///< whether the energy account is kept; not with multibodies
-    /// Whether islands with a plastic joint are solved at once, joints, contacts and friction
-    /// (front_solver.hpp), whatever the user's solver is; not with multibodies. Friction that
-    /// slides in jammed contacts may be left unsolved, and is told.
-    bool solve_islands = false;
+    EffortParameters effort{};  ///< what is done where the solver did not converge
+    bool ledger = true;         ///< whether the energy account is kept; not with multibodies
     bool leapfrog = false;      ///< whether positions are of second order in the step
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
@@ -89,7 +84,6 @@ class World final : public SteppedWorld {
     void forget(PlasticConstraint& joint);
     /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
     void share(const ForceShare& how);
-    void require_exchangeable_solver() const;
     void require_leapfrog() const;
     [[nodiscard]] bool holds_multibodies() const noexcept;
     [[nodiscard]] btMultiBodyDynamicsWorld& world_of_multibodies() const;
@@ -108,8 +102,7 @@ class World final : public SteppedWorld {
     [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;
 
     btDiscreteDynamicsWorld& world_;
-    std::unique_ptr<SuspectSolver> suspect_solver_;
-    std::unique_ptr<FrontHold> front_;
+    std::unique_ptr<FrontHold> front_; ///< not in a world of multibodies
     std::optional<EnergyMeter> meter_;
     HeldForces forces_;
     std::vector<const PlasticConstraint*> joints_;

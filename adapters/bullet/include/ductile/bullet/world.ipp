@@ -9,7 +9,6 @@
 #include "ductile/bullet/force_share.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/precision_check.hpp"
-#include "ductile/bullet/suspect_solver.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -23,13 +22,6 @@ DUCTILE_INLINE const void* address(const PlasticConstraint& joint) {
     return static_cast<const btTypedConstraint*>(&joint);
 }
 DUCTILE_INLINE const void* address(const MultiBodyPlasticConstraint& joint) { return &joint; }
-
-/// Bullet's own flag is not public.
-struct Ownership : btDiscreteDynamicsWorld {
-    static bool of(btDiscreteDynamicsWorld& world) {
-        return world.*(&Ownership::m_ownsConstraintSolver);
-    }
-};
 
 /// `enter()` puts the joint into Bullet's world.
 template <class Joint, class Report, class Enter>
@@ -50,16 +42,7 @@ void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Re
 DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
     : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
     require_matching_precision();
-    if (parameters.effort.action == OnUnconverged::direct_solver) {
-        require_exchangeable_solver();
-        suspect_solver_ = std::make_unique<SuspectSolver>(*world_.getConstraintSolver());
-        world_.setConstraintSolver(suspect_solver_.get());
-    }
-    if (parameters.solve_islands) {
-        if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
-            throw std::invalid_argument(
-                "World.solve_islands = true: must not be asked of a btMultiBodyDynamicsWorld");
-        }
+    if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
     }
     if (parameters.ledger) meter_.emplace(world_);
@@ -71,9 +54,6 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
 
 DUCTILE_INLINE World::~World() {
     for (PlasticConstraint* joint : sharing_) joint->set_force_share({});
-    if (suspect_solver_ != nullptr && world_.getConstraintSolver() == suspect_solver_.get()) {
-        world_.setConstraintSolver(&suspect_solver_->usual());
-    }
 }
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
@@ -107,7 +87,6 @@ DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
 
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(detail::address(joint));
-    if (suspect_solver_ != nullptr) suspect_solver_->trust(detail::address(joint));
     if (meter_) meter_->forget(joint);
     sharing_.erase(&joint);
     std::erase(joints_, &joint);
@@ -121,19 +100,6 @@ DUCTILE_INLINE void World::share(const ForceShare& how) {
         if (!supervisor().knows(detail::address(*joint))) {
             keep(*joint, [this, joint] { forget(*joint); });
         }
-    }
-}
-
-DUCTILE_INLINE void World::require_exchangeable_solver() const {
-    if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
-        throw std::invalid_argument(
-            "World.effort.action = direct_solver: must not be asked of a "
-            "btMultiBodyDynamicsWorld: give it a MultiBodyMlcpSolver");
-    }
-    if (detail::Ownership::of(world_)) {
-        throw std::invalid_argument(
-            "World.effort.action = direct_solver: must not be asked of a world that made its "
-            "solver itself, as that one would be lost");
     }
 }
 
@@ -179,12 +145,8 @@ DUCTILE_INLINE int World::iterations() const { return world_.getSolverInfo().m_n
 DUCTILE_INLINE void World::set_iterations(int iterations) {
     world_.getSolverInfo().m_numIterations = iterations;
 }
-DUCTILE_INLINE void World::suspect(const void* joint) {
-    if (suspect_solver_ != nullptr) suspect_solver_->suspect(joint);
-}
-DUCTILE_INLINE void World::finish(const Effort& effort) {
-    if (!effort.direct && suspect_solver_ != nullptr) suspect_solver_->trust_all();
-}
+DUCTILE_INLINE void World::suspect(const void* /*joint*/) {} // solved directly already
+DUCTILE_INLINE void World::finish(const Effort& /*effort*/) {}
 DUCTILE_INLINE bool World::has_body(const void* body) const {
     const auto& objects = world_.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+//
+// The course of a step of one_axis_joint.hpp: templates, seen everywhere.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/joint/one_axis_joint.hpp"
+
+namespace ductile {
+
+template <class Law, FractureCriterion Criterion>
+requires CyclicLaw<typename CyclicForm<Law>::type>
+auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar dt) noexcept
+    -> RowLimits<Scalar> {
+    start_ = motion.velocity;
+    predicted_ = predict(state_, motion.midway, dt);
+    elastic_ = motion.position - state_.plastic_offset;
+    sound_ = are_finite(start_, elastic_, dt) && (rigid() || motion.mass >= 0);
+    if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
+    bound(dt);
+    RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
+    if (rigid()) {
+        row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
+    } else {
+        implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
+        row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
+    }
+    bias_ = row.bias;
+    return row;
+}
+
+template <class Law, FractureCriterion Criterion>
+requires CyclicLaw<typename CyclicForm<Law>::type>
+auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
+                                          Scalar granted) noexcept -> Step<Scalar> {
+    Step<Scalar> step;
+    if (state_.broken) {
+        step.outcome = Outcome::broken;
+        return step;
+    }
+    const Taken taken{.force = reaction.force,
+                      .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
+                      .travel = (start_ + reaction.velocity) / 2 * dt,
+                      .position = reaction.position,
+                      .dt = dt,
+                      .at_upper = reaction.force >= upper_ - tolerance_,
+                      .at_lower = reaction.force <= lower_ + tolerance_,
+                      .granted = granted};
+    if (!sound_ || !are_finite(taken.work, taken.position)) return unbooked_step<Step<Scalar>>();
+    step.residual = violation(reaction, taken);
+    const bool solved = step.residual <= allowed_residual(reaction.velocity);
+    if (!solved) {
+        commit_unsolved(step, taken);
+    } else if (brittle(taken)) {
+        snap(step, taken);
+    } else if (rigid()) {
+        commit_rigid(step, taken);
+    } else {
+        commit_elastic(step, taken);
+    }
+    if (solved && !(step.claimed > 0)) step.unclaimed = solved_share() * step.other_work;
+    settle(state_, step,
+           StepEnd<Scalar, Scalar>{.start = start_,
+                                   .velocity = reaction.velocity,
+                                   .force = reaction.force,
+                                   .start_speed = std::abs(start_),
+                                   .absolute_residual = parameters_.absolute_residual,
+                                   .allowed_residual = allowed_residual(reaction.velocity),
+                                   .error = error_of(step, taken),
+                                   .strength = flow_.resistance(taken.travel),
+                                   .largest_force = flow_.resistance(taken.travel),
+                                   .allowed_step_error = parameters_.allowed_step_error,
+                                   .dt = dt,
+                                   .at_bound = taken.at_bound()},
+           [this]() noexcept { return least_travel(); });
+    if (state_.broken) [[unlikely]]
+        place_break(step, taken);
+    return step;
+}
+
+} // namespace ductile
