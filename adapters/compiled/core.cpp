@@ -5,6 +5,8 @@
 #include <ductile/numeric/block_ldlt.hpp>
 #include <ductile/numeric/block_ldlt.ipp>
 #include <ductile/solve/active_set.ipp>
+#include <ductile/solve/certificate.ipp>
+#include <ductile/solve/contact_sweep.ipp>
 #include <ductile/solve/interior_point.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>

@@ -31,8 +31,9 @@ namespace ductile::solve {
 class ActiveSet {
   public:
     struct Limits {
-        int rounds = 30;  ///< at most
-        int patience = 3; ///< rounds that may pass without fewer rows in the wrong place
+        int rounds = 30;            ///< at most
+        int patience = 3;           ///< rounds that may pass without fewer rows in the wrong place
+        bool contacts_held = false; ///< they keep their impulses
     };
 
     /// From the sides, impulses and multipliers in the island. True where each row is where it
@@ -40,10 +41,17 @@ class ActiveSet {
     /// them.
     [[nodiscard]] bool solve(IslandSystem& system, const Limits& limits);
 
+    /// Factors of the island as it stands: what is free there, and surfaces as they lie. False
+    /// where they are of no use.
+    [[nodiscard]] bool linearise(IslandSystem& system);
+
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 
   private:
     void begin();
+    [[nodiscard]] bool held(const IslandBlock& block) const noexcept {
+        return contacts_held_ && block.kind == BlockKind::contact;
+    }
     void place();
     [[nodiscard]] bool solve_free_rows();
     [[nodiscard]] double set_right_sides();
@@ -58,6 +66,7 @@ class ActiveSet {
     numeric::Anderson slip_;
     std::vector<double> shifts_, slips_; ///< of contacts, in order
     int rounds_ = 0;
+    bool contacts_held_ = false;
 };
 
 } // namespace ductile::solve

@@ -24,6 +24,7 @@ inline constexpr double settled = 1e-7;    ///< of the largest velocity: a slip 
 DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits) {
     system_ = &system;
     rounds_ = 0;
+    contacts_held_ = limits.contacts_held;
     begin();
     int fewest = std::numeric_limits<int>::max(), patience = limits.patience;
     slip_.restart();
@@ -52,6 +53,12 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits)
     return false;
 }
 
+DUCTILE_INLINE bool ActiveSet::linearise(IslandSystem& system) {
+    system_ = &system;
+    set_tangents();
+    return system.factor();
+}
+
 /// Sides that are none, and what is not known of blocks on their surface.
 DUCTILE_INLINE void ActiveSet::begin() {
     Island& island = system_->island();
@@ -75,7 +82,7 @@ DUCTILE_INLINE void ActiveSet::begin() {
         if (view.on_surface() && view.block.multiplier == 0) {
             with_form(view, [&view](auto form) { form.guess(view); });
         }
-        if (view.block.kind != BlockKind::contact) continue;
+        if (view.block.kind != BlockKind::contact || contacts_held_) continue;
         shifts_.push_back(ContactForm::slip(view));
     }
     shift_contacts();
@@ -96,7 +103,7 @@ DUCTILE_INLINE void ActiveSet::place() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        with_form(view, [&view](auto form) { form.place(view); });
+        if (!held(view.block)) with_form(view, [&view](auto form) { form.place(view); });
     }
 }
 
@@ -111,7 +118,12 @@ DUCTILE_INLINE void ActiveSet::set_tangents() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        with_form(view, [&view](auto form) { form.set_tangent(view); });
+        if (!held(view.block)) {
+            with_form(view, [&view](auto form) { form.set_tangent(view); });
+            continue;
+        }
+        view.clear_terms();
+        for (int i = 0; i < view.count(); ++i) view.release(i, false);
     }
 }
 
@@ -128,6 +140,7 @@ DUCTILE_INLINE double ActiveSet::set_right_sides() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
+        if (held(view.block)) continue;
         see(with_form(view, [&view](auto form) { return form.set_right(view); }));
     }
     for (const IslandSystem::Row& work : system_->rows()) {
@@ -145,6 +158,7 @@ DUCTILE_INLINE bool ActiveSet::take_step() {
     bool stays = true;
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
+        if (held(view.block)) continue;
         if (!with_form(view, [&view](auto form) { return form.take(view); })) stays = false;
     }
     return stays;
@@ -211,6 +225,7 @@ DUCTILE_INLINE int ActiveSet::change_over() {
     const double least = detail::acceptance * system_->scale();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
+        if (held(view.block)) continue;
         wrong += with_form(view, [&](auto form) { return form.change_over(view, least); });
     }
     return wrong;
@@ -222,7 +237,7 @@ DUCTILE_INLINE double ActiveSet::read_slips() {
     double moved = 0;
     for (std::size_t k = 0; k < system_->island().blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (view.block.kind != BlockKind::contact) continue;
+        if (view.block.kind != BlockKind::contact || contacts_held_) continue;
         const double slip = ContactForm::slip(view);
         moved = std::max(moved, std::abs(slip - shifts_[slips_.size()]));
         slips_.push_back(slip);
@@ -233,7 +248,7 @@ DUCTILE_INLINE double ActiveSet::read_slips() {
 DUCTILE_INLINE void ActiveSet::shift_contacts() {
     std::size_t next = 0;
     for (const IslandBlock& block : system_->island().blocks) {
-        if (block.kind != BlockKind::contact) continue;
+        if (block.kind != BlockKind::contact || contacts_held_) continue;
         double& shift = shifts_[next++];
         shift = std::max(shift, 0.0);
         system_->rows()[std::size_t(block.first)].shift = shift;

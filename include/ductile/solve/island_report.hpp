@@ -13,6 +13,7 @@ struct IslandReport {
     int rounds = 0;      ///< of the active set
     int factorisations = 0;
     int interior_points = 0; ///< how often the interior point was asked
+    int sweeps = 0;          ///< of contacts one after the other
 };
 
 /// An answer is solved where its residual is at most this share of `scale` [-].

@@ -26,6 +26,8 @@
 #include <vector>
 
 #include "ductile/solve/active_set.hpp"
+#include "ductile/solve/certificate.hpp"
+#include "ductile/solve/contact_sweep.hpp"
 #include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
@@ -33,10 +35,6 @@
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::solve {
-
-/// Worst violation of a row, with velocities and residuals as they are [m/s | rad/s]: how far each
-/// row or block is from its own optimum, times its own effect. NaN comes through.
-[[nodiscard]] double certificate(IslandSystem& system) noexcept;
 
 /// One per island that lasts: it keeps the topology. Not thread-safe.
 class IslandSolver {
@@ -53,6 +51,7 @@ class IslandSolver {
     IslandSystem system_;
     ActiveSet active_set_;
     InteriorPoint interior_point_;
+    ContactSweep contact_sweep_;
     std::vector<double> start_, best_;
 };
 

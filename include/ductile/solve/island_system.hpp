@@ -78,6 +78,12 @@ class IslandSystem {
     [[nodiscard]] bool factor() noexcept;
     /// dx from `right` and `extra`, with the last factors.
     void step() noexcept;
+    /// Change of the bodies' velocities for an impulse of one in `row`, with the last factors: what
+    /// is free answers. Valid until the next call.
+    [[nodiscard]] const std::vector<Vector6<double>>& response(std::size_t row) noexcept;
+    /// J of `row` times a change of the bodies' velocities.
+    [[nodiscard]] double along(std::size_t row,
+                               const std::vector<Vector6<double>>& change) const noexcept;
 
     /// 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x with the residuals of now [J]: never more than 0 at the
     /// answer. The bodies' kinetic energy changes by no more than this.

@@ -177,6 +177,21 @@ TEST_CASE("Friction in random islands: solved means Coulomb's cone with the norm
     CHECK(solved == asked); // Coulomb's law does not always have an answer: these have
 }
 
+TEST_CASE("Boxes that slide and rock on faces are solved, whatever their slips", "[solve]") {
+    std::mt19937 random(1);
+    for (int repeat = 0; repeat < 90; ++repeat) {
+        const int beams = 1 + repeat % 6, stack = 1 + repeat / 6 % 3;
+        Island island = islands::stacked_boxes(random, beams, stack);
+        const Eigen::MatrixXd a = islands::system_matrix(island);
+        IslandSolver solver;
+        const IslandReport report = solver.solve(island);
+        INFO("island " << repeat << ", " << beams << " beams, " << stack << " boxes on each");
+        CHECK(report.solved);
+        CHECK(violation(island, a) <= 1e-4 * report.scale);
+        CHECK(islands::energy(island, a) <= 1e-12);
+    }
+}
+
 TEST_CASE("A box on a slope holds below the angle of friction and slides as the formula says above",
           "[solve]") {
     constexpr double mass = 10, friction = 0.5, g = 9.81, dt = 1.0 / 60;

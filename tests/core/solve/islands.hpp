@@ -141,6 +141,50 @@ struct Random {
 };
 
 /// J M⁻¹ Jᵀ + C of all rows.
+/// Boxes that stand on four corners each, `stack` of them on each of `beams` beams in a row that
+/// joints hold, struck in all directions: a step of 1/60 s.
+inline Island stacked_boxes(std::mt19937& random, int beams, int stack) {
+    constexpr double dt = 1.0 / 60, gravity = 9.81;
+    const auto between = [&random](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    Island result;
+    std::vector<Vector3<double>> speed;
+    const double friction = between(0.1, 1.2);
+    for (int i = 0; i < beams; ++i) {
+        result.bodies.push_back(body(between(50, 200)));
+        speed.emplace_back(between(-0.01, 0.01), between(-0.01, 0.01), between(-0.01, 0.01));
+        const int first = add_joint(result, i, i - 1, {-0.5, 0, 0}, {0.5, 0, 0});
+        for (int k = 0; k < 6; ++k) {
+            result.rows[std::size_t(first + k)].compliance =
+                (k < 3 ? 1e-9 : 1e-7) / (dt * dt) * between(0.1, 1);
+        }
+    }
+    for (int i = 0; i < beams; ++i) {
+        for (int k = 0, below = i; k < stack; ++k) {
+            const int box = int(result.bodies.size());
+            result.bodies.push_back(body(between(20, 500)));
+            speed.emplace_back(between(-2, 2), between(-2, 2), between(-1, 0.1));
+            for (const double x : {-0.3, 0.3}) {
+                for (const double y : {-0.3, 0.3}) {
+                    add_contact(result, box, below, {x, y, -0.3}, {x, y, k == 0 ? 0.1 : 0.3},
+                                friction);
+                }
+            }
+            below = box;
+        }
+    }
+    for (IslandRow& row : result.rows) {
+        const auto closing = [&](int which, const Vector6<double>& on) {
+            if (which < 0) return 0.0;
+            const Vector3<double>& v = speed[std::size_t(which)];
+            return on[0] * v[0] + on[1] * v[1] + on[2] * (v[2] - gravity * dt);
+        };
+        row.target = -closing(row.a, row.on_a) - closing(row.b, row.on_b);
+    }
+    return result;
+}
+
 inline Eigen::MatrixXd system_matrix(const Island& island) {
     const auto n = Eigen::Index(island.rows.size());
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);

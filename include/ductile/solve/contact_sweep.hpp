@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+//
+// The patient way through the contacts of an island: one after the other by Coulomb's own law, with
+// the joints between them condensed.
+//
+//   round   joints solved to the end with the contacts' impulses held (active_set.hpp), convex
+//           G = J_c K⁻¹ J_cᵀ + C_c: what contacts do to each other through bodies and through the
+//           joints as they flow now
+//           sweeps: each contact solved alone, the others held, until none moves any more
+//
+// A round in which no joint changed sides is the last. Nothing is assumed of the sides of contacts,
+// and no slip has to settle: it finds answers where the fixed point of contact_form.hpp wanders.
+// Slower: one solve of the factors for each row of a contact, and O((contacts)²) a sweep.
+//
+// Source: non-smooth contact dynamics, Jean (1999), doi:10.1016/S0045-7825(98)00383-1; on its
+// robustness beside other methods: Acary, Brémond & Huber (2018), doi:10.1007/978-3-319-75972-2_10.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "ductile/solve/active_set.hpp"
+#include "ductile/solve/island_system.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::solve {
+
+/// Not thread-safe. Keeps room between solves.
+class ContactSweep {
+  public:
+    /// From the impulses in the island; leaves impulses and states of its answer there. `joints`:
+    /// what solves them.
+    void solve(IslandSystem& system, ActiveSet& joints);
+
+    [[nodiscard]] int sweeps() const noexcept { return sweeps_; } ///< of the last solve
+
+  private:
+    void condense();
+    void sweep_contacts();
+    [[nodiscard]] double solve_contact(std::size_t contact);
+    void tell_states();
+
+    IslandSystem* system_ = nullptr;
+    std::vector<std::size_t> contacts_; ///< their blocks
+    std::vector<std::size_t> rows_;     ///< of all of them, in order
+    std::vector<std::size_t> first_;    ///< of each in rows_
+    std::vector<double> effect_;        ///< G, rows_.size() squared
+    std::vector<double> residual_;      ///< b - J v - C x
+    int sweeps_ = 0;
+};
+
+} // namespace ductile::solve
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/solve/contact_sweep.ipp"
+#endif

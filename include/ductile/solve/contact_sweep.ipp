@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of contact_sweep.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/solve/block_form.hpp"
+#include "ductile/solve/certificate.hpp"
+#include "ductile/solve/contact_sweep.hpp"
+#include "ductile/solve/island_report.hpp"
+
+namespace ductile::solve {
+
+DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints) {
+    constexpr int most = 20;
+    constexpr double enough = solved_residual / 10;
+    system_ = &system;
+    sweeps_ = 0;
+    contacts_.clear();
+    rows_.clear();
+    first_.clear();
+    const std::vector<IslandBlock>& blocks = system.island().blocks;
+    for (std::size_t k = 0; k < blocks.size(); ++k) {
+        if (blocks[k].kind != BlockKind::contact) continue;
+        contacts_.push_back(k);
+        first_.push_back(rows_.size());
+        for (int i = 0; i < blocks[k].count; ++i) rows_.push_back(std::size_t(blocks[k].first + i));
+    }
+    for (IslandSystem::Row& row : system.rows()) row.shift = 0;
+    double off = 0;
+    for (int round = 0; round < most; ++round) {
+        static_cast<void>(joints.solve(system, {.contacts_held = true}));
+        const double before = off;
+        off = certificate(system) / system.scale();
+        const bool stalled = round > 0 && off <= solved_residual && off > before / 2;
+        if (off <= enough || stalled || !joints.linearise(system)) break;
+        condense();
+        sweep_contacts();
+    }
+    tell_states();
+}
+
+DUCTILE_INLINE void ContactSweep::condense() {
+    const std::size_t n = rows_.size();
+    effect_.resize(n * n);
+    residual_.resize(n);
+    system_->update_velocities();
+    system_->update_residuals();
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::vector<Vector6<double>>& change = system_->response(rows_[i]);
+        for (std::size_t j = 0; j < n; ++j) {
+            effect_[i * n + j] = system_->along(rows_[j], change);
+        }
+        effect_[i * n + i] += system_->rows()[rows_[i]].compliance;
+        residual_[i] = system_->rows()[rows_[i]].residual;
+    }
+}
+
+DUCTILE_INLINE void ContactSweep::sweep_contacts() {
+    constexpr int most = 60;
+    const double enough = 1e-7 * system_->scale();
+    for (int sweep = 0; sweep < most; ++sweep) {
+        ++sweeps_;
+        double moved = 0;
+        for (std::size_t c = 0; c < contacts_.size(); ++c) {
+            moved = std::max(moved, solve_contact(c));
+        }
+        if (!(moved > enough)) return;
+    }
+}
+
+/// How far it moved, as a velocity.
+DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
+    constexpr int most = 20;
+    const BlockView view = view_of(*system_, contacts_[contact]);
+    const std::size_t n = rows_.size(), first = first_[contact];
+    const int count = view.count();
+    if (!(view.work[0].own > 0)) return 0;
+    const auto effect = [&](int i, int j) {
+        return effect_[(first + std::size_t(i)) * n + first + std::size_t(j)];
+    };
+    Vector6<double> before = Vector6<double>::Zero(), residual = before;
+    for (int i = 0; i < count; ++i) {
+        before[i] = view.row[i].impulse;
+        residual[i] = residual_[first + std::size_t(i)];
+    }
+    double metric = 0; // of the friction rows, in shares
+    for (int i = 1; i < count; ++i) {
+        if (view.live(i)) metric += effect(i, i) * view.size(i) * view.size(i);
+    }
+    const auto change = [&](int i, double by) {
+        view.row[i].impulse += by;
+        for (int j = 0; j < count; ++j) residual[j] -= effect(i, j) * by;
+    };
+    for (int turn = 0; turn < most; ++turn) {
+        double moved = 0;
+        const double normal = std::max(0.0, view.row[0].impulse + residual[0] / effect(0, 0));
+        moved = std::abs(normal - view.row[0].impulse) * effect(0, 0);
+        change(0, normal - view.row[0].impulse);
+        Vector6<double> aim = Vector6<double>::Zero();
+        double square = 0;
+        for (int i = 1; i < count; ++i) {
+            if (!view.live(i)) continue;
+            aim[i] = view.row[i].impulse / view.size(i) + residual[i] * view.size(i) / metric;
+            square += aim[i] * aim[i];
+        }
+        const double length = std::sqrt(square), share = length > normal ? normal / length : 1;
+        for (int i = 1; i < count; ++i) {
+            if (!view.live(i)) continue;
+            const double by = aim[i] * share * view.size(i) - view.row[i].impulse;
+            moved = std::max(moved, std::abs(by) * effect(i, i));
+            change(i, by);
+        }
+        if (moved <= 1e-13 * system_->scale()) break;
+    }
+    double moved = 0;
+    for (int i = 0; i < count; ++i) {
+        const double by = view.row[i].impulse - before[i];
+        if (by == 0) continue;
+        moved = std::max(moved, std::abs(by) * effect(i, i));
+        const double* column = &effect_[(first + std::size_t(i)) * n];
+        for (std::size_t j = 0; j < n; ++j) residual_[j] -= column[j] * by;
+    }
+    return moved;
+}
+
+DUCTILE_INLINE void ContactSweep::tell_states() {
+    system_->update_velocities();
+    system_->update_residuals();
+    for (const std::size_t contact : contacts_) {
+        const BlockView view = view_of(*system_, contact);
+        double square = 0, slip = 0;
+        for (int i = 1; i < view.count(); ++i) {
+            if (!view.live(i)) continue;
+            square += std::pow(view.row[i].impulse / view.size(i), 2);
+            slip += std::pow(view.work[i].residual * view.size(i), 2);
+        }
+        const double normal = view.row[0].impulse, edge = 1e-9;
+        view.block.state = !(normal > 0)                             ? BlockState::apex
+                           : std::sqrt(square) < normal * (1 - edge) ? BlockState::inside
+                                                                     : BlockState::surface;
+        view.block.multiplier = view.on_surface() ? BlockView::known(std::sqrt(slip)) : 0;
+    }
+}
+
+} // namespace ductile::solve
