@@ -167,6 +167,8 @@ class BulletScene {
         broadphase_ = std::make_unique<btDbvtBroadphase>();
         if (solver == "mlcp") {
             solver_ = std::make_unique<btMLCPSolver>(&dantzig_);
+        } else if (solver == "island") {
+            solver_ = std::make_unique<ductile::bullet::IslandSolver>();
         } else if (solver == "si") {
             solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
         } else if (solver == "nncg") {

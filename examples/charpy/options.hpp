@@ -35,9 +35,10 @@ inline void declare(CLI::App& app, Options& o) {
     app.add_option("--engine", o.engine, "physics engine; all: every method on every engine")
         ->check(CLI::IsMember({"all", "bullet", "ode"}))->capture_default_str()->group(run);
     app.add_option("--solver", o.solver,
-                   "bullet: mlcp (direct, Dantzig), si or nncg (iterative), of islands without our joints; "
+                   "bullet: mlcp (direct, Dantzig), si or nncg (iterative), of islands "
+                   "without our joints, or island: ours, of all; "
                    "ode: direct or quick (iterative)")
-        ->check(CLI::IsMember({"mlcp", "si", "nncg", "direct", "quick"}))
+        ->check(CLI::IsMember({"mlcp", "island", "si", "nncg", "direct", "quick"}))
         ->group(run);
     app.add_option("--precision", o.precision, "scalar of the engine; ode is built for double")
         ->check(CLI::IsMember({"float", "double"}))->capture_default_str()->group(run);

@@ -62,7 +62,7 @@ inline constexpr std::array<std::pair<Method, std::string_view>, 8> method_names
 }
 
 /// Names that an engine's scene takes.
-inline constexpr std::string_view bullet_solvers = "mlcp, si or nncg";
+inline constexpr std::string_view bullet_solvers = "mlcp, island, si or nncg";
 inline constexpr std::string_view ode_solvers = "direct or quick";
 
 /// True where the joint follows a stiffness below yield.

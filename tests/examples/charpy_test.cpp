@@ -17,10 +17,13 @@
 #include "ode_scene.hpp"
 using Scene = charpy::OdeScene;
 static const std::vector<std::string> solvers{"direct", "quick"};
+static const std::string rebounding = "direct";
 #else
 #include "bullet_scene.hpp"
 using Scene = charpy::BulletScene;
 static const std::vector<std::string> solvers{"mlcp", "si"};
+/// Bullet's own: with restitution and a bar against its anvils Dantzig makes energy, sweeps lose the rebound.
+static const std::string rebounding = "island";
 #endif
 static const std::vector<charpy::Method> elastic_methods{charpy::Method::elastic_plastic,
                                                          charpy::Method::elastic_plastic_2};
@@ -77,7 +80,7 @@ TEST_CASE("with adaptive steps the energies are right in fewer than 1500 steps",
     if (solver == solvers.front() && converges) CHECK(r.unreliable_steps == 0);
 }
 
-TEST_CASE("what is wrong is never silent", "[charpy]") {
+TEST_CASE("what is off by more than a joint allows is never silent", "[charpy]") {
     const double dt = GENERATE(2e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4);
     const int parts = GENERATE(2, 4);
     const std::string solver = GENERATE(from_range(solvers));
@@ -86,7 +89,8 @@ TEST_CASE("what is wrong is never silent", "[charpy]") {
     scenario.parts = parts;
     const Result r = run(scenario, solver);
     INFO("plastic work " << r.plastic_work << ", steps not converged " << r.unreliable_steps);
-    const bool wrong = std::abs(r.plastic_work / 122.016 - 1) > 0.02;
+    const double allowed = ductile::OneAxisParameters<double>{}.allowed_step_error;
+    const bool wrong = std::abs(r.plastic_work / 122.016 - 1) > allowed;
     CHECK((!wrong || r.unreliable_steps > 0));
 }
 
@@ -143,7 +147,7 @@ TEST_CASE("a hammer rebounds from a rigid bar with the restitution's share of it
     Scenario scenario;
     scenario.restitution = GENERATE(0.3, 0.5, 0.9, 1.0);
     INFO("restitution " << scenario.restitution);
-    const Result r = run(scenario, solvers.front(), Method::rigid);
+    const Result r = run(scenario, rebounding, Method::rigid);
     // the bar lies against its anvils before and after: the nose keeps -e of its speed, the hammer e² of 291.1 J
     const double kept = scenario.restitution * scenario.restitution;
     CHECK(r.hammer_loss == Approx(291.0995 * (1 - kept)).margin(0.005 * 291.0995));
@@ -184,8 +188,15 @@ TEST_CASE("an elastic-plastic joint flows for the turn that its spring leaves", 
     CHECK(expected.stored == Approx(0.66).epsilon(1e-9));
     CHECK(expected.plastic_work == Approx(122.01607 - 1.32).epsilon(1e-7));
     const Result r = run(scenario, solvers.front(), method);
-    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.01));
-    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(0.02));
+    // axes that share a surface flow in shear too while a blow's step lasts: 1.2 % of the work here, gone
+    // at small steps
+    const double work = method == Method::elastic_plastic_2 ? 0.015 : 0.01;
+    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(work));
+    if (converges) {
+        const Result fine = run(fixed(5e-6), solvers.front(), method);
+        CHECK(fine.plastic_work == Approx(expected.plastic_work).epsilon(0.003));
+    }
+    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(work + 0.01));
     // it has sprung back, or the steps that kept it from that are reported
     CHECK((r.stored < 0.01 || (!converges && r.unreliable_steps > 0)));
     CHECK(r.steps < 1500);

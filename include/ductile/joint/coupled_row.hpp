@@ -44,7 +44,9 @@ struct OpenRow {
 
     [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
         const S f = reaction.force;
-        const bool at_upper = f >= upper - tolerance, at_lower = f <= lower + tolerance;
+        const S near =
+            std::min(tolerance, (upper - lower) / 4); // of a narrow row one bound, not both
+        const bool at_upper = f >= upper - near, at_lower = f <= lower + near;
         const S travel = (start + reaction.velocity) / 2 * dt;
         const S work = -f * travel;
         const bool rigid = stiffness == std::numeric_limits<S>::infinity();
@@ -52,9 +54,10 @@ struct OpenRow {
         booked.at_bound = at_upper || at_lower;
         if (rigid || limits.lower != limits.upper) {
             const S excess = reaction.velocity + limits.compliance * f * dt - limits.bias;
-            booked.residual = at_upper   ? std::max(excess, S(0))
-                              : at_lower ? std::max(-excess, S(0))
-                                         : std::abs(excess);
+            booked.residual = at_upper && at_lower ? S(0) // no room: the bounds say all
+                              : at_upper           ? std::max(excess, S(0))
+                              : at_lower           ? std::max(-excess, S(0))
+                                                   : std::abs(excess);
         }
         if (rigid) {
             const bool slips = (at_lower && travel > 0) || (at_upper && travel < 0);

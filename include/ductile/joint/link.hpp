@@ -108,9 +108,9 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         return result;
     }
     [[nodiscard]] Vector6<S> ellipsoid() const noexcept override {
-        if constexpr (requires { joint_.surface().capacity(); }) {
+        if constexpr (requires { joint_.surface().semi_axes(); }) {
             if (joint_.state().broken) return Vector6<S>::Zero();
-            return from_joint(joint_.surface().capacity() * joint_.reach());
+            return from_joint(joint_.surface().semi_axes() * joint_.reach());
         }
         return Vector6<S>::Zero();
     }

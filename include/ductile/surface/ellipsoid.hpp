@@ -61,6 +61,8 @@ class Ellipsoid {
     }
 
     [[nodiscard]] const Vector& capacity() const noexcept { return capacity_; } ///< c [N | N m]
+    /// c once more, by the name that says the shape: a surface with semi-axes is an ellipsoid.
+    [[nodiscard]] const Vector& semi_axes() const noexcept { return capacity_; }
 
     [[nodiscard]] S value(const Vector& force) const noexcept {
         return numeric::length(shares(force));

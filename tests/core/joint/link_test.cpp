@@ -209,6 +209,36 @@ TEST_CASE("bent about one axis and then about another, a joint stays as it was b
     CHECK(std::abs(state.other_work) < 1e-3 * state.plastic_work);
 }
 
+TEST_CASE("only a surface that is an ellipsoid is handed to a solver as one", "[joint][link]") {
+    using Apart = CoupledJoint<IndependentAxes<double, 6>, Perfect<double>>;
+    PairWorld shared(body(2, 0.3), Body{}, Link(six(capacities()), {all_joint_axes}, {}, {}));
+    shared.step(1e-3);
+    CHECK((shared.link().ellipsoid() - capacities()).norm() < 1e-9 * capacities().norm());
+    PairWorld apart(body(2, 0.3), Body{},
+                    Link(Apart(IndependentAxes<double, 6>({.capacity = capacities()}),
+                               Perfect<double>({.strength = 1})),
+                         {all_joint_axes}, {}, {}));
+    apart.step(1e-3);
+    CHECK(apart.link().ellipsoid().norm() == 0);
+}
+
+TEST_CASE("a narrow row is at one bound or the other, and a shut one at both", "[joint][link]") {
+    // bounds of a millionth of the joint's force, far within the tolerance of its largest row
+    OpenRow<double> row{};
+    row.limits = {.lower = -1e-6, .upper = 1e-6};
+    row.lower = -1e-6;
+    row.upper = 1e-6;
+    row.tolerance = 1e-4;
+    row.stiffness = infinity;
+    row.start = 0.3;
+    row.share = 1;
+    CHECK(row.book({.force = -1e-6, .velocity = 0.2, .position = 0}, 1e-3).residual == 0);
+    CHECK(row.book({.force = 1e-6, .velocity = 0.2, .position = 0}, 1e-3).residual == Approx(0.2));
+    row.limits = {.lower = 0, .upper = 0};
+    row.lower = row.upper = 0;
+    CHECK(row.book({.force = 0, .velocity = 0.2, .position = 0}, 1e-3).residual == 0);
+}
+
 TEST_CASE("hands that move a body bend nothing", "[joint][link]") {
     const double stiffness = GENERATE(as<double>{}, 500.0, infinity);
     INFO("k = " << stiffness);

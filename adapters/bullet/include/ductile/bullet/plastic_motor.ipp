@@ -9,6 +9,7 @@
 
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
+#include "ductile/bullet/reaction.hpp"
 #include "ductile/joint/joint_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/linkage.hpp"
