@@ -98,6 +98,7 @@ TEST_CASE("energy is exact in any direction of an ellipse", "[coupled_joint]") {
         Body body(ellipse_joint(capacity[0], capacity[1], infinity), mass);
         body.velocity = V2(number(100) - 5, number(100) - 5);
         const double energy = body.kinetic();
+        RC_PRE(energy > 0);
         const double dt = *rc::gen::inRange(1, 50) * 1e-3;
         for (int i = 0; i < 100000 && body.kinetic() > 1e-20 * energy; ++i) body.step(dt);
         const auto& state = body.joint.state();
