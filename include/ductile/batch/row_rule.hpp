@@ -174,7 +174,7 @@ template <std::floating_point S>
     const S speed = larger(start_speed, std::abs(velocity));
     // what the solver left undone is nobody's flow: no travel, no life, no break
     const S allowed = step.absolute_residual + step.relative_residual * speed;
-    const Mask<S> unsolved = ~mask<S>(residual <= allowed);
+    const Mask<S> unsolved = ~sound | ~mask<S>(residual <= allowed);
 
     // a row at its bound flows where it moves the way the bound resists, and so does one brought to
     // rest: both take work
@@ -210,16 +210,17 @@ template <std::floating_point S>
     const Mask<S> status =
         outcome | (ended & flowing_bit) | (begins & first_yield_bit) | (breaks & fracture_bit);
 
-    return {.state = {.offset = select(intact & ~unsolved & (at_bound | flows), position, old.offset),
-                      .travel = old.travel + travel,
-                      .plastic_work = old.plastic_work + plastic,
-                      .other_work = other_work,
-                      .velocity = select(intact, velocity, old.velocity),
-                      .residual_max = larger(old.residual_max, only(sound, residual)),
-                      .status = (whole & status) |
-                                (~whole & old.status & ~Mask<S>(first_yield_bit | fracture_bit))},
-            .release = release,
-            .residual = residual};
+    return {
+        .state = {.offset = select(intact & ~unsolved & (at_bound | flows), position, old.offset),
+                  .travel = old.travel + travel,
+                  .plastic_work = old.plastic_work + plastic,
+                  .other_work = other_work,
+                  .velocity = select(intact, velocity, old.velocity),
+                  .residual_max = larger(old.residual_max, only(sound, residual)),
+                  .status = (whole & status) |
+                            (~whole & old.status & ~Mask<S>(first_yield_bit | fracture_bit))},
+        .release = release,
+        .residual = residual};
 }
 
 // as commit_row puts outcomes together bit by bit

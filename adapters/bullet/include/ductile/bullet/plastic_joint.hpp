@@ -10,9 +10,10 @@
 // section do; signs and finite rotation as in link.hpp. See joint_constraint.hpp for committing,
 // compliance and Bullet's traps.
 //
-// Where Bullet solves the rows, forces are read through joint feedback: the constraint sets one of
-// its own, unless the user set one, before or after, which is read instead and never written. Where
-// the constraint solves them by itself (self_solved_rows.hpp) it needs none and fills the user's.
+// Where an island solver has the rows (island_solver.hpp) it tells the forces, and fills the joint
+// feedback that the user set. Where Bullet's own has them they are read through joint feedback: the
+// constraint sets one of its own, unless the user set one, before or after, which is read instead
+// and never written.
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>

@@ -111,8 +111,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     bool pending_ = false;
     bool booked_ = false;   ///< and not finished
     bool restored_ = false; ///< the next position is measured, not compared
-    double moment_ = 0; ///< that the island gave it [N m]
-    int row_ = no_row;  ///< in the island that is being solved
+    double moment_ = 0;     ///< that the island gave it [N m]
+    int row_ = no_row;      ///< in the island that is being solved
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>

@@ -166,8 +166,7 @@ DUCTILE_INLINE void MotorConstraint::book(bool late) {
     pending_ = false;
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
     const double speed = turning(a, b);
-    const double force =
-        row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
+    const double force = row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
     row_ = no_row;
     const double position = measure(a, b, position_ + speed * tick_);
     see_turn(speed, tick_, position);
