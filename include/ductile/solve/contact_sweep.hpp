@@ -10,7 +10,8 @@
 //
 // A round in which no joint changed sides is the last. Nothing is assumed of the sides of contacts,
 // and no slip has to settle: it finds answers where the fixed point of contact_form.hpp wanders.
-// Slower: one solve of the factors for each row of a contact, and O((contacts)²) a sweep.
+// Slower: one solve of the factors for each row of a contact, and as many products a sweep as
+// contacts feel each other through a body or a joint. What it may cost is the caller's to say.
 //
 // Source: non-smooth contact dynamics, Jean (1999), doi:10.1016/S0045-7825(98)00383-1; on its
 // robustness beside other methods: Acary, Brémond & Huber (2018), doi:10.1007/978-3-319-75972-2_10.
@@ -29,14 +30,19 @@ namespace ductile::solve {
 class ContactSweep {
   public:
     /// From the impulses in the island; leaves impulses and states of its answer there. `joints`:
-    /// what solves them.
-    void solve(IslandSystem& system, ActiveSet& joints);
+    /// what solves them; `effort`: products that it may still cost, less what it took.
+    void solve(IslandSystem& system, ActiveSet& joints, double& effort);
 
     [[nodiscard]] int sweeps() const noexcept { return sweeps_; } ///< of the last solve
 
   private:
+    struct Entry {
+        std::size_t row = 0; ///< in rows_
+        double effect = 0;   ///< entry of G
+    };
+
     void condense();
-    void sweep_contacts();
+    void sweep_contacts(double& effort);
     [[nodiscard]] double solve_contact(std::size_t contact);
     void tell_states();
 
@@ -44,7 +50,9 @@ class ContactSweep {
     std::vector<std::size_t> contacts_; ///< their blocks
     std::vector<std::size_t> rows_;     ///< of all of them, in order
     std::vector<std::size_t> first_;    ///< of each in rows_
-    std::vector<double> effect_;        ///< G, rows_.size() squared
+    std::vector<Entry> entries_;        ///< of G that are not zero, column by column
+    std::vector<std::size_t> column_;   ///< where each begins; rows_.size() + 1
+    std::vector<Matrix6<double>> own_;  ///< G of each contact on itself
     std::vector<double> residual_;      ///< b - J v - C x
     int sweeps_ = 0;
 };

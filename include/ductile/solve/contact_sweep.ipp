@@ -13,7 +13,7 @@
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints) {
+DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints, double& effort) {
     constexpr int most = 20;
     constexpr double enough = solved_residual / 10;
     system_ = &system;
@@ -35,30 +35,45 @@ DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints)
         const double before = off;
         off = certificate(system) / system.scale();
         const bool stalled = round > 0 && off <= solved_residual && off > before / 2;
-        if (off <= enough || stalled || !joints.linearise(system)) break;
-        condense();
-        sweep_contacts();
+        if (off <= enough || stalled || !(effort > 0)) break;
+        if (round == 0 || joints.rounds() > 1) { // else what contacts do to each other is as it was
+            if (!joints.linearise(system)) break;
+            condense();
+            effort -=
+                double(rows_.size() * (12 * rows_.size() + 100 * system.island().bodies.size()));
+        }
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            residual_[i] = system.rows()[rows_[i]].residual;
+        }
+        sweep_contacts(effort);
     }
     tell_states();
 }
 
 DUCTILE_INLINE void ContactSweep::condense() {
     const std::size_t n = rows_.size();
-    effect_.resize(n * n);
+    entries_.clear();
+    column_.assign(1, 0);
+    own_.assign(contacts_.size(), Matrix6<double>::Zero());
     residual_.resize(n);
-    system_->update_velocities();
-    system_->update_residuals();
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::vector<Vector6<double>>& change = system_->response(rows_[i]);
-        for (std::size_t j = 0; j < n; ++j) {
-            effect_[i * n + j] = system_->along(rows_[j], change);
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const std::size_t end = c + 1 < contacts_.size() ? first_[c + 1] : n;
+        for (std::size_t i = first_[c]; i < end; ++i) {
+            const std::vector<Vector6<double>>& change = system_->response(rows_[i]);
+            for (std::size_t j = 0; j < n; ++j) {
+                double effect = system_->along(rows_[j], change);
+                if (i == j) effect += system_->rows()[rows_[i]].compliance;
+                if (effect == 0) continue;
+                entries_.push_back({j, effect});
+                if (j < first_[c] || j >= end) continue;
+                own_[c](Eigen::Index(j - first_[c]), Eigen::Index(i - first_[c])) = effect;
+            }
+            column_.push_back(entries_.size());
         }
-        effect_[i * n + i] += system_->rows()[rows_[i]].compliance;
-        residual_[i] = system_->rows()[rows_[i]].residual;
     }
 }
 
-DUCTILE_INLINE void ContactSweep::sweep_contacts() {
+DUCTILE_INLINE void ContactSweep::sweep_contacts(double& effort) {
     constexpr int most = 60;
     const double enough = 1e-7 * system_->scale();
     for (int sweep = 0; sweep < most; ++sweep) {
@@ -67,7 +82,8 @@ DUCTILE_INLINE void ContactSweep::sweep_contacts() {
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             moved = std::max(moved, solve_contact(c));
         }
-        if (!(moved > enough)) return;
+        effort -= double(entries_.size());
+        if (!(moved > enough) || !(effort > 0)) return;
     }
 }
 
@@ -75,12 +91,10 @@ DUCTILE_INLINE void ContactSweep::sweep_contacts() {
 DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
     constexpr int most = 20;
     const BlockView view = view_of(*system_, contacts_[contact]);
-    const std::size_t n = rows_.size(), first = first_[contact];
+    const std::size_t first = first_[contact];
     const int count = view.count();
     if (!(view.work[0].own > 0)) return 0;
-    const auto effect = [&](int i, int j) {
-        return effect_[(first + std::size_t(i)) * n + first + std::size_t(j)];
-    };
+    const auto effect = [&own = own_[contact]](int i, int j) { return own(i, j); };
     Vector6<double> before = Vector6<double>::Zero(), residual = before;
     for (int i = 0; i < count; ++i) {
         before[i] = view.row[i].impulse;
@@ -120,8 +134,10 @@ DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
         const double by = view.row[i].impulse - before[i];
         if (by == 0) continue;
         moved = std::max(moved, std::abs(by) * effect(i, i));
-        const double* column = &effect_[(first + std::size_t(i)) * n];
-        for (std::size_t j = 0; j < n; ++j) residual_[j] -= column[j] * by;
+        const std::size_t column = first + std::size_t(i);
+        for (std::size_t k = column_[column]; k < column_[column + 1]; ++k) {
+            residual_[entries_[k].row] -= entries_[k].effect * by;
+        }
     }
     return moved;
 }

@@ -68,6 +68,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
 /// the other (contact_sweep.hpp), and the active set again; each pass goes on from the best so far.
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     constexpr int most = 4;
+    double effort = 5e7; // some 50 ms
     const auto polished = [&] {
         const bool settled = active_set_.solve(system_, {});
         report.rounds += active_set_.rounds();
@@ -94,9 +95,9 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
         ++report.interior_points;
         static_cast<void>(keep());
         if (polished() || keep() <= well) return;
-        contact_sweep_.solve(system_, active_set_);
+        contact_sweep_.solve(system_, active_set_, effort);
         report.sweeps += contact_sweep_.sweeps();
-        if (keep() <= well || polished() || keep() <= solved) return;
+        if (keep() <= well || polished() || keep() <= solved || !(effort > 0)) return;
     }
 }
 
