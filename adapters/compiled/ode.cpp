@@ -3,7 +3,9 @@
 // What of the adapter for ODE is compiled once (DUCTILE_COMPILED).
 #include <ductile/ode/ode.hpp>
 
+#include <ductile/ode/contact_rows.ipp>
 #include <ductile/ode/energy_meter.ipp>
+#include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>

@@ -27,7 +27,7 @@ class Rig {
     using HardeningHinge = ode::PlasticHinge<OneAxisJoint<Linear<double>>>;
     using Body = dBodyID;
     static constexpr const char* engine = "ODE";
-    static constexpr bool meets_surfaces = false; ///< in the solve, not by bounds
+    static constexpr bool meets_surfaces = true; ///< in the solve, not by bounds
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
     /// CFM of a softened world: what rows give per force [m/s/N]. ODE's default of 1e-10 lets 100

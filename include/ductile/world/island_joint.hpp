@@ -20,6 +20,10 @@
 
 namespace ductile {
 
+/// Compliance that a joint's rigid row has at least, of its section's own: far below what that
+/// strains [-].
+inline constexpr double section_softness = 1e-6;
+
 /// A body of a row: its number in the island, solve::immovable for what rows cannot move, and its
 /// velocities without them [m/s], [rad/s], world axes.
 struct IslandSeat {
@@ -46,6 +50,13 @@ void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat
 
 /// Forces along the axes of the link from six rows that begin with `first` [N | N m].
 [[nodiscard]] Vector6<double> forces_of(const solve::Island& island, int first, double dt) noexcept;
+
+/// Velocity of a row that a unit impulse of its own gives it, J M⁻¹ Jᵀ [1/kg | 1/(kg m²)].
+[[nodiscard]] double own_effect(const solve::Island& island, const solve::IslandRow& row) noexcept;
+
+/// The last rows are a contact, a normal first; `contact`: those that its friction couples to it,
+/// after it, with their coefficients. Says where the solve begins, from their impulses.
+void begin_contact(solve::Island& island, solve::IslandBlock contact);
 
 } // namespace ductile
 

@@ -62,8 +62,6 @@ DUCTILE_INLINE solve::IslandRow& add_row(solve::Island& island, const IslandSeat
 
 DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a,
                             const IslandSeat& b, double dt) {
-    constexpr double of_section =
-        1e-6; // of the section's own compliance: far below what it strains
     const int first = int(island.rows.size());
     const LinkPose<double>& pose = link.pose();
     const Vector3<double> none = Vector3<double>::Zero();
@@ -78,7 +76,7 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
                 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
                 : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
         row.compliance = limits.compliance;
-        row.softness = of_section / (stiffness[i] * dt * dt);
+        row.softness = section_softness / (stiffness[i] * dt * dt);
         row.lower = limits.lower * dt;
         row.upper = limits.upper * dt;
     }
@@ -110,6 +108,40 @@ DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, int first,
     Vector6<double> forces;
     for (int i = 0; i < 6; ++i) forces[i] = island.rows[std::size_t(first + i)].impulse / dt;
     return forces;
+}
+
+DUCTILE_INLINE double own_effect(const solve::Island& island,
+                                 const solve::IslandRow& row) noexcept {
+    double effect = 0;
+    const auto see = [&](int body, const Vector6<double>& on) {
+        if (body < 0) return;
+        effect += on.dot(island.bodies[std::size_t(body)].inverse_mass * on);
+    };
+    see(row.a, row.on_a);
+    see(row.b, row.on_b);
+    return effect;
+}
+
+DUCTILE_INLINE void begin_contact(solve::Island& island, solve::IslandBlock contact) {
+    constexpr double slides = 1 - 1e-6;
+    solve::IslandRow& normal = island.rows[std::size_t(contact.first)];
+    const bool open = !(normal.impulse > 0 || normal.target > 0);
+    if (contact.count == 1) {
+        normal.lower = 0;
+        normal.side = open ? solve::Side::lower : solve::Side::free;
+        return;
+    }
+    double square = 0;
+    for (int k = 1; k < contact.count; ++k) {
+        const solve::IslandRow& row = island.rows[std::size_t(contact.first + k)];
+        square += std::pow(row.impulse / contact.size[std::size_t(k)], 2);
+    }
+    if (open) {
+        contact.state = solve::BlockState::apex;
+    } else if (square > 0 && std::sqrt(square) >= slides * normal.impulse) {
+        contact.state = solve::BlockState::surface;
+    }
+    island.blocks.push_back(contact);
 }
 
 } // namespace ductile

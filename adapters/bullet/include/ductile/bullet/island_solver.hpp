@@ -63,7 +63,6 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_plastic_joints(const btContactSolverInfo& info);
     void load_rows();
     void load_contacts();
-    void close_contact(solve::IslandBlock block);
     void store();
     [[nodiscard]] IslandSeat seat(btRigidBody& body) const;
     solve::IslandRow& add_row(btSolverConstraint& row);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "ductile/bullet/convert.hpp"
@@ -244,31 +243,8 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
         };
         take_friction(m_tmpSolverContactFrictionConstraintPool, slides);
         take_friction(m_tmpSolverContactRollingFrictionConstraintPool, rolls);
-        close_contact(block);
+        begin_contact(island_, block); // as the last tick left it
     }
-}
-
-/// Where the solve begins: as the last tick left the contact.
-DUCTILE_INLINE void IslandSolver::close_contact(solve::IslandBlock block) {
-    constexpr double slides = 1 - 1e-6;
-    solve::IslandRow& normal = island_.rows[std::size_t(block.first)];
-    const bool open = !(normal.impulse > 0 || normal.target > 0);
-    if (block.count == 1) {
-        normal.lower = 0;
-        normal.side = open ? solve::Side::lower : solve::Side::free;
-        return;
-    }
-    double square = 0;
-    for (int k = 1; k < block.count; ++k) {
-        const solve::IslandRow& row = island_.rows[std::size_t(block.first + k)];
-        square += std::pow(row.impulse / block.size[std::size_t(k)], 2);
-    }
-    if (open) {
-        block.state = solve::BlockState::apex;
-    } else if (square > 0 && std::sqrt(square) >= slides * normal.impulse) {
-        block.state = solve::BlockState::surface;
-    }
-    island_.blocks.push_back(block);
 }
 
 DUCTILE_INLINE void IslandSolver::store() {

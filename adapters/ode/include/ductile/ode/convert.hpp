@@ -96,6 +96,35 @@ struct AttachedBodies {
     return result;
 }
 
+/// What ODE's gyroscopic torque changes of the angular momentum in a step, by its implicit rule
+/// (Lacoursière 2006): (I (I - dt [L]ₓ)⁻¹ - 1) L with L = I ω.
+[[nodiscard]] inline Vector3<double> gyroscopic_impulse(dBodyID body,
+                                                        const Matrix3<double>& inertia,
+                                                        const Vector3<double>& spin,
+                                                        double dt) noexcept {
+    if (dBodyGetGyroscopicMode(body) == 0) return Vector3<double>::Zero();
+    const Vector3<double> momentum = times(inertia, spin);
+    const Matrix3<double> tilde = difference(inertia, scaled(dt, skew(momentum)));
+    return difference(times(inertia, numeric::Lu<double, 3>(tilde).solve(momentum)), momentum);
+}
+
+/// A body that can move, with the velocities that ODE's step of `dt` [s] gives it where no row
+/// acts.
+[[nodiscard]] inline BodyState<double> free_state(dBodyID body, double dt) noexcept {
+    BodyState<double> result = body_state(body);
+    Vector3<double> acceleration = scaled(result.inverse_mass, to_core(dBodyGetForce(body)));
+    if (dBodyGetGravityMode(body) != 0) {
+        dVector3 gravity;
+        dWorldGetGravity(dBodyGetWorld(body), gravity);
+        acceleration = sum(acceleration, to_core(gravity));
+    }
+    const Vector3<double> turn = sum(scaled(dt, to_core(dBodyGetTorque(body))),
+                                     gyroscopic_impulse(body, inertia(body), result.spin, dt));
+    result.velocity = sum(result.velocity, scaled(dt, acceleration));
+    result.spin = sum(result.spin, times(result.inverse_inertia, turn));
+    return result;
+}
+
 /// For the coming step; the torque about the centre of mass, world axes.
 inline void add_force(dBodyID body, const Vector3<double>& force, const Vector3<double>& torque) {
     dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 
-#include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -97,15 +96,10 @@ DUCTILE_INLINE void EnergyMeter::take_feedback_back() {
     watched_.clear();
 }
 
-/// By ODE's implicit rule (Lacoursière 2006): (I (I - dt [L]ₓ)⁻¹ - 1) L with L = I ω.
 DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody& body,
                                                                double dt) const {
     const auto* id = static_cast<const dxBody*>(body.body);
-    if (dBodyGetGyroscopicMode(const_cast<dBodyID>(id)) == 0) return Vector3<double>::Zero();
-    const Vector3<double> momentum = times(body.inertia, body.spin);
-    const Matrix3<double> tilde = difference(body.inertia, scaled(dt, skew(momentum)));
-    const Vector3<double> turned = numeric::Lu<double, 3>(tilde).solve(momentum);
-    return difference(times(body.inertia, turned), momentum);
+    return ode::gyroscopic_impulse(const_cast<dBodyID>(id), body.inertia, body.spin, dt);
 }
 
 } // namespace ductile::ode

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/island_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/driven_velocity.hpp"
@@ -58,6 +59,8 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     [[nodiscard]] virtual dJointID id() const = 0;
     /// Also once it is broken and its joint attached to nothing.
     [[nodiscard]] virtual AttachedBodies bodies() const = 0;
+    /// Null: its rows are a joint's of ODE.
+    [[nodiscard]] virtual IslandRows* island_rows() noexcept { return nullptr; }
 };
 
 /// What happens to ODE's joint when its plastic row breaks.

@@ -2,11 +2,15 @@
 //
 // A plastic joint of six axes between two bodies of an ODE world: any mix of rigid, plastic and
 // elastic-plastic axes, also with a shared yield surface. The rows, the finite rotation and the
-// account are the core's Link; here they are handed to ODE and its answer is handed back.
+// account are the core's Link.
 //
 //   ductile::ode::PlasticJoint root(world_id, beam, nullptr, {.origin = {0, 0, 0}, .axes = axes},
 //                                   joint);
 //   root.add_to(stepper);
+//
+// Who solves. Where all that hangs together with the joint is known, World solves it before ODE's
+// step (island_solver.hpp), and the joint is a force on its bodies. Else its rows are handed to
+// ODE.
 //
 // Rows. ODE has no joint with six bounded rows at a point, so two kinds of ODE's act together:
 //   moments  an angular motor in user mode, its axes set anew in every step; it is id()
@@ -17,9 +21,9 @@
 // on both bodies at one point, so what one loses in momentum the other gains.
 //
 // Ties. Where rows repeat each other, as in a beam that is clamped at both ends, the direct solver
-// would divide by zero. Every row therefore yields a little: by `softness` of the velocity that its
-// own force gives to the two bodies in the step. That is below any certificate, and only shares
-// forces out among rows that cannot be told apart.
+// would divide by zero. Every row therefore yields a little: by `section_softness` of what its
+// section would, so that forces are shared out as in the elastic structure, and by `softness` of
+// the velocity that its own force gives to the two bodies in the step where nobody named a section.
 //
 // Rigid axes are pulled together by the world's ERP a step, as ODE's own joints are.
 //
@@ -56,7 +60,7 @@
 namespace ductile::ode {
 
 /// All but the joint's type.
-class LinkConstraint : public PlasticConstraint, public LinkQueries {
+class LinkConstraint : public PlasticConstraint, public LinkQueries, private IslandRows {
   public:
     void add_to(World& world, std::string name = {}) { world.add(*this, std::move(name)); }
     void remove_from(World& world) { world.remove(*this); }
@@ -70,7 +74,9 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] dJointID id() const override { return id_; }
     [[nodiscard]] AttachedBodies bodies() const override { return {a_, b_, false}; }
 
-    /// Sets the rows for a step of `dt` [s]. Called by World::step.
+    [[nodiscard]] IslandRows* island_rows() noexcept override { return this; }
+
+    /// Rules the rows of a step of `dt` [s]. Called by World::step.
     DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step. Called by World::step.
     DUCTILE_INLINE void commit(double dt) override;
@@ -100,11 +106,19 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] bool is_silent() const override { return silent_; }
     [[nodiscard]] DUCTILE_INLINE Vector6<double> velocities() const override;
 
+    // ---- around ODE's step
+    [[nodiscard]] bool acts() const override { return acting_; }
+    DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                  double dt) override;
+    DUCTILE_INLINE void close_rows(const solve::Island& island, double dt) override;
+    DUCTILE_INLINE void make_rows(double dt) override;
+
     [[nodiscard]] bool may_act() const;
     /// True where ODE did solve the rows: it wakes whatever hangs on a body that is awake.
     [[nodiscard]] bool solved() const;
     void set_motor(int number, const PointRow& moment, bool on);
-    /// The centres of the rows' bounds as an outside force on both bodies.
+    void rest_motor();
+    /// What no row of ODE's gives, as an outside force on both bodies.
     void add_centre(double sign);
     void hand_back();
     void let_go();
@@ -117,7 +131,9 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries {
     dJointFeedback moments_{};
     Vector3<double> arm_a_ = Vector3<double>::Zero(); ///< joint minus centre of mass, world [m]
     Vector3<double> arm_b_ = Vector3<double>::Zero();
-    JointWrench<double> centre_; ///< c of all rows
+    JointWrench<double> centre_; ///< c of all rows; of an island that is solved all there is
+    int first_row_ = 0;          ///< in that island
+    bool motor_on_ = true;
     DrivenPair driven_;
     OutsideForce outside_;
     bool put_back_ = false; ///< a saved state, with which the bodies move back

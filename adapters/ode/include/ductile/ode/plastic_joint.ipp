@@ -3,9 +3,11 @@
 // Bodies of plastic_joint.hpp.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_joint.hpp"
@@ -114,13 +116,34 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     arm_a_ = difference(link_.point(), a.position);
     arm_b_ = difference(link_.point(), b.position);
     centre_ = {};
+    moments_ = {}; // ODE leaves it alone where the motor has no row
+}
+
+DUCTILE_INLINE void LinkConstraint::open_rows(solve::Island& island, const IslandSeat& a,
+                                              const IslandSeat& b, double dt) {
+    first_row_ = add_rows(island, link_, a, b, force_share_.value * dt);
+}
+
+DUCTILE_INLINE void LinkConstraint::close_rows(const solve::Island& island, double dt) {
+    const Vector6<double> forces = forces_of(island, first_row_, dt);
+    const LinkPose<double>& pose = link_.pose();
+    centre_ = {.force = times(pose.axes(), linear(forces)),
+               .moment = times(pose.moment_axes(), angular(forces))};
+    rest_motor();
+    add_centre(1);
+}
+
+DUCTILE_INLINE void LinkConstraint::make_rows(double dt) {
+    const BodyState<double> a = body_state(a_), b = body_state(b_);
     std::array<PointRow, 3> force_rows, moment_rows;
+    const Vector6<double> stiffness = link_.section_stiffness();
     bool out_of_scale = false; // a moment's row
     for (const JointAxis axis : all_joint_axes) {
         const LinkRow<double> row = link_.row(axis).along_unit();
         SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
-        symmetric.cfm += detail::softness * dt * moved;
+        symmetric.cfm += std::max(detail::softness * dt * moved,
+                                  section_softness / (stiffness[Eigen::Index(index(axis))] * dt));
         Vector3<double>& centre = row.turns ? centre_.moment : centre_.force;
         centre = sum(centre, scaled(symmetric.centre, row.direction));
         const double scale = row_scale(moved + symmetric.cfm / dt);
@@ -130,7 +153,7 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     forces_.make(a_, b_, link_.point(), force_rows);
     for (int i = 0; i < 3; ++i) set_motor(i, moment_rows[std::size_t(i)], !out_of_scale);
     if (out_of_scale) forces_.make_moments(a_, b_, moment_rows);
-    moments_ = {}; // ODE leaves it alone where the motor has no row
+    motor_on_ = true;
     add_centre(1);
 }
 
@@ -178,6 +201,13 @@ DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment
     dJointSetAMotorParam(id_, dParamFMax + group, dReal(on ? moment.row.strength : 0));
     dJointSetAMotorParam(id_, dParamVel + group, dReal(moment.row.velocity));
     dJointSetAMotorParam(id_, dParamCFM + group, dReal(moment.row.cfm));
+}
+
+DUCTILE_INLINE void LinkConstraint::rest_motor() {
+    if (!std::exchange(motor_on_, false)) return;
+    for (int i = 0; i < 3; ++i) {
+        dJointSetAMotorParam(id_, dParamFMax + dParamGroup * i, 0);
+    }
 }
 
 DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {

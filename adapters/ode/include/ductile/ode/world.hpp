@@ -13,6 +13,9 @@
 //   world.step(dt);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
 //
+// Islands of six-axis joints and of contacts that were named by add_contact are solved at once,
+// before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's.
+//
 // Of a split step each part has the forces that were applied for the step to the bodies added here,
 // and the same contact joints. A step throws what a constraint's check() throws, and
 // std::invalid_argument where it leapfrogs and a joint's body was not added.
@@ -37,6 +40,7 @@
 
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -78,9 +82,10 @@ class World final : public SteppedWorld {
     void add(dBodyID body);
     /// To be called before the body is destroyed.
     void remove(dBodyID body);
-    /// Names a contact joint of the coming step, for the ledger.
-    void add_contact(dJointID joint, const dContactGeom& geometry) {
-        if (meter_) contacts_.emplace_back(joint, geometry);
+    /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
+    /// islands with plastic joints are solved with it (island_solver.hpp).
+    void add_contact(dJointID joint, const dContact& contact) {
+        contacts_.push_back({joint, contact});
     }
 
   private:
@@ -115,8 +120,9 @@ class World final : public SteppedWorld {
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
-    bool bodies_known_ = false;                               ///< all those of joints
-    std::vector<std::pair<dJointID, dContactGeom>> contacts_; ///< of the coming step
+    bool bodies_known_ = false;          ///< all those of joints
+    std::vector<NamedContact> contacts_; ///< of the coming step
+    IslandSolver islands_;
 };
 
 } // namespace ductile::ode

@@ -35,6 +35,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     supervisor().add(&joint, std::move(name), [&joint] { return joint.queries().report(); });
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
+    islands_.add(joint);
     bodies_known_ = false;
     joint.set_force_share({});
     if (meter_) meter_->add(joint);
@@ -50,6 +51,7 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(&joint);
     std::erase(constraints_, &joint);
     std::erase(plastic_, &joint);
+    islands_.remove(joint);
     if (meter_) meter_->remove(joint);
 }
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
@@ -84,16 +86,18 @@ DUCTILE_INLINE void World::require_possible(double) {
 }
 DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& effort) {
     if (meter_) {
-        for (const auto& [joint, geometry] : contacts_) meter_->add_contact(joint, geometry);
+        for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();
     }
     if (leapfrogs()) share_forces(bodies_, constraints_, how);
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
+    islands_.before_step(contacts_, dt);
     if (effort.direct || solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {
         dWorldQuickStep(world_, dReal(dt));
     }
+    islands_.after_step();
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
     share_work(std::span<PlasticConstraint* const>(plastic_), [this] { return islands(); });
     for (SteppedConstraint* constraint : constraints_) constraint->finish();

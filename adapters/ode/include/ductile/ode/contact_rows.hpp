@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+//
+// An ODE contact as rows of an island (solve/island.hpp), with the numbers that ODE would give it:
+// ERP and CFM of the world or its own, surface layer, largest correcting velocity, bounce, motion,
+// slip.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <array>
+
+#include "ductile/solve/island.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/island_joint.hpp"
+
+namespace ductile::ode {
+
+/// A contact joint and what it was made of.
+struct NamedContact {
+    dJointID joint;
+    dContact contact;
+
+    /// Whether it is no more than a normal and sliding friction.
+    [[nodiscard]] bool slides_only() const { return (contact.surface.mode & dContactRolling) == 0; }
+};
+
+class ContactRows {
+  public:
+    /// Adds the rows for a step of `dt` [s].
+    ContactRows(const NamedContact& named, solve::Island& island, const IslandSeat& a,
+                const IslandSeat& b, double dt);
+    /// The island is solved: the impulses become forces on the bodies, and the joint's feedback.
+    void close(const solve::Island& island, double dt) const;
+
+  private:
+    void add_row(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                 const Vector3<double>& along, double target, double cfm, double dt);
+
+    dJointID joint_;
+    Vector3<double> arm_a_, arm_b_ = Vector3<double>::Zero(); ///< world [m]
+    std::array<Vector3<double>, 3> along_;                    ///< of each row, force on A, world
+    int first_ = 0, count_ = 0;
+};
+
+} // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/contact_rows.ipp"
+#endif

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of contact_rows.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "ductile/ode/contact_rows.hpp"
+#include "ductile/ode/convert.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// Velocity along the normal that the contact asks for [m/s]; `closing`: of the bodies now [m/s].
+DUCTILE_INLINE double wanted_velocity(dWorldID world, const dContact& contact, double closing,
+                                      double dt) {
+    const dSurfaceParameters& surface = contact.surface;
+    const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
+    const dReal erp = has(dContactSoftERP) ? surface.soft_erp : dWorldGetERP(world);
+    const double depth =
+        std::max(0.0, double(contact.geom.depth) - double(dWorldGetContactSurfaceLayer(world)));
+    const double motion = has(dContactMotionN) ? double(surface.motionN) : 0;
+    const double wanted = std::min(double(erp) / dt * depth + motion,
+                                   double(dWorldGetContactMaxCorrectingVel(world)));
+    const double impact = motion + closing;
+    const bool bounces =
+        has(dContactBounce) && surface.bounce_vel >= 0 && impact > double(surface.bounce_vel);
+    return bounces ? std::max(wanted, double(surface.bounce) * impact + motion) : wanted;
+}
+
+/// ODE's two friction directions.
+DUCTILE_INLINE std::array<Vector3<double>, 2> friction_directions(const dContact& contact,
+                                                                  const Vector3<double>& normal) {
+    if ((contact.surface.mode & dContactFDir1) != 0) {
+        const Vector3<double> first = to_core(contact.fdir1);
+        return {first, cross(normal, first)};
+    }
+    const dVector3 n{dReal(normal.x()), dReal(normal.y()), dReal(normal.z())};
+    dVector3 first, second;
+    dPlaneSpace(n, first, second);
+    return {to_core(first), to_core(second)};
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat& a,
+                                         const IslandSeat& b, const Vector3<double>& along,
+                                         double target, double cfm, double dt) {
+    solve::IslandRow& row =
+        ductile::add_row(island, a, b, arm_a_, arm_b_, along, Vector3<double>::Zero(), target);
+    row.compliance = cfm / dt;
+    row.softness = solve::contact_softness * own_effect(island, row);
+    along_[std::size_t(count_++)] = along;
+}
+
+DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island& island,
+                                        const IslandSeat& a, const IslandSeat& b, double dt)
+    : joint_(named.joint), first_(int(island.rows.size())) {
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
+    const dContact& contact = named.contact;
+    const dSurfaceParameters& surface = contact.surface;
+    const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
+    const AttachedBodies bodies = attached_bodies(joint_);
+    const dWorldID world = dBodyGetWorld(bodies.a);
+    const Vector3<double> point = to_core(contact.geom.pos);
+    const Vector3<double> normal = scaled(bodies.reversed ? -1 : 1, to_core(contact.geom.normal));
+    arm_a_ = difference(point, to_core(dBodyGetPosition(bodies.a)));
+    Vector3<double> closing =
+        sum(linear_velocity(bodies.a), cross(angular_velocity(bodies.a), arm_a_));
+    if (bodies.b != nullptr) {
+        arm_b_ = difference(point, to_core(dBodyGetPosition(bodies.b)));
+        closing = difference(
+            closing, sum(linear_velocity(bodies.b), cross(angular_velocity(bodies.b), arm_b_)));
+    }
+    const auto usual_cfm = double(dWorldGetCFM(world));
+    add_row(island, a, b, normal,
+            detail::wanted_velocity(world, contact, -dot(normal, closing), dt),
+            has(dContactSoftCFM) ? double(surface.soft_cfm) : usual_cfm, dt);
+    solve::IslandBlock block{.kind = solve::BlockKind::contact, .first = first_, .count = 1};
+
+    struct Friction {
+        double mu, motion, cfm;
+        bool of_normal; ///< mu is a share of the normal force, not a force
+    };
+    const auto mu = double(surface.mu);
+    const std::array<Friction, 2> friction{{
+        {mu, has(dContactMotion1) ? double(surface.motion1) : 0,
+         has(dContactSlip1) ? double(surface.slip1) : usual_cfm, has(dContactApprox1_1)},
+        {has(dContactMu2) ? double(surface.mu2) : mu,
+         has(dContactMotion2) ? double(surface.motion2) : 0,
+         has(dContactSlip2) ? double(surface.slip2) : usual_cfm, has(dContactApprox1_2)},
+    }};
+    const std::array<Vector3<double>, 2> along = detail::friction_directions(contact, normal);
+    for (const bool in_block : {true, false}) { // whose rows follow the normal's
+        for (std::size_t i = 0; i < 2; ++i) {
+            const Friction& f = friction[i];
+            if (!(f.mu > 0) || (f.of_normal && f.mu < unlimited) != in_block) continue;
+            add_row(island, a, b, along[i], f.motion, f.cfm, dt);
+            if (in_block) {
+                block.size[std::size_t(block.count++)] = f.mu;
+            } else {
+                island.rows.back().upper = f.mu * dt;
+                island.rows.back().lower = -f.mu * dt;
+            }
+        }
+    }
+    begin_contact(island, block);
+}
+
+DUCTILE_INLINE void ContactRows::close(const solve::Island& island, double dt) const {
+    const AttachedBodies bodies = attached_bodies(joint_);
+    Vector3<double> force = Vector3<double>::Zero();
+    for (int i = 0; i < count_; ++i) {
+        const double impulse = island.rows[std::size_t(first_ + i)].impulse;
+        force = sum(force, scaled(impulse / dt, along_[std::size_t(i)]));
+    }
+    const Vector3<double> torque_a = cross(arm_a_, force), torque_b = cross(force, arm_b_);
+    add_force(bodies.a, force, torque_a);
+    if (bodies.b != nullptr) add_force(bodies.b, scaled(-1, force), torque_b);
+    dJointFeedback* feedback = dJointGetFeedback(joint_);
+    if (feedback == nullptr) return;
+    for (int i = 0; i < 3; ++i) {
+        feedback->f1[i] = dReal(force[i]);
+        feedback->t1[i] = dReal(torque_a[i]);
+        feedback->f2[i] = dReal(bodies.b != nullptr ? -force[i] : 0);
+        feedback->t2[i] = dReal(bodies.b != nullptr ? torque_b[i] : 0);
+    }
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+//
+// Stands before ODE's step: an island whose rows are all known is solved at once
+// (solve/island_solver.hpp), and ODE gets the answer as forces on the bodies. World calls it.
+//
+//   known      six-axis plastic joints, which state their rows themselves, and contacts that were
+//              named with what they were made of; sliding friction, no rolling
+//   not known  any other joint of ODE's, also a PlasticHinge, and contacts that nobody named: the
+//              island is ODE's then, whichever solver steps it
+//
+// In the step the plastic joints have no row in ODE and the contacts are disabled; bodies of the
+// island that sleep are woken, as ODE would.
+//
+// Friction. dContactApprox1 is Coulomb's cone here, where ODE has a pyramid; without it mu is a
+// force, as in ODE. A contact joint's feedback is what this solver found.
+//
+// Sleep. ODE puts bodies to sleep one by one within its step, where they lose their velocity
+// although a neighbour wakes them again. An island that is solved here falls asleep as a whole,
+// once all its bodies have been slower than their thresholds for their steps and times (of the last
+// velocity: no average over samples).
+//
+// Not thread-safe.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstddef>
+#include <unordered_map>
+#include <vector>
+
+#include "ductile/ode/contact_rows.hpp"
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/solve/island_solver.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+class IslandSolver {
+  public:
+    void add(PlasticConstraint& joint);
+    void remove(PlasticConstraint& joint);
+
+    /// Between the constraints' `prepare` and ODE's step of `dt` [s].
+    void before_step(const std::vector<NamedContact>& contacts, double dt);
+    void after_step();
+
+  private:
+    struct Member {
+        PlasticConstraint* joint;
+        IslandRows* rows;
+        std::size_t seen = 0; ///< number of the step
+    };
+    /// All its bodies at once.
+    struct Idle {
+        int steps = 0;
+        double time = 0; ///< [s]
+    };
+    /// By the island's first joint.
+    struct Kept {
+        solve::IslandSolver solver; ///< keeps the topology
+        Idle idle;
+        std::size_t used = 0; ///< number of the step
+    };
+
+    void index_members();
+    [[nodiscard]] bool gather(dBodyID first);
+    [[nodiscard]] bool falls_asleep(Kept& kept, double dt) const;
+    void solve(solve::IslandSolver& solver, const std::vector<NamedContact>& contacts, double dt);
+    void take_seat(dBodyID body, double dt);
+    [[nodiscard]] IslandSeat seat(dBodyID body) const;
+    void set_aside(const std::vector<NamedContact>& contacts);
+    [[nodiscard]] Kept& kept_of(const PlasticConstraint& first);
+
+    std::size_t step_ = 0;
+    std::vector<Member> members_; ///< in the order in which they were added
+    std::unordered_map<dJointID, std::size_t> member_of_;
+    bool indexed_ = true;
+    std::unordered_map<dJointID, std::size_t> contact_of_;
+    std::unordered_map<const PlasticConstraint*, Kept> kept_;
+
+    // ---- of the island at hand
+    std::vector<std::size_t> joints_, touches_; ///< among members and contacts
+    std::vector<dBodyID> bodies_;               ///< that can move
+    std::unordered_map<dBodyID, int> number_;   ///< of all islands of the step
+    std::vector<BodyState<double>> free_;       ///< by number: as the step leaves them without rows
+    solve::Island island_;
+    std::vector<ContactRows> contact_rows_;
+    bool awake_ = false;
+
+    // ---- until the end of the step
+    std::vector<dJointID> disabled_;  ///< contacts
+    std::vector<dBodyID> kept_awake_; ///< that would put themselves to sleep
+};
+
+} // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/island_solver.ipp"
+#endif

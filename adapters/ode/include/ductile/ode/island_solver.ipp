@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of island_solver.hpp.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "ductile/ode/island_solver.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// So slow that ODE would put it to sleep.
+DUCTILE_INLINE bool is_idle(dBodyID body) {
+    return dBodyGetAutoDisableFlag(body) != 0 &&
+           dBodyGetAutoDisableAverageSamplesCount(body) != 0 &&
+           norm(linear_velocity(body)) <= double(dBodyGetAutoDisableLinearThreshold(body)) &&
+           norm(angular_velocity(body)) <= double(dBodyGetAutoDisableAngularThreshold(body));
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void IslandSolver::add(PlasticConstraint& joint) {
+    IslandRows* rows = joint.island_rows();
+    if (rows == nullptr) return;
+    members_.push_back({&joint, rows});
+    indexed_ = false;
+}
+DUCTILE_INLINE void IslandSolver::remove(PlasticConstraint& joint) {
+    std::erase_if(members_, [&joint](const Member& member) { return member.joint == &joint; });
+    indexed_ = false;
+}
+
+DUCTILE_INLINE void IslandSolver::index_members() {
+    member_of_.clear();
+    for (std::size_t i = 0; i < members_.size(); ++i) member_of_[members_[i].joint->id()] = i;
+    indexed_ = true;
+}
+
+// ---- a step
+
+DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& contacts,
+                                              double dt) {
+    if (members_.empty()) return;
+    if (!indexed_) index_members();
+    ++step_;
+    number_.clear();
+    contact_of_.clear();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (contacts[i].slides_only()) contact_of_[contacts[i].joint] = i;
+    }
+    for (Member& member : members_) {
+        if (member.seen == step_ || !member.rows->acts()) continue;
+        const AttachedBodies bodies = member.joint->bodies();
+        const bool known = gather(can_move(bodies.a) ? bodies.a : bodies.b);
+        bool ours = known && awake_;
+        if (ours) {
+            Kept& kept = kept_of(*members_[joints_.front()].joint);
+            ours = !falls_asleep(kept, dt);
+            if (ours) solve(kept.solver, contacts, dt);
+        }
+        if (ours) continue;
+        for (const std::size_t joint : joints_) members_[joint].rows->make_rows(dt);
+    }
+    std::erase_if(kept_, [this](const auto& entry) { return entry.second.used != step_; });
+}
+
+DUCTILE_INLINE void IslandSolver::after_step() {
+    for (const dJointID contact : std::exchange(disabled_, {})) dJointEnable(contact);
+    for (const dBodyID body : std::exchange(kept_awake_, {})) dBodySetAutoDisableFlag(body, 1);
+}
+
+/// All that hangs together with a body; false where not all of it is known.
+DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
+    constexpr int no_seat = -1;
+    bool known = true;
+    joints_.clear();
+    touches_.clear();
+    bodies_.assign(1, first);
+    number_.emplace(first, no_seat);
+    awake_ = false;
+    for (std::size_t at = 0; at < bodies_.size(); ++at) {
+        const dBodyID body = bodies_[at];
+        awake_ = awake_ || dBodyIsEnabled(body) != 0;
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            if (dJointIsEnabled(joint) == 0) continue;
+            if (const auto member = member_of_.find(joint); member != member_of_.end()) {
+                Member& found = members_[member->second];
+                if (std::exchange(found.seen, step_) != step_ && found.rows->acts()) {
+                    joints_.push_back(member->second);
+                }
+            } else if (const auto touch = contact_of_.find(joint); touch != contact_of_.end()) {
+                touches_.push_back(touch->second);
+            } else {
+                known = false;
+            }
+            for (const int side : {0, 1}) {
+                const dBodyID other = dJointGetBody(joint, side);
+                if (other == nullptr) continue;
+                if (!can_move(other)) {
+                    awake_ = awake_ || dBodyIsEnabled(other) != 0;
+                } else if (number_.emplace(other, no_seat).second) {
+                    bodies_.push_back(other);
+                }
+            }
+        }
+    }
+    // not in the order in which ODE happens to list them
+    std::sort(joints_.begin(), joints_.end());
+    std::sort(touches_.begin(), touches_.end());
+    touches_.erase(std::unique(touches_.begin(), touches_.end()), touches_.end());
+    return known;
+}
+
+DUCTILE_INLINE bool IslandSolver::falls_asleep(Kept& kept, double dt) const {
+    const Idle before = std::exchange(kept.idle, {});
+    if (!std::all_of(bodies_.begin(), bodies_.end(), detail::is_idle)) return false;
+    const Idle now{before.steps + 1, before.time + dt};
+    for (const dBodyID body : bodies_) {
+        if (now.steps >= dBodyGetAutoDisableSteps(body) &&
+            now.time >= double(dBodyGetAutoDisableTime(body))) {
+            continue;
+        }
+        kept.idle = now;
+        return false;
+    }
+    for (const dBodyID body : bodies_) {
+        dBodyDisable(body);
+        dBodySetLinearVel(body, 0, 0, 0);
+        dBodySetAngularVel(body, 0, 0, 0);
+    }
+    return true;
+}
+
+DUCTILE_INLINE void IslandSolver::solve(solve::IslandSolver& solver,
+                                        const std::vector<NamedContact>& contacts, double dt) {
+    island_.clear();
+    free_.clear();
+    contact_rows_.clear();
+    for (const std::size_t i : joints_) {
+        const AttachedBodies bodies = members_[i].joint->bodies();
+        take_seat(bodies.a, dt);
+        take_seat(bodies.b, dt);
+    }
+    for (const std::size_t i : touches_) {
+        for (const int side : {0, 1}) take_seat(dJointGetBody(contacts[i].joint, side), dt);
+    }
+    for (const std::size_t i : joints_) {
+        const AttachedBodies bodies = members_[i].joint->bodies();
+        members_[i].rows->open_rows(island_, seat(bodies.a), seat(bodies.b), dt);
+    }
+    for (const std::size_t i : touches_) {
+        const AttachedBodies bodies = attached_bodies(contacts[i].joint);
+        contact_rows_.emplace_back(contacts[i], island_, seat(bodies.a), seat(bodies.b), dt);
+    }
+    solver.solve(island_);
+    for (const std::size_t i : joints_) members_[i].rows->close_rows(island_, dt);
+    for (const ContactRows& rows : contact_rows_) rows.close(island_, dt);
+    set_aside(contacts);
+}
+
+/// For ODE's step.
+DUCTILE_INLINE void IslandSolver::set_aside(const std::vector<NamedContact>& contacts) {
+    for (const std::size_t i : touches_) {
+        dJointDisable(contacts[i].joint);
+        disabled_.push_back(contacts[i].joint);
+    }
+    for (const dBodyID body : bodies_) {
+        if (dBodyIsEnabled(body) == 0) dBodyEnable(body);
+        if (dBodyGetAutoDisableFlag(body) == 0) continue;
+        dBodySetAutoDisableFlag(body, 0);
+        kept_awake_.push_back(body);
+    }
+}
+
+DUCTILE_INLINE void IslandSolver::take_seat(dBodyID body, double dt) {
+    if (!can_move(body)) return;
+    int& number = number_[body];
+    if (number >= 0) return;
+    number = int(free_.size());
+    const BodyState<double>& free = free_.emplace_back(free_state(body, dt));
+    const double each = free.inverse_mass;
+    island_.bodies.push_back(solve::island_body({each, each, each}, free.inverse_inertia));
+}
+
+DUCTILE_INLINE IslandSeat IslandSolver::seat(dBodyID body) const {
+    if (!can_move(body)) {
+        return {.velocity = linear_velocity(body), .spin = angular_velocity(body)};
+    }
+    const int number = number_.at(body);
+    const BodyState<double>& free = free_[std::size_t(number)];
+    return {number, free.velocity, free.spin};
+}
+
+DUCTILE_INLINE IslandSolver::Kept& IslandSolver::kept_of(const PlasticConstraint& first) {
+    Kept& kept = kept_[&first];
+    kept.used = step_;
+    return kept;
+}
+
+} // namespace ductile::ode
