@@ -21,9 +21,10 @@ ALLOWED = {
     "fracture": {"vocabulary"},
     "joint": {"vocabulary", "numeric", "law", "surface", "fracture"},
     "solve": {"vocabulary", "numeric"},
+    "frame": {"vocabulary"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
-    "world": {"vocabulary", "fracture", "joint", "fidelity", "solve"},
+    "world": {"vocabulary", "fracture", "joint", "fidelity", "solve", "frame"},
     "fidelity": {"vocabulary", "material", "section", "law", "fracture", "joint"},
 }
 ADAPTERS = ("bullet", "ode")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // What of the core is compiled once (DUCTILE_COMPILED).
+#include <ductile/frame/frame_control.ipp>
+#include <ductile/frame/frame_report.ipp>
 #include <ductile/joint/usual_joints.hpp>
 #include <ductile/numeric/block_ldlt.hpp>
 #include <ductile/numeric/block_ldlt.ipp>

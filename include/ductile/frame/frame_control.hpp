@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+//
+// One frame in as few parts as a tolerance needs.
+//
+// A part is done, judged by what it told, and put back and done again where it misplaced too much
+// energy: ended where a flow stops, where a gap closes, or shorter.
+//
+//   error   = Σ R e + |work of rigid rows| + 0.3 |work of contacts|, + h/2 Σ R |u + u'|/2 where a
+//             contact was lost in the part (e: part_row.hpp)                               [J]
+//   scale   = plastic work so far + Σ ahead, ahead = R u²/(2 |a|) where a row slows, R |u| h where
+//             it does not, + R x travel that nobody misses                                 [J]
+//   stands where  error <= κ tolerance scale,  κ = 0.1
+//
+// Where nothing moves the scale is 0 and the part stands, whatever its length. Contacts that begin
+// take energy that is real and does not shrink with the part, hence 0.3.
+//
+// Shorter: (1) to where a gap closed unforeseen; (2) to where the row stopped that misplaced most,
+// at most three times; (3) by 0.85 √(allowed/error).
+// Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
+// its length comes first, where more than what is allowed is at stake.
+// Next: longer by the same rule, at most three times as long, not past the first stop that is
+// predicted, u = -a t; the last two parts of a frame share what is left of it.
+// Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
+// length, such as a kick from elsewhere. The first length is done, and said.
+// Before a part: a contact that touches and closes gets a blow, at most three in one instant; a gap
+// that would close within the part ends it.
+// Budget: parts that were put back count. From half of it on what is allowed grows by
+// 10^(4 (used - 1/2)): a frame ends coarser and says so, as one last long part would be worse.
+//
+// Source: half-step composition as Strang (1968); error per step of the difference of accelerations
+// as in Milne's device, Hairer, Norsett, Wanner, Solving ODEs I, section III.1. The rest is derived
+// in README.md.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "ductile/frame/frame_report.hpp"
+#include "ductile/frame/part_engine.hpp"
+#include "ductile/vocabulary/check.hpp"
+
+namespace ductile {
+
+struct FrameParameters {
+    double tolerance = 0.01; ///< of the plastic work [-], > 0
+    int budget = 256;        ///< solves of a frame, >= 4
+
+    /// @throws std::invalid_argument where one is out of range; `owner` is named.
+    void validate(const char* owner = "FrameParameters") const;
+};
+
+/// Not thread-safe.
+class FrameControl {
+  public:
+    /// @throws std::invalid_argument where a parameter is out of range.
+    explicit FrameControl(const FrameParameters& parameters = {});
+
+    /// One frame of `length` > 0 [s].
+    /// @throws std::invalid_argument where the length is not finite or not positive, before
+    /// anything was done; what the engine throws.
+    const FrameReport& frame(PartEngine& engine, double length);
+
+    [[nodiscard]] const FrameParameters& parameters() const noexcept { return parameters_; }
+    [[nodiscard]] const FrameReport& last() const noexcept { return report_; }
+    [[nodiscard]] const RunReport& run() const noexcept { return run_; }
+
+    /// Somebody changed the bodies: what the last parts say of the next one is forgotten.
+    void forget() noexcept;
+
+  private:
+    /// A part, judged [J].
+    struct Judgement {
+        double error = 0;
+        double allowed = 0;   ///< that grows as the budget goes
+        double tolerated = 0; ///< that does not
+        double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
+        bool ended = false;   ///< a flow ended in it
+        bool moves = false;   ///< something was to be judged
+    };
+    /// What is known of a row from the part before.
+    struct Past {
+        PartRow row;
+        double acceleration = 0; ///< a₋ [m/s² | rad/s²]
+    };
+
+    /// How a part is done again.
+    struct Shorter {
+        double length; ///< [s]
+        bool at_event; ///< a flow stops or a gap closes there
+    };
+
+    [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
+    [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
+    [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
+    [[nodiscard]] double first_length(double left) const noexcept;
+    [[nodiscard]] double first_stop(double h) const noexcept;
+    [[nodiscard]] bool at_stake(double h) const noexcept;
+    [[nodiscard]] Judgement judge(const PartMotion& motion, double h) const;
+    [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
+                                         double h, int tries);
+    void strike(PartEngine& engine, double h);
+    void remember(const PartMotion& motion, double h);
+    [[nodiscard]] double attempt(PartEngine& engine, double h, double left);
+    void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
+               bool at_event, bool jump);
+    void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);
+
+    FrameParameters parameters_;
+    FrameReport report_;
+    RunReport run_;
+    std::vector<Past> past_;
+    double before_ = 0;  ///< h₋ [s]
+    bool fresh_ = false; ///< accelerations of the last part say nothing of the next
+    double next_ = 0;    ///< length of the next part [s]; 0: as long as may be
+    double allowed_ = 0; ///< of the last part [J]
+    double work_ = 0;    ///< plastic, of all joints [J]
+    int solves_ = 0;     ///< of this frame
+};
+
+} // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/frame/frame_control.ipp"
+#endif

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of frame_control.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ductile/frame/frame_control.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile {
+
+namespace detail {
+
+inline constexpr double part_share = 0.1;     ///< κ
+inline constexpr double contact_share = 0.3;  ///< of the work of contacts that counts as error
+inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
+inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
+inline constexpr int most_tries = 12;         ///< of one part
+inline constexpr double nothing_left = 1e-12; ///< of a frame
+
+/// What a part's length is multiplied by; `least` where the error is no number.
+[[nodiscard]] DUCTILE_INLINE double growth(double allowed, double error, double least,
+                                           double most) {
+    constexpr double margin = 0.85;
+    if (error == 0) return most;
+    const double ratio = margin * std::sqrt(allowed / error);
+    return ratio >= least ? std::min(ratio, most) : least;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void FrameParameters::validate(const char* owner) const {
+    const std::string name(owner);
+    check::positive(name + ".tolerance", tolerance, "");
+    if (budget < 4) check::fail(name + ".budget", double(budget), "solves", "at least 4");
+}
+
+DUCTILE_INLINE FrameControl::FrameControl(const FrameParameters& parameters)
+    : parameters_(parameters) {
+    parameters_.validate();
+    run_.tolerance = parameters_.tolerance;
+}
+
+DUCTILE_INLINE void FrameControl::forget() noexcept {
+    past_.clear();
+    fresh_ = false;
+    next_ = 0;
+}
+
+DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double length) {
+    check::positive("FrameControl.frame.length", length, "s");
+    report_ = {};
+    solves_ = 0;
+    double left = length;
+    while (left > detail::nothing_left * length) {
+        strike(engine, first_length(left));
+        left -= attempt(engine, first_length(left), left);
+    }
+    run_.add(report_, work_);
+    return report_;
+}
+
+/// As long as the last part suggests, not past the first stop of a row.
+DUCTILE_INLINE double FrameControl::first_length(double left) const noexcept {
+    if (spent()) return left;
+    double h = left;
+    if (next_ > 0 && next_ < left) h = std::min(next_, left / 2);
+    if (!fresh_) return first_stop(h);
+    return at_stake(h) ? detail::start_share * h : h;
+}
+
+/// Whether the rows could misplace more than what is allowed.
+DUCTILE_INLINE bool FrameControl::at_stake(double h) const noexcept {
+    double work = 0;
+    for (const Past& past : past_) work += past.row.strength * std::abs(past.row.end) * h;
+    return !(work <= allowed_);
+}
+
+/// When the first row stops that would then misplace more than what is allowed; else `h`.
+DUCTILE_INLINE double FrameControl::first_stop(double h) const noexcept {
+    double stop = h;
+    for (const auto& [row, acceleration] : past_) {
+        const double speed = std::abs(row.end);
+        if (!(acceleration * row.end < 0) || !(row.strength > 0) || speed <= row.noise) continue;
+        constexpr double nothing = 1e-3;
+        const double time = speed / std::abs(acceleration);
+        const double missed = row.strength * speed * (h - time) / 2;
+        if (time < stop && time > nothing * h && missed > allowed_) stop = time;
+    }
+    constexpr double past_it = 1 + 1e-7;
+    return stop < h ? std::min(past_it * stop, h) : h;
+}
+
+/// Contacts that touch and close.
+DUCTILE_INLINE void FrameControl::strike(PartEngine& engine, double h) {
+    constexpr int most_in_an_instant = 3;
+    constexpr double noticed = 1e-7; // of the kinetic energy
+    for (int i = 0; i < most_in_an_instant && !spent(); ++i) {
+        const double touching = std::max(0.1 * allowed_, noticed * engine.kinetic_energy());
+        if (!engine.closing(h, touching, allowed_).strikes) return;
+        remember(engine.blow(), 0);
+        engine.accept(0);
+        ++solves_;
+        ++report_.blows;
+        fresh_ = true;
+        next_ = 0;
+    }
+}
+
+/// `h` = 0: a blow.
+DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
+    past_.resize(motion.rows.size());
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        past_[i] = {row, h > 0 ? (row.end - row.start) / h : past_[i].acceleration};
+    }
+    if (h > 0) before_ = h;
+}
+
+/// Does a part of `h` or less, of the frame's `left`, and returns its length [s].
+DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double left) {
+    const double shortest = engine.shortest_part();
+    bool at_gap = false;
+    if (!spent()) {
+        constexpr double noticed = 1e-7;
+        const double apart = std::max(allowed_, noticed * engine.kinetic_energy());
+        const double gap = engine.closing(h, apart, apart).time;
+        at_gap = gap < h;
+        if (at_gap) h = std::max(gap, shortest);
+    }
+    if (left - h < shortest) h = left;
+    engine.save();
+    double first_error = 0;
+    const double first = h;
+    bool jump = false, at_event = at_gap;
+    for (int tries = 0;; ++tries) {
+        const PartMotion& motion = engine.part(h);
+        ++solves_;
+        const Judgement judged = judge(motion, h);
+        allowed_ = judged.allowed;
+        if (tries == 0) first_error = judged.error;
+        const bool good = judged.error <= judged.allowed;
+        const bool done = jump || spent() || tries > detail::most_tries || h <= shortest;
+        if (good || done) {
+            stand(engine, motion, judged, h, at_event, jump);
+            return h;
+        }
+        engine.put_back();
+        ++report_.rejected;
+        constexpr double of_length = 0.1, of_error = 0.7;
+        if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
+            jump = true;
+            at_event = at_gap;
+            h = first;
+        } else {
+            // nothing is known of what was before: a short part first
+            const bool start = tries == 0 && past_.empty();
+            const Shorter next =
+                start ? Shorter{detail::start_share * h, false} : shorter(judged, motion, h, tries);
+            fresh_ = fresh_ || start;
+            at_event = next.at_event;
+            h = std::max(next.length, shortest);
+        }
+    }
+}
+
+DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
+                                               const PartMotion& motion) const noexcept {
+    const bool known = row < past_.size() && past_[row].row.joint == motion.rows[row].joint;
+    if (!known) return {};
+    return {past_[row].acceleration, before_};
+}
+
+DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion,
+                                                           double h) const {
+    Judgement judged;
+    double ahead = 0, power = 0, largest = 0, unmissed = 0;
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        if (!row.moves()) continue;
+        const Misplaced off = misplaced(row, h, before(i, motion));
+        const double error = row.strength * off.travel;
+        judged.error += error;
+        judged.ended = judged.ended || off.ended;
+        if (off.stop > 0 && error > largest) {
+            largest = error;
+            judged.stop = off.stop;
+        }
+        ahead += work_ahead(row, h);
+        power += row.strength * std::abs(row.start + row.end) / 2;
+        unmissed += row.strength * row.least * detail::unmissed;
+    }
+    judged.moves = !(ahead <= 0); // also where it is no number
+    if (judged.moves) {
+        judged.error +=
+            std::abs(motion.rigid_work) + detail::contact_share * std::abs(motion.contact_work);
+        if (motion.contact_lost) judged.error += power * h / 2;
+        judged.tolerated =
+            detail::part_share * parameters_.tolerance * (motion.plastic_work + ahead + unmissed);
+    }
+    judged.allowed = judged.tolerated;
+    if (used() > 0.5) judged.allowed *= std::pow(10.0, 4 * (used() - 0.5));
+    return judged;
+}
+
+DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMotion& motion,
+                                          double h, int tries) -> Shorter {
+    constexpr int tries_at_stops = 3, tries_at_gaps = 6;
+    constexpr double past_it = 1 + 1e-9;
+    if (motion.overlap > 0 && motion.overlap < h && tries < tries_at_gaps) {
+        return {motion.overlap, true};
+    }
+    if (judged.stop > 0 && !motion.contact_lost && tries < tries_at_stops) {
+        return {judged.stop * past_it, true};
+    }
+    return {h * detail::growth(judged.allowed, judged.error, 0.1, 0.7), false};
+}
+
+/// The part stands; `at_event`: it ends where a flow stopped or a gap closed.
+DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& motion,
+                                        const Judgement& judged, double h, bool at_event,
+                                        bool jump) {
+    ++report_.parts;
+    report_.jumps += jump;
+    report_.error += judged.error;
+    work_ = motion.plastic_work;
+    if (!(judged.error <= judged.tolerated)) say_unresolved(motion, judged, h);
+    const bool began = fresh_; // a first short part, which says nothing of the next one's length
+    remember(motion, h);
+    fresh_ = judged.ended || at_event;
+    next_ = judged.moves && !began && !jump
+                ? h * detail::growth(judged.allowed, judged.error, 0.2, 3)
+                : 0;
+    engine.accept(h);
+}
+
+DUCTILE_INLINE void FrameControl::say_unresolved(const PartMotion& motion, const Judgement& judged,
+                                                 double h) {
+    report_.left.energy += judged.error;
+    report_.left.time += h;
+    std::vector<UnresolvedJoint> joints;
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        const double travel = misplaced(row, h, before(i, motion)).travel;
+        if (travel == 0) continue;
+        report_.left.travel += travel;
+        add_unresolved(joints, row.joint, {row.strength * travel, travel, 0});
+    }
+    for (UnresolvedJoint& entry : joints) {
+        entry.left.time = h;
+        add_unresolved(report_.joints, entry.joint, entry.left);
+    }
+}
+
+} // namespace ductile

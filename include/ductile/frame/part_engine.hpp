@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+//
+// What a frame asks of an engine: to go one part, to take it back, to strike without moving, and
+// what it sees coming. world/ and the adapters answer it; frame_control.hpp asks.
+//
+// A part of h moves the bodies half a step ahead with the velocities they have, solves there, and
+// moves them the other half with those they got:
+//
+//   x += h/2 v;   v -> v' with contacts and joints as they are at x;   x += h/2 v'
+//
+// A blow is impulses alone: contacts that touch are closed, all others are open, no time passes.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "ductile/frame/part_row.hpp"
+
+namespace ductile {
+
+/// What a part did. Energies are those of the part.
+struct PartMotion {
+    std::vector<PartRow> rows; ///< of all plastic joints, in an order that stays
+    double plastic_work = 0;   ///< of all plastic joints since they were made [J]
+    double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
+    double contact_work = 0;   ///< that contacts took, either sign [J]
+    bool contact_lost = false; ///< one that pushed at first had opened at the end
+    double overlap = 0;        ///< when a gap closed that was not foreseen [s]; 0: none
+};
+
+/// Contacts that close.
+struct ClosingContacts {
+    bool strikes = false; ///< one that touches closes: a blow has to come first
+    double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
+};
+
+class PartEngine {
+  public:
+    /// Keeps all that a part may change, for one put_back or more, in place of what was kept.
+    virtual void save() = 0;
+    /// Everything is as it was at the last `save`, bit for bit.
+    virtual void put_back() = 0;
+    /// Goes one part of `h` > 0 [s]. Valid until the next one.
+    virtual const PartMotion& part(double h) = 0;
+    /// Impulses alone; of what it tells the rows are read.
+    virtual const PartMotion& blow() = 0;
+    /// The last part, or blow (`h` = 0), stands [s].
+    virtual void accept(double h) = 0;
+    /// Looks `h` [s] ahead for contacts on islands with plastic joints. Ones that close with less
+    /// energy than `touching`, and gaps that close with less than `apart`, do not count [J].
+    [[nodiscard]] virtual ClosingContacts closing(double h, double touching, double apart) = 0;
+    /// Of all bodies [J].
+    [[nodiscard]] virtual double kinetic_energy() const = 0;
+    /// Length below which a part is not cut any more [s], > 0.
+    [[nodiscard]] virtual double shortest_part() const noexcept { return 1e-7; }
+
+  protected:
+    PartEngine() = default;
+    PartEngine(const PartEngine&) = default;
+    PartEngine& operator=(const PartEngine&) = default;
+    ~PartEngine() = default;
+};
+
+} // namespace ductile

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+//
+// What one part of a frame misplaced of the travel of a plastic row, told from that part alone and
+// the acceleration in the one before.
+//
+// A part moves bodies with the mean of their velocities before and after it, so a row that is
+// braked by a constant force is exact, whatever the length of the part. Off is
+//
+//   a row that stopped    its strength R acted for the whole part, and would have for a share of
+//                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2
+//   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|
+//   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
+//                         three times that where the flow began within the part
+//   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
+//                         strength that makes it matter; nothing below 5 % of R
+//
+// Symbols
+//   u, u'   velocity of the row at the start and end of the part     [m/s | rad/s]
+//   a, a₋   (u' - u)/h in this part and in the one before            [m/s² | rad/s²]
+//   f, R    mean force over the part, strength                       [N | N m]
+//   h, h₋   length of the part and of the one before; h₋ = 0: a₋ = 0 [s]
+//   e       travel that may be misplaced                             [m | rad]
+//   s       instant within the part at which the flow ended          [s]
+//
+// Limit cases: constant force: e = 0. h → 0: e is of second order, and of first where a flow stops,
+// until the part ends there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace ductile {
+
+/// One plastic row in one part. Plain value.
+struct PartRow {
+    std::size_t joint = 0; ///< whose, as its world counts joints
+    double start = 0;      ///< u [m/s | rad/s]
+    double end = 0;        ///< u' [m/s | rad/s]
+    double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
+    double strength = 0;   ///< R; 0 where broken [N | N m]
+    double noise = 0;      ///< speed that is as good as rest [m/s | rad/s]
+    double least = 0;      ///< travel that nobody misses [m | rad]
+    bool elastic = false;  ///< below its strength it is a spring
+
+    [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
+    /// Negated so that a speed that is no number moves.
+    [[nodiscard]] bool moves() const noexcept {
+        return strength > 0 && !(std::abs(start) <= noise && std::abs(end) <= noise);
+    }
+};
+
+/// What a part misplaced of a row; travel is no number where the part's answer is none.
+struct Misplaced {
+    double travel = 0;  ///< e, weighted [m | rad]
+    double stop = 0;    ///< s; 0: it did not end within the part [s]
+    bool ended = false; ///< noticeably: accelerations before and after have nothing to do with
+                        ///< each other
+};
+
+/// What is known of a row from the part before. Where nothing is, all of its acceleration counts as
+/// new.
+struct PartBefore {
+    double acceleration = 0; ///< a₋ [m/s² | rad/s²]
+    double length = 0;       ///< h₋ [s]
+};
+
+[[nodiscard]] inline Misplaced misplaced(const PartRow& row, double h,
+                                         const PartBefore& before) noexcept {
+    Misplaced result;
+    if (!row.moves()) return result;
+    const double change = row.end - row.start, start = std::abs(row.start);
+    if (!std::isfinite(change) || !std::isfinite(row.share)) {
+        result.travel = std::numeric_limits<double>::quiet_NaN();
+        return result;
+    }
+    const double share = std::min(1.0, row.share);
+    const bool moved = start > row.noise; // at the start of the part
+    const double changed = 2 * std::abs(change / h - before.acceleration) / (h + before.length);
+    if (row.elastic) {
+        constexpr double idle = 0.05, least_weight = 0.3;
+        if (share <= idle) return result;
+        result.travel = changed * h * h * h / 8 * std::max(share, least_weight);
+    } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
+        result.travel = start * h * (1 - share) / 2;
+        double stop = share * h;
+        if (row.start * row.end < 0 && std::abs(row.end) > row.noise) {
+            result.travel = std::max(result.travel, std::abs(change) * h / 8);
+            stop = h * start / std::abs(change);
+        }
+        constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
+        if (stop > nothing * h && stop < whole * h) result.stop = stop;
+        result.ended = result.travel > noticed * start * h;
+    } else {
+        result.travel = changed * h * h * h / (moved ? 12 : 4);
+    }
+    return result;
+}
+
+/// Work that the row will still take if it goes on as in this part [J].
+[[nodiscard]] inline double work_ahead(const PartRow& row, double h) noexcept {
+    if (!row.moves()) return 0;
+    const double start = std::abs(row.start), change = row.end - row.start;
+    if (start <= row.noise) return row.strength * row.speed() * h / 2;
+    const bool slows = change * row.start < 0;
+    return row.strength * start * h * (slows ? start / (2 * std::abs(change)) : 1.0);
+}
+
+} // namespace ductile

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames of masses on a line, whose answers are known.
+#include "ductile/frame/frame_control.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/frame/masses_on_a_line.hpp"
+#include "support/throws.hpp"
+
+using ductile::FrameControl;
+using ductile::FrameParameters;
+using ductile::test::message_of;
+using masses_on_a_line::Engine;
+using masses_on_a_line::ground;
+
+namespace {
+
+constexpr double frame = 1.0 / 60;
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Frames until `duration` [s] or more is over.
+void run(Engine& engine, FrameControl& control, double duration, double length = frame) {
+    for (double t = 0; t < duration; t += length) control.frame(engine, length);
+}
+
+/// A mass of 2 kg at 3 m/s on a row of 100 N: 9 J, 0.09 m, 0.06 s.
+Engine sliding_mass() {
+    Engine engine;
+    engine.masses = {{.mass = 2, .velocity = 3}};
+    engine.rows = {{ground, 0, 100}};
+    return engine;
+}
+
+} // namespace
+
+TEST_CASE("A mass that slides on a plastic row rests where it should, at any frame", "[frame]") {
+    for (const double length : {1.0 / 1000, 1.0 / 60, 1.0 / 7, 1.0}) {
+        CAPTURE(length);
+        Engine engine = sliding_mass();
+        FrameControl control;
+        run(engine, control, 0.2, length);
+        CHECK(engine.masses[0].position == Approx(0.09).epsilon(1e-6));
+        CHECK(engine.rows[0].work == Approx(9).epsilon(1e-6));
+        CHECK(std::abs(engine.masses[0].velocity) < 1e-12);
+        CHECK(control.run().believed());
+        CHECK(control.run().left.energy == 0);
+    }
+}
+
+TEST_CASE("Only the frame in which a flow stops is done in parts", "[frame]") {
+    Engine engine = sliding_mass(); // stops in the fourth frame
+    FrameControl control;
+    for (int i = 1; i <= 6; ++i) {
+        const auto& report = control.frame(engine, frame);
+        CAPTURE(i);
+        // of the first frame nothing is known yet
+        CHECK(report.parts == (i == 1 || i == 4 ? 2 : 1));
+        CHECK(report.rejected == (i == 1 ? 1 : 0));
+    }
+    const double all = std::accumulate(engine.accepted.begin(), engine.accepted.end(), 0.0);
+    CHECK(all == Approx(6 * frame).epsilon(1e-12));
+    CHECK(engine.time == Approx(6 * frame).epsilon(1e-12));
+}
+
+TEST_CASE("A struck chain of two has the work of its closed form", "[frame]") {
+    // the outer mass pulls the inner one along until both have one velocity, then both are braked
+    constexpr double m1 = 1, m2 = 3, v = 4, inner = 60, outer = 100;
+    const double a1 = (outer - inner) / m1, a2 = outer / m2;
+    const double together = v / (a1 + a2), common = a1 * together;
+    const double travel2 = v * together / 2;
+    const double travel1 = common * together / 2 + (m1 + m2) * common * common / (2 * inner);
+    for (const double length : {1.0 / 240, 1.0 / 60, 1.0 / 30, 1.0}) {
+        CAPTURE(length);
+        Engine engine;
+        engine.masses = {{.mass = m1}, {.mass = m2, .velocity = v}};
+        engine.rows = {{ground, 0, inner}, {0, 1, outer}};
+        FrameControl control({.tolerance = 0.01});
+        run(engine, control, 1, length);
+        CHECK(engine.rows[0].work == Approx(inner * travel1).epsilon(1e-3));
+        CHECK(engine.rows[1].work == Approx(outer * travel2).epsilon(1e-3));
+        CHECK(engine.rows[0].work + engine.rows[1].work == Approx(m2 * v * v / 2).epsilon(1e-9));
+        CHECK(control.run().believed());
+    }
+}
+
+TEST_CASE("A smaller tolerance is nearer to the answer and costs more", "[frame]") {
+    // a mass on a spring of somebody else and a row of dry friction: each swing is less by 2 R/k,
+    // until the row can hold the spring
+    constexpr double mass = 2, k = 8000, R = 4000, v = 9;
+    double rest = (-R + std::sqrt(R * R + k * mass * v * v)) / k; // first turn
+    double path = rest;
+    while (k * std::abs(rest) > R) {
+        path += 2 * std::abs(rest) - 2 * R / k;
+        rest = -std::copysign(std::abs(rest) - 2 * R / k, rest);
+    }
+    double last_error = 1;
+    int last_cost = 0;
+    for (const double tolerance : {0.1, 0.01, 0.001}) {
+        CAPTURE(tolerance);
+        Engine engine;
+        engine.masses = {{.mass = mass, .velocity = v, .spring = k}};
+        engine.rows = {{ground, 0, R}};
+        FrameControl control({.tolerance = tolerance});
+        run(engine, control, 3.0);
+        const double error = std::abs(engine.rows[0].travel / path - 1);
+        CAPTURE(error, engine.solves, engine.masses[0].position, rest);
+        CHECK(error < tolerance);
+        CHECK(error < last_error);
+        CHECK(engine.solves > last_cost);
+        last_error = error;
+        last_cost = engine.solves;
+    }
+}
+
+TEST_CASE("A gap that closes ends the part, and a blow comes before the flow", "[frame]") {
+    // a ball of 3 kg flies 0.05 m and carries a mass of 1 kg on a row along with it
+    constexpr double ball = 3, target = 1, v = 5, R = 200, gap = 0.05;
+    const double common = ball * v / (ball + target);
+    const double work = (ball + target) * common * common / 2;
+    const auto scene = [&] {
+        Engine engine;
+        engine.masses = {{.mass = ball, .velocity = v, .position = -gap}, {.mass = target}};
+        engine.rows = {{ground, 1, R}};
+        engine.contacts = {{0, 1}};
+        return engine;
+    };
+    for (const double length : {1.0 / 1000, 1.0 / 240, 1.0 / 60, 1.0 / 30, 1.0}) {
+        CAPTURE(length);
+        Engine engine = scene();
+        FrameControl control;
+        run(engine, control, 0.5, length);
+        CHECK(engine.rows[0].work == Approx(work).epsilon(2e-4));
+        CHECK(control.run().blows == 1);
+        CHECK(control.run().believed());
+    }
+    SECTION("which is cheaper than to find the instant by shorter parts") {
+        Engine foreseen = scene(), blind = scene();
+        blind.foresees = false;
+        FrameControl one, other;
+        run(foreseen, one, 0.5, 1.0 / 30);
+        run(blind, other, 0.5, 1.0 / 30);
+        CHECK(other.run().rejected > one.run().rejected);
+        CHECK(blind.solves > foreseen.solves);
+    }
+}
+
+TEST_CASE("What the budget does not allow is said, in numbers and by joint", "[frame]") {
+    const auto chain = [] {
+        Engine engine;
+        for (int i = 0; i < 8; ++i) {
+            engine.masses.push_back({.mass = 1});
+            engine.rows.push_back({i - 1, i, 100.0 - 5 * i});
+        }
+        engine.masses.back() = {.mass = 8, .velocity = 10, .spring = 500};
+        return engine;
+    };
+    Engine whole = chain();
+    FrameControl enough({.tolerance = 0.001});
+    run(whole, enough, 2, 0.5);
+    CHECK(enough.run().believed());
+
+    Engine engine = chain();
+    FrameControl control({.tolerance = 0.001, .budget = 4});
+    const auto& first = control.frame(engine, 0.5);
+    CHECK(first.solves() <= 5);
+    CHECK(engine.time == Approx(0.5));
+    CHECK(first.left.energy > 0);
+    CHECK(first.left.travel > 0);
+    CHECK(first.left.time > 0);
+    REQUIRE_FALSE(first.joints.empty());
+    for (const auto& entry : first.joints) {
+        CAPTURE(entry.joint);
+        CHECK(entry.joint < engine.rows.size());
+        CHECK(entry.left.energy > 0);
+        CHECK(entry.left.time <= 0.5 * (1 + 1e-9));
+    }
+    CHECK_FALSE(control.run().believed());
+    CHECK(control.run().worst_frame <= 5);
+}
+
+TEST_CASE("An error that does not come from the length of a part is a jump", "[frame]") {
+    Engine engine = sliding_mass();
+    engine.kick = 0.5;
+    FrameControl control;
+    const auto& report = control.frame(engine, frame);
+    CHECK(report.jumps == 1);
+    CHECK(report.parts <= 2); // the first length, not a hundred short ones
+    CHECK(report.solves() <= 10);
+    CHECK(report.left.energy >= 0.5);
+}
+
+TEST_CASE("What is no number is never believed, and ends", "[frame]") {
+    Engine engine = sliding_mass();
+    engine.breaks_down = true;
+    FrameControl control({.budget = 64});
+    const auto& report = control.frame(engine, frame);
+    CHECK(report.solves() <= 65);
+    CHECK(engine.time == Approx(frame));
+    CHECK(report.left.any());
+    CHECK_FALSE(control.run().believed());
+}
+
+TEST_CASE("Nothing that moves is one part, whatever the frame", "[frame]") {
+    Engine engine = sliding_mass();
+    engine.masses[0].velocity = 0;
+    engine.masses[0].force = 99; // of 100 N
+    FrameControl control;
+    const auto& report = control.frame(engine, 10);
+    CHECK(report.parts == 1);
+    CHECK(report.rejected == 0);
+    CHECK(control.run().believed());
+}
+
+TEST_CASE("A frame and its tolerance are checked by name", "[frame]") {
+    Engine engine = sliding_mass();
+    FrameControl control;
+    using Catch::Matchers::Contains;
+    for (const double length : {0.0, -frame, unknown}) {
+        CHECK_THAT(message_of([&] { control.frame(engine, length); }),
+                   Contains("FrameControl.frame.length = ") && Contains("finite and > 0"));
+    }
+    CHECK(engine.solves == 0);
+    CHECK_THAT(message_of([] { FrameControl({.tolerance = -0.01}); }),
+               Contains("FrameParameters.tolerance = -0.01: must be finite and > 0"));
+    CHECK_THAT(message_of([] { FrameControl({.tolerance = unknown}); }),
+               Contains("FrameParameters.tolerance"));
+    CHECK_THAT(message_of([] { FrameControl({.budget = 3}); }),
+               Contains("FrameParameters.budget = 3 solves: must be at least 4"));
+}
