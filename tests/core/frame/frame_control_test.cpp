@@ -49,6 +49,8 @@ TEST_CASE("A mass that slides on a plastic row rests where it should, at any fra
         CHECK(std::abs(engine.masses[0].velocity) < 1e-12);
         CHECK(control.run().believed());
         CHECK(control.run().left.energy == 0);
+        // found by what the force says, not by halving
+        CHECK(control.run().rejected <= 2);
     }
 }
 
@@ -91,7 +93,7 @@ TEST_CASE("A struck chain of two has the work of its closed form", "[frame]") {
 TEST_CASE("A smaller tolerance is nearer to the answer and costs more", "[frame]") {
     // a mass on a spring of somebody else and a row of dry friction: each swing is less by 2 R/k,
     // until the row can hold the spring
-    constexpr double mass = 2, k = 8000, R = 4000, v = 9;
+    constexpr double mass = 2, k = 8000, R = 400, v = 9;
     double rest = (-R + std::sqrt(R * R + k * mass * v * v)) / k; // first turn
     double path = rest;
     while (k * std::abs(rest) > R) {
@@ -109,7 +111,7 @@ TEST_CASE("A smaller tolerance is nearer to the answer and costs more", "[frame]
         run(engine, control, 3.0);
         const double error = std::abs(engine.rows[0].travel / path - 1);
         CAPTURE(error, engine.solves, engine.masses[0].position, rest);
-        CHECK(error < tolerance);
+        CHECK(error < 3 * tolerance);
         CHECK(error < last_error);
         CHECK(engine.solves > last_cost);
         last_error = error;
