@@ -5,14 +5,20 @@
 
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/driven_body.ipp>
+#include <ductile/bullet/driven_ways.ipp>
 #include <ductile/bullet/energy_meter.ipp>
+#include <ductile/bullet/closing_contacts.ipp>
 #include <ductile/bullet/front_solver.ipp>
+#include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
+#include <ductile/bullet/touching_islands.ipp>
 #include <ductile/bullet/world.ipp>
+#include <ductile/bullet/world_parts.ipp>
+#include <ductile/bullet/world_snapshot.ipp>
 
 namespace ductile::bullet {
 

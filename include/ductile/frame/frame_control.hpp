@@ -98,9 +98,9 @@ class FrameControl {
     [[nodiscard]] Judgement judge(const PartMotion& motion, double h) const;
     [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
                                          double h, int tries);
-    void strike(PartEngine& engine, double h);
+    [[nodiscard]] double strike(PartEngine& engine, double h);
     void remember(const PartMotion& motion, double h);
-    [[nodiscard]] double attempt(PartEngine& engine, double h, double left);
+    [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
                bool at_event, bool jump);
     void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);

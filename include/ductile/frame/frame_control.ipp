@@ -56,8 +56,8 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
     solves_ = 0;
     double left = length;
     while (left > detail::nothing_left * length) {
-        strike(engine, first_length(left));
-        left -= attempt(engine, first_length(left), left);
+        const double gap = strike(engine, first_length(left));
+        left -= attempt(engine, first_length(left), gap, left);
     }
     run_.add(report_, work_);
     return report_;
@@ -94,13 +94,15 @@ DUCTILE_INLINE double FrameControl::first_stop(double h) const noexcept {
     return stop < h ? std::min(past_it * stop, h) : h;
 }
 
-/// Contacts that touch and close.
-DUCTILE_INLINE void FrameControl::strike(PartEngine& engine, double h) {
+/// Gives a blow to contacts that touch and close; returns when the next gap closes [s].
+DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
     constexpr int most_in_an_instant = 3;
     constexpr double noticed = 1e-7; // of the kinetic energy
-    for (int i = 0; i < most_in_an_instant && !spent(); ++i) {
-        const double touching = std::max(0.1 * allowed_, noticed * engine.kinetic_energy());
-        if (!engine.closing(h, touching, allowed_).strikes) return;
+    for (int i = 0; !spent(); ++i) {
+        const double least = noticed * engine.kinetic_energy();
+        const ClosingContacts seen =
+            engine.closing(h, std::max(0.1 * allowed_, least), std::max(allowed_, least));
+        if (!seen.strikes || i == most_in_an_instant) return seen.time;
         remember(engine.blow(), 0);
         engine.accept(0);
         ++solves_;
@@ -108,6 +110,7 @@ DUCTILE_INLINE void FrameControl::strike(PartEngine& engine, double h) {
         fresh_ = true;
         next_ = 0;
     }
+    return std::numeric_limits<double>::infinity();
 }
 
 /// `h` = 0: a blow.
@@ -120,17 +123,11 @@ DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
     if (h > 0) before_ = h;
 }
 
-/// Does a part of `h` or less, of the frame's `left`, and returns its length [s].
-DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double left) {
+/// Does a part of `h` or less, not past `gap`, of the frame's `left`; returns its length [s].
+DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double gap, double left) {
     const double shortest = engine.shortest_part();
-    bool at_gap = false;
-    if (!spent()) {
-        constexpr double noticed = 1e-7;
-        const double apart = std::max(allowed_, noticed * engine.kinetic_energy());
-        const double gap = engine.closing(h, apart, apart).time;
-        at_gap = gap < h;
-        if (at_gap) h = std::max(gap, shortest);
-    }
+    const bool at_gap = gap < h;
+    if (at_gap) h = std::max(gap, shortest);
     if (left - h < shortest) h = left;
     engine.save();
     double first_error = 0;

@@ -86,15 +86,15 @@ class AnyLink {
     [[nodiscard]] bool reads_mass() const noexcept { return !one_axis_ || !all_rigid_; }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
-    /// per second, >= 0 [1/s]; `midway` as Motion's. A broken joint asks for no force at all, nor
-    /// does one of a body that is not at a finite place.
+    /// per second, >= 0 [1/s]; `midway`, `ahead` as Motion's. A broken joint asks for no force at
+    /// all, nor does one of a body that is not at a finite place.
     const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
-                          bool midway = false) noexcept;
+                          bool midway = false, bool ahead = false) noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
     /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it; `share`:
-    /// of the engine's step, dt is that for which forces acted. Input that is not finite changes no
-    /// state: Step::residual.
+    /// dt as a multiple of the time in which the bodies moved since `prepare` saw them. Input that
+    /// is not finite changes no state: Step::residual.
     const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
                           const JointWrench<S>& wrench, S dt, S share = 1) noexcept;
     /// The same with the forces of the rows, in the order of JointAxis [N | N m].
@@ -111,6 +111,23 @@ class AnyLink {
     /// The same as an impulse on A at the joint, for engines that take it as six given forces.
     [[nodiscard]] JointImpulse<S> release_impulse(const BodyState<S>& a,
                                                   const BodyState<S>& b) const noexcept;
+
+    /// Keeps all that a step changes, for one put_back or more.
+    void keep() {
+        kept_ = {pose_, force_, start_, end_, rigid_residual_, unseen_turn_, rigid_unsolved_};
+        keep_joint();
+    }
+    /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
+    void put_back() noexcept {
+        pose_ = kept_->pose;
+        force_ = kept_->force;
+        start_ = kept_->start;
+        end_ = kept_->end;
+        rigid_residual_ = kept_->rigid_residual;
+        unseen_turn_ = kept_->unseen_turn;
+        rigid_unsolved_ = kept_->rigid_unsolved;
+        put_joint_back();
+    }
 
     /// The engine left the link out of a step; what the bodies did meanwhile is not to be taken for
     /// what the last booked step did.
@@ -178,6 +195,17 @@ class AnyLink {
     }
     /// Forces and moments of the last step in the order of JointAxis [N | N m].
     [[nodiscard]] const Vector6<S>& forces() const noexcept { return force_; }
+    /// Velocities of the rows at the start and the end of the last step, both along them as they
+    /// were solved, in the order of JointAxis [m/s | rad/s].
+    [[nodiscard]] const Vector6<S>& start_velocities() const noexcept { return start_; }
+    [[nodiscard]] const Vector6<S>& end_velocities() const noexcept { return end_; }
+    /// Force at which an axis flowed or would have, in the last step [N | N m].
+    [[nodiscard]] virtual S strength(JointAxis axis) const noexcept = 0;
+    /// Plastic travel that nobody misses [m | rad].
+    [[nodiscard]] virtual S least_travel() const noexcept = 0;
+    [[nodiscard]] bool all_rigid() const noexcept { return all_rigid_; } ///< below its strength
+    /// What a row may be off by at rest [m/s | rad/s].
+    [[nodiscard]] S absolute_residual() const noexcept { return allowed_.absolute_residual; }
     /// Largest violation of the rigid rows in the last step [m/s | rad/s].
     [[nodiscard]] S rigid_residual() const noexcept { return rigid_residual_; }
     /// LinkPose's of the last step [rad].
@@ -229,15 +257,27 @@ class AnyLink {
     virtual void take_mass(const Matrix6<S>& k) noexcept = 0;
     /// Writes the limits of the joint's own rows.
     virtual void prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
-                               const BodyState<S>& b, S dt, bool midway) noexcept = 0;
+                               const BodyState<S>& b, S dt, bool midway, bool ahead) noexcept = 0;
     /// Books force_ and `velocity` with the bodies where they are now.
     virtual void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a,
                               const BodyState<S>& b, S dt) noexcept = 0;
     virtual void pause_joint() noexcept = 0;
     virtual void leave_unbooked() noexcept = 0; ///< the step was of input that is not finite
+    virtual void keep_joint() = 0;
+    virtual void put_joint_back() noexcept = 0;
 
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
 
+    /// What `keep` keeps.
+    struct Kept {
+        LinkPose<S> pose;
+        Vector6<S> force, start, end;
+        S rigid_residual, unseen_turn;
+        bool rigid_unsolved;
+    };
+
+    std::optional<Kept> kept_;
+    Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
     bool sound_ = true; ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
@@ -248,132 +288,6 @@ class AnyLink {
     Allowed allowed_;
 };
 
-template <std::floating_point S>
-void AnyLink<S>::start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
-    pose_.look(a, b);
-    pose_.set_rest(Matrix3<S>::Identity());
-    const Vector6<S> q = strain();
-    set_offset(q);
-    turn_rest(angular(q));
-}
-
-template <std::floating_point S>
-void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept {
-    if (pose_.is_now(a, b)) return;
-    const bool was_somewhere = pose_.finite();
-    const Vector6<S> before = strain();
-    pose_.look(a, b);
-    if (!was_somewhere || !pose_.finite()) return;
-    Vector6<S> moved = strain(), rest = offset();
-    for (int i = 0; i < 6; ++i) {
-        moved[i] = plastic_[std::size_t(i)] ? moved[i] - before[i] : S(0);
-        rest[i] += moved[i];
-    }
-    const Vector3<S> kept = difference(pose_.elastic_rotation(), angular(moved));
-    set_offset(rest);
-    if (!is_zero(angular(moved))) {
-        pose_.set_rest(turned_by<S>(scaled(-1, kept), pose_.orientation()));
-    }
-}
-
-template <std::floating_point S>
-const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
-                                                       S dt, S rate, bool midway) noexcept {
-    pose_.look(a, b);
-    on_surface_ = false;
-    const Vector6<S> error = strain();
-    sound_ = pose_.finite();
-    const bool whole = !broken() && sound_;
-    for (std::size_t i = 0; i < limits_.size(); ++i) {
-        limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
-        if (!whole) limits_[i] = {.lower = 0, .upper = 0};
-    }
-    if (!sound_) return limits_;
-    if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
-    prepare_joint(error, a, b, dt, midway);
-    return limits_;
-}
-
-template <std::floating_point S>
-const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
-                                  const JointWrench<S>& wrench, S dt, S share) noexcept {
-    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt, share);
-}
-
-template <std::floating_point S>
-const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>& b,
-                                       const Vector6<S>& forces, S dt, S share) noexcept {
-    // velocities belong to the rows that were solved, positions to where the bodies are now
-    const Vector6<S> velocity = pose_.twist(a, b);
-    const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
-    certify_rigid_rows(a, velocity);
-    unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
-    pose_.look(a, b);
-    if (!broken() && !(sound && pose_.finite())) {
-        unseen_turn_ = 0;
-        rigid_residual_ = std::numeric_limits<S>::infinity();
-        rigid_unsolved_ = true;
-        leave_unbooked();
-        return last();
-    }
-    force_ = forces;
-    commit_joint(velocity, a, b, dt);
-    return last();
-}
-
-template <std::floating_point S>
-BreakRelease<S> AnyLink<S>::release(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
-    if (!(last().release > 0)) return {};
-    return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
-                         pose_.twist_in_world(a, b), last().release);
-}
-
-template <std::floating_point S>
-JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
-                                            const BodyState<S>& b) const noexcept {
-    if (!(last().release > 0)) return {};
-    return ductile::release_impulse(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
-                                    pose_.twist_in_world(a, b), last().release);
-}
-
-template <std::floating_point S>
-inline Vector6<S> AnyLink<S>::strain() const noexcept {
-    Vector6<S> result = twist_of(pose_.displacement(), pose_.elastic_rotation());
-    const Vector6<S> rest = offset();
-    for (int i = 0; i < 3; ++i) result[i] -= rest[i];
-    return result;
-}
-
-template <std::floating_point S>
-inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
-                                           const Vector6<S>& velocity) noexcept {
-    std::array<S, 2> worst{}; // of translations and rotations
-    for (std::size_t i = 0; i < limits_.size(); ++i) {
-        if (plastic_[i]) continue;
-        const S residual = std::abs(velocity[Eigen::Index(i)] - limits_[i].bias);
-        worst[i / 3] = worse(worst[i / 3], residual);
-    }
-    rigid_residual_ = worse(worst[0], worst[1]);
-    const Allowed& allow = allowed_;
-    const auto within = [&](S residual, S speed) {
-        return residual <= allow.absolute_residual + allow.relative_residual * speed;
-    };
-    rigid_unsolved_ = !(rigid_residual_ <= allow.absolute_residual) &&
-                      !(within(worst[0], pose_.speed_of_a(a)) && within(worst[1], norm(a.spin)));
-}
-
-template <std::floating_point S>
-inline void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
-    Vector3<S> turn = Vector3<S>::Zero();
-    for (int i = 0; i < 3; ++i) {
-        if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
-    }
-    if (several_turn_) {
-        const Vector3<S> back = difference(turn, pose_.elastic_rotation());
-        pose_.set_rest(turned_by<S>(back, pose_.orientation()));
-    } else {
-        pose_.set_rest(is_zero(turn) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
-    }
-}
-
 } // namespace ductile
+
+#include "ductile/joint/any_link.ipp" // IWYU pragma: export

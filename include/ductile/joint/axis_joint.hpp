@@ -35,6 +35,13 @@ class AxisJoint {
     /// q_p, and velocity after the last step's solve.
     [[nodiscard]] virtual double plastic_offset() const noexcept = 0;
     [[nodiscard]] virtual double velocity() const noexcept = 0;
+    /// Velocity at the start of the last step [m/s | rad/s].
+    [[nodiscard]] virtual double start_velocity() const noexcept = 0;
+    /// Plastic travel that nobody misses [m | rad].
+    [[nodiscard]] virtual double least_travel() const noexcept = 0;
+    /// Keeps all that a step changes, for one put_back or more.
+    virtual void keep() = 0;
+    virtual void put_back() noexcept = 0;
     /// The rest position is elsewhere, without any deformation.
     virtual void set_plastic_offset(double offset) noexcept = 0;
     /// The engine left the row out of a step: what the bodies did meanwhile is not to be taken for
@@ -93,6 +100,17 @@ class AxisJointOf final : public AxisJoint {
         return joint_.state().plastic_offset;
     }
     [[nodiscard]] double velocity() const noexcept override { return joint_.state().velocity; }
+    [[nodiscard]] double start_velocity() const noexcept override {
+        return joint_.state().start_velocity;
+    }
+    [[nodiscard]] double least_travel() const noexcept override {
+        return joint_.parameters().least_travel;
+    }
+    void keep() override { kept_ = {joint_.state(), booked_}; }
+    void put_back() noexcept override {
+        joint_.restore(kept_->state);
+        booked_ = kept_->booked;
+    }
     void set_plastic_offset(double offset) noexcept override {
         auto state = joint_.state();
         state.plastic_offset = offset;
@@ -107,8 +125,13 @@ class AxisJointOf final : public AxisJoint {
     }
 
   private:
+    struct Kept {
+        typename Joint::State state;
+        BookedStep<Joint> booked;
+    };
     Joint joint_;
     BookedStep<Joint> booked_;
+    std::optional<Kept> kept_;
 };
 
 } // namespace ductile

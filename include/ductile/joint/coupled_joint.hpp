@@ -167,7 +167,8 @@ class CoupledJoint {
 
     void bound(const Motion& motion, Scalar dt) noexcept {
         using Met = Impedance<Scalar, dimension>;
-        const Vector compliance = parameters_.stiffness.cwiseInverse() / (dt * dt);
+        const Scalar share = ahead_ ? mean_share<Scalar> : Scalar(1);
+        const Vector compliance = parameters_.stiffness.cwiseInverse() / (share * dt * dt);
         const Met impedance = all_rigid_ ? Met(motion.mass, dt) : Met(motion.mass, dt, compliance);
         const Grown<Surface> now{surface_, growth(0)};
         // an elastic row starts from its spring: a resolved one acts a step late, and a box around
@@ -210,6 +211,10 @@ class CoupledJoint {
             return rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
         }
         const Scalar k = parameters_.stiffness[i];
+        if (ahead_) {
+            implicit_[i] = mean_share<Scalar>;
+            return mean_spring_row(k, elastic_[i], start_[i], lower_[i], upper_[i], dt);
+        }
         implicit_[i] = implicit_share(k, mass, dt);
         return spring_row(k, elastic_[i], implicit_[i], lower_[i], upper_[i], dt);
     }
@@ -230,6 +235,7 @@ class CoupledJoint {
                 .offset = state_.plastic_offset[i],
                 .predicted = jumped ? Scalar(0) : predicted_.change[i],
                 .midway = predicted_.midway,
+                .ahead = ahead_,
                 .may_stop = (state_.flowing || jumped) &&
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
@@ -349,8 +355,9 @@ class CoupledJoint {
     Vector implicit_ = Vector::Ones();                         ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it
     Scalar left_ = 0,
-           share_ = 1; ///< travel left before a break; of the strength, what bounds allow
-    Scalar cap_ = 0;   ///< γ of a brittle break
+           share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
+    Scalar cap_ = 0;     ///< γ of a brittle break
+    bool ahead_ = false; ///< Motion::ahead
     Predicted<Vector> predicted_{Vector::Zero()};
 };
 } // namespace ductile

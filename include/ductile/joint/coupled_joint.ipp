@@ -18,6 +18,8 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     start_ = motion.velocity;
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
+    ahead_ = motion.ahead;
+    if (ahead_) elastic_ -= start_ * (dt / 2);
     sound_ = is_finite(motion, dt);
     rows_.fill({.lower = 0, .upper = 0});
     if (state_.broken || !sound_) return rows_;

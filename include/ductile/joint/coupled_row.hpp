@@ -40,6 +40,7 @@ struct OpenRow {
     S offset;            ///< q_p [m | rad]
     S predicted;         ///< as RowStep's [m/s | rad/s]
     bool midway;         ///< as RowStep's
+    bool ahead;          ///< as Motion's
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
     [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
@@ -79,7 +80,8 @@ struct OpenRow {
         const S rest = work - booked.elastic;
         const S slipped = std::abs(stiffness * strained * booked.travel);
         if (booked.travel != 0) {
-            booked.flow = (1 - implicit) * slipped + implicit * std::max(rest, S(0));
+            const S by_work = ahead ? S(1) : implicit;
+            booked.flow = (1 - by_work) * slipped + by_work * std::max(rest, S(0));
         }
         booked.other = rest - booked.flow;
         booked.error = error_of(booked, f, travel, dt);
@@ -104,14 +106,18 @@ struct OpenRow {
             if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
             return booked;
         }
-        // f = -k (q_e + θ u' dt - Δ), the spring's part of it at the end of the step
+        // f = -k (q_e + θ u' dt - Δ), the spring's part of it at the end of the step; the mean of
+        // a step half ahead is -k (2 q_e + (u + u') dt/2 - Δ)/2
         const S trial = reaction.position - offset;
-        booked.travel = flows ? elastic + implicit * reaction.velocity * dt + f / stiffness : S(0);
+        const S beyond = ahead ? 2 * (elastic + travel / 2 + f / stiffness)
+                               : elastic + implicit * reaction.velocity * dt + f / stiffness;
+        booked.travel = flows ? beyond : S(0);
         const S strained = trial - booked.travel;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
         const S rest = work - booked.elastic;
         const S slipped = -f * booked.travel;
-        if (flows) booked.flow = (1 - implicit) * slipped + implicit * rest;
+        const S by_work = ahead ? S(0) : implicit;
+        if (flows) booked.flow = (1 - by_work) * slipped + by_work * rest;
         booked.other = rest - booked.flow;
         booked.error = error_of(booked, f, travel, dt);
         return booked;
@@ -120,6 +126,7 @@ struct OpenRow {
   private:
     [[nodiscard]] StepError<S> error_of(const RowBooking<S>& booked, S force, S moved,
                                         S dt) const noexcept {
+        if (ahead) return {}; // the frame judges its parts
         return step_error<S>({.force = force,
                               .start = start,
                               .travel = moved,

@@ -26,6 +26,7 @@ struct CoupledMotion {
     /// prediction
     Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
     bool midway = false; ///< as Motion's
+    bool ahead = false;  ///< as Motion's
 };
 
 /// What the engine did to the rows in the step.

@@ -40,8 +40,8 @@ template <std::floating_point S>
     return std::clamp((a - resolved) / (stiff - resolved), S(0), S(1));
 }
 
-/// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or within
-/// five steps where that is longer.
+/// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or
+/// within five steps where that is longer.
 template <std::floating_point S>
 [[nodiscard]] constexpr RowLimits<S> rigid_row(S elastic, S lower, S upper, S drift_time,
                                                S dt) noexcept {
@@ -63,9 +63,26 @@ template <std::floating_point S>
     return {.lower = given, .upper = given};
 }
 
-/// Share of a flow's account that its work gives, the geometry giving the rest, for a law whose range
-/// moves: θ where the slip is within `range`, half of that between the two yield points, and 1 far
-/// beyond it, where a row with θ > 0 acts with the strength of its midpoint [-].
+/// θ of which the compliance of a mean spring's row is 1/(θ k dt²).
+template <std::floating_point S>
+inline constexpr S mean_share = S(0.25);
+
+/// The row of a spring whose bodies are half a step ahead, strained by `elastic` at the start
+/// [m | rad], `start` being u: its force is the mean of those at the start and the end of the step,
+///   f = -k (q_e + (u + u') dt/4)   <=>   C = 4/(k dt²),  b = u - 4 q_m/dt,  q_m = q_e + u dt/2
+/// whose work is exactly what it stores, at any step and stiffness.
+template <std::floating_point S>
+[[nodiscard]] constexpr RowLimits<S> mean_spring_row(S stiffness, S elastic, S start, S lower,
+                                                     S upper, S dt) noexcept {
+    return {.lower = lower,
+            .upper = upper,
+            .bias = -start - 4 * elastic / dt,
+            .compliance = 1 / (mean_share<S> * stiffness * dt * dt)};
+}
+
+/// Share of a flow's account that its work gives, the geometry giving the rest, for a law whose
+/// range moves: θ where the slip is within `range`, half of that between the two yield points, and
+/// 1 far beyond it, where a row with θ > 0 acts with the strength of its midpoint [-].
 template <std::floating_point S>
 [[nodiscard]] constexpr S work_share(S implicit, S range, S slipped) noexcept {
     if (!(implicit > 0)) return 0;

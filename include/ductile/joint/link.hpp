@@ -115,6 +115,21 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         return Vector6<S>::Zero();
     }
 
+    [[nodiscard]] S strength(JointAxis axis) const noexcept override {
+        const auto i = Eigen::Index(index(axis));
+        if (joint_.state().broken) return 0;
+        if constexpr (one_axis) {
+            return joint_.strength(force_[i] > 0 ? -1 : 1);
+        } else {
+            const S shared = ellipsoid()[i];
+            const RowLimits<S>& limits = limits_[index(axis)];
+            return shared > 0 ? shared : std::max(limits.upper, -limits.lower);
+        }
+    }
+    [[nodiscard]] S least_travel() const noexcept override {
+        return joint_.parameters().least_travel;
+    }
+
   private:
     static constexpr bool one_axis = !requires { Joint::dimension; };
     static constexpr int dimension = int(ruled_axes<Joint>);
@@ -157,7 +172,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
     void take_mass(const Matrix6<S>& k) noexcept override { mass_ = mass_of_rows(k, axes_); }
     void prepare_joint(const Vector6<S>& strain, const BodyState<S>& a, const BodyState<S>& b, S dt,
-                       bool midway) noexcept override;
+                       bool midway, bool ahead) noexcept override;
     void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a, const BodyState<S>& b,
                       S dt) noexcept override;
     void leave_unbooked() noexcept override { booked_.leave_unbooked(); }
@@ -173,6 +188,17 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         joint_.restore(state);
         booked_.clear();
     }
+
+    void keep_joint() override { kept_joint_ = {joint_.state(), booked_}; }
+    void put_joint_back() noexcept override {
+        joint_.restore(kept_joint_->state);
+        booked_ = kept_joint_->booked;
+    }
+    /// Of the joint, what AnyLink::keep keeps.
+    struct KeptJoint {
+        typename Joint::State state;
+        BookedStep<Joint> booked;
+    };
 
     // ---- between the joint's rows and the six axes
 
@@ -215,20 +241,21 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     JointMatrix mass_ = JointMatrix::Zero();   ///< M, where it is read
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
     BookedStep<Joint> booked_;
+    std::optional<KeptJoint> kept_joint_;
 };
 
 template <class Joint>
 void Link<Joint>::prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
-                                const BodyState<S>& b, S dt, bool midway) noexcept {
+                                const BodyState<S>& b, S dt, bool midway, bool ahead) noexcept {
     offset_ = joint_offset();
     if constexpr (one_axis) {
         const std::size_t i = index(axes_[0]);
-        limits_[i] = joint_.prepare(
-            {strain[Eigen::Index(i)] + offset_[0], pose_.twist_along(i, a, b), mass_(0, 0), midway},
-            dt);
+        limits_[i] = joint_.prepare({strain[Eigen::Index(i)] + offset_[0],
+                                     pose_.twist_along(i, a, b), mass_(0, 0), midway, ahead},
+                                    dt);
     } else {
-        const auto limits =
-            joint_.prepare({from_rest(strain), to_joint(pose_.twist(a, b)), mass_, midway}, dt);
+        const auto limits = joint_.prepare(
+            {from_rest(strain), to_joint(pose_.twist(a, b)), mass_, midway, ahead}, dt);
         for (std::size_t k = 0; k < limits.size(); ++k) limits_[index(axes_[k])] = limits[k];
     }
 }

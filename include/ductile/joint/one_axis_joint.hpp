@@ -19,21 +19,24 @@
 // removes drift towards q_p; at a bound it slips, which is plastic flow: solved, it is the exact
 // implicit rule.
 //
-// Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what the
-// yield range allows; the rest of the observed displacement is plastic. k → ∞ is the rigid row.
+// Elastic row. The spring of elastic_row.hpp inside the same bounds. After the solve q_e is what
+// the yield range allows; the rest of the observed displacement is plastic. k → ∞ is the rigid row.
 //
-// Account. With v' = v + M⁻¹(Jᵀλ + f_ext dt) the change of kinetic energy is exactly the sum over all
-// rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any dt, where
-// M_p |Δθ| is first order only. Plastic travel is counted by the same rule: a break is invariant.
-//   Counted as plastic: steps that flow, and the step that brings a flowing (or just now jumped) rigid
-//   row to rest inside the bounds: a force R acting until rest would do the very same work. Everything
-//   else (jitter below yield, drift removed, numerical damping) is `other_work` and consumes no life.
+// Account. With v' = v + M⁻¹(Jᵀλ + f_ext dt) the change of kinetic energy is exactly the sum over
+// all rows and external forces of impulse × (u + u')/2. Hence W = -f dt (u + u')/2, exact at any
+// dt, where M_p |Δθ| is first order only. Plastic travel is counted by the same rule: a break is
+// invariant.
+//   Counted as plastic: steps that flow, and the step that brings a flowing (or just now jumped)
+//   rigid row to rest inside the bounds: a force R acting until rest would do the very same work.
+//   Everything else (jitter below yield, drift removed, numerical damping) is `other_work` and
+//   consumes no life.
 //
-// Break at the right energy. If the travel left, r, is less than the step would consume, the bounds are
-// lowered before the solve so that the row does about R r of work. What it did in excess is returned as
-// Step::release, to be handed back to the two bodies: the energy taken is R r at every dt. In isolation
-// u'² = u² - 2 R r / m. A brittle break, where a cap on the force is reached before yield, absorbs
-// nothing and releases all the work of its step. What was stored is set free inside: Step::lost.
+// Break at the right energy. If the travel left, r, is less than the step would consume, the bounds
+// are lowered before the solve so that the row does about R r of work. What it did in excess is
+// returned as Step::release, to be handed back to the two bodies: the energy taken is R r at every
+// dt. In isolation u'² = u² - 2 R r / m. A brittle break, where a cap on the force is reached
+// before yield, absorbs nothing and releases all the work of its step. What was stored is set free
+// inside: Step::lost.
 //
 // Certificate. A solved row satisfies u' + Cλ = b inside the bounds, <= b at the upper and >= b at
 // the lower one. The violation of that is the residual; where it is large the step is unreliable,
@@ -180,7 +183,8 @@ class OneAxisJoint {
     }
 
     [[nodiscard]] auto error_of(const Step<Scalar>& step, const Taken& taken) const noexcept {
-        if (rigid() && !(step.plastic_work > 0)) return StepError<Scalar>{}; // one that holds misplaces nothing
+        // of parts the frame is the judge; one that holds misplaces nothing
+        if (ahead_ || (rigid() && !(step.plastic_work > 0))) return StepError<Scalar>{};
         return step_error<Scalar>({.force = taken.force,
                                    .start = start_,
                                    .travel = taken.travel,
@@ -260,9 +264,10 @@ class OneAxisJoint {
             // the geometry of a symplectic row is second order, the work of an implicit one is the
             // better account, in between as the row itself; a law that rests by itself has its own
             state_.plastic_offset += slipped;
-            Scalar share = RestsByItself<Cyclic> ? Scalar(0) : implicit_;
+            Scalar share = RestsByItself<Cyclic> ? Scalar(0) : ahead_ ? Scalar(1) : implicit_;
             if constexpr (!StrengthLaw<Law> && !RestsByItself<Cyclic>) {
-                share = work_share(implicit_, (flow_.upper - flow_.lower) / (2 * k), slipped);
+                const Scalar range = (flow_.upper - flow_.lower) / (2 * k);
+                if (!ahead_) share = work_share(implicit_, range, slipped);
             }
             const Scalar moved = taken.travel - (strained - elastic_); // what the spring left
             const bool told = flow_.told_by_work(direction, tolerance_);
@@ -273,7 +278,8 @@ class OneAxisJoint {
             // a row too stiff for the step: what the yield range cannot hold was flow
             const Scalar yield = strength * strength / (2 * k);
             const Scalar room = std::max(yield - k * elastic_ * elastic_ / 2, Scalar(0));
-            const Scalar excess = std::max(taken.work - room, Scalar(0)) * implicit_;
+            const Scalar excess =
+                std::max(taken.work - room, Scalar(0)) * (ahead_ ? Scalar(1) : implicit_);
             flow(step, taken, excess, direction * excess / strength);
             step.other_work += rest - excess;
         } else {
@@ -337,14 +343,15 @@ class OneAxisJoint {
     State state_;
 
     // between prepare and commit
-    bool sound_ = true; ///< the input of `prepare` was finite
+    bool sound_ = true;                         ///< the input of `prepare` was finite
     Scalar bias_ = 0, start_ = 0, elastic_ = 0; ///< b, u, q_e at the start
     FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
     Scalar lower_ = 0, upper_ = 0,
            tolerance_ = 0;           ///< bounds of the row's force, how near is at them
     Scalar fade_ = 1, implicit_ = 1; ///< strength factor of the criterion; θ of an elastic row
     Scalar left_ = 0,
-           share_ = 1; ///< travel left before a break; of the strength, what bounds allow
+           share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
+    bool ahead_ = false; ///< Motion::ahead
     Predicted<Scalar> predicted_{};
 };
 } // namespace ductile

@@ -17,12 +17,17 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
     start_ = motion.velocity;
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
+    ahead_ = motion.ahead;
+    if (ahead_) elastic_ -= start_ * dt / 2;
     sound_ = are_finite(start_, elastic_, dt) && (rigid() || motion.mass >= 0);
     if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
     bound(dt);
     RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
     if (rigid()) {
         row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
+    } else if (ahead_) {
+        implicit_ = mean_share<Scalar>;
+        row = mean_spring_row(parameters_.stiffness, elastic_, start_, lower_, upper_, dt);
     } else {
         implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
         row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);

@@ -47,6 +47,9 @@ struct Motion {
     Scalar mass = 0;
     /// Velocities are those in the middle of steps: world/leapfrog.hpp. Only the certificate asks.
     bool midway = false;
+    /// The bodies are half a step ahead (frame/README.md): q is that in the middle of the step, and
+    /// they will end it at q + u' dt/2.
+    bool ahead = false;
 };
 
 /// What the engine did to the row in the step.

@@ -101,9 +101,18 @@ class EnergyMeter {
     void open();
     [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
     void before_step();
+    /// The bodies were moved half a step ahead since before_step (frame/README.md): rows are solved
+    /// where they are now.
+    void bodies_ahead();
     /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
     /// forces acted (force_share.hpp).
     void after_step(double dt, double share = 1);
+    /// Keeps the account for one put_back or more, before `before_step`.
+    void keep();
+    void put_back();
+    /// What plastic joints took beside their flow and what they store, as booked in
+    /// Account::joints [J].
+    [[nodiscard]] double of_plastic_joints() const noexcept { return of_plastic_joints_; }
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;
 
@@ -158,7 +167,17 @@ class EnergyMeter {
     /// Sum of the velocities before and after the step at a world point of the body [m/s].
     [[nodiscard]] Vector3<double> velocity_sum(const void* body, const Vector3<double>& point);
 
+    /// What `keep` keeps.
+    struct Kept {
+        Ledger<double> ledger;
+        HeldEnergy<double> last;
+        std::vector<double> taken;
+        double of_plastic_joints = 0;
+    };
+
+    Kept kept_;
     Ledger<double> ledger_;
+    double of_plastic_joints_ = 0;
     HeldEnergy<double> last_;
     detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;

@@ -3,6 +3,8 @@
 // Bodies of energy_meter.hpp.
 #pragma once
 
+#include <algorithm>
+
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
@@ -64,6 +66,37 @@ DUCTILE_INLINE void EnergyMeter::before_step() {
             {joint->absorbed_energy(), joint->stored_energy(), joint->release().energy});
     }
     watch_step();
+}
+
+DUCTILE_INLINE void EnergyMeter::keep() {
+    kept_.ledger = ledger_;
+    kept_.last = last_;
+    kept_.taken = taken_;
+    kept_.of_plastic_joints = of_plastic_joints_;
+}
+
+DUCTILE_INLINE void EnergyMeter::put_back() {
+    ledger_ = kept_.ledger;
+    last_ = kept_.last;
+    of_plastic_joints_ = kept_.of_plastic_joints;
+    // joints that came since keep their numbers
+    std::fill(std::copy(kept_.taken.begin(), kept_.taken.end(), taken_.begin()), taken_.end(), 0.0);
+}
+
+DUCTILE_INLINE void EnergyMeter::bodies_ahead() {
+    bodies_.clear();
+    list_bodies(bodies_);
+    for (const MeteredBody& body : bodies_) {
+        Course* course = course_of(body.body);
+        if (course == nullptr) continue;
+        MeteredBody& start = course->start;
+        const Vector3<double> moved = difference(body.position, start.position);
+        const double turning = detail::kinetic_energy(start, start.velocity, start.spin) -
+                               detail::kinetic_energy(body, start.velocity, start.spin);
+        ledger_.book(Account::integration, dot(body.weight, moved) + turning);
+        start.position = body.position;
+        start.inertia = body.inertia;
+    }
 }
 
 DUCTILE_INLINE void EnergyMeter::after_step(double dt, double share) {
@@ -175,6 +208,7 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
                 joint.plastic->release().energy - before->released;
     }
     ledger_.book(Account::joints, taken - named);
+    if (joint.plastic != nullptr) of_plastic_joints_ += taken - named;
     const std::size_t number = taken_numbers_.enter(joint.joint);
     if (number == taken_.size()) taken_.push_back(0);
     taken_[number] += taken;

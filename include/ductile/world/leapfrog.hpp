@@ -30,6 +30,7 @@ namespace ductile {
 struct ForceShare {
     double value = 1;    ///< κ, > 0
     bool midway = false; ///< velocities are those in the middle of steps
+    bool ahead = false;  ///< bodies are half a step ahead where rows are solved
 };
 
 /// Not thread-safe; O(1).

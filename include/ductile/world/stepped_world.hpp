@@ -20,6 +20,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ductile/frame/frame_control.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/kept_joint.hpp"
 #include "ductile/world/leapfrog.hpp"
@@ -41,7 +42,11 @@ class SteppedWorld : private JointKeeper {
         check::positive("World.step.dt", dt, "s");
         supervisor_.open();
         supervisor_.look_ahead(scene, dt);
-        do_step(dt, time() + dt);
+        if (frames_) {
+            do_frame(dt, time() + dt);
+        } else {
+            do_step(dt, time() + dt);
+        }
     }
 
     /// Steps for `duration` [s], to its end exactly, as `control` finds from the joints' motion and
@@ -69,6 +74,15 @@ class SteppedWorld : private JointKeeper {
         check::non_negative("World.resume.last", last, "s");
         if (leapfrog_) leapfrog_->resume(last);
     }
+
+    // ---- frames with a tolerance
+
+    /// Of the last step, where the world has a tolerance.
+    /// @throws std::logic_error where it has none.
+    [[nodiscard]] const FrameReport& frame() const { return frames().last(); }
+    /// Of all steps; run().believed() says whether their answer is to be believed.
+    /// @throws std::logic_error where the world has no tolerance.
+    [[nodiscard]] const RunReport& run() const { return frames().run(); }
 
     // ---- what it tells
 
@@ -109,6 +123,12 @@ class SteppedWorld : private JointKeeper {
     using JointKeeper::let_go;
     /// From the next step on forces act from the middle of one step to the middle of the next.
     void start_leapfrog() { leapfrog_.emplace(); }
+    /// From the next step on a step is a frame.
+    void start_in_frames(const FrameParameters& parameters) { frames_.emplace(parameters); }
+    /// A part of `h` [s], or a blow of none, stands.
+    void part_stands(double h) {
+        supervisor_.look(time() + h, [this](const void* joint) { suspect(joint); });
+    }
     [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
 
   private:
@@ -118,6 +138,12 @@ class SteppedWorld : private JointKeeper {
     /// @throws what makes it impossible; nothing has changed then.
     virtual void require_possible(double dt) = 0;
     virtual void do_part(double dt, const ForceShare& share, const Effort& effort) = 0;
+    /// A frame of `length` [s] begins, with the bodies and the forces on them as they are. Asked
+    /// for where start_in_frames was called.
+    [[nodiscard]] virtual PartEngine& begin_frame(double /*length*/) {
+        throw std::logic_error("World.tolerance: must not be asked of this engine");
+    }
+    virtual void end_frame() {}
     virtual void hold_forces() = 0;
     virtual void apply_held_forces() = 0;
     [[nodiscard]] virtual int iterations() const = 0;
@@ -180,6 +206,27 @@ class SteppedWorld : private JointKeeper {
                              [this](const void* joint) { suspect(joint); });
         }
         finish(supervisor_.close());
+        tell_of_forgotten();
+    }
+
+    void do_frame(double length, double end) {
+        require_possible(length);
+        {
+            const Stepping guard(stepping_);
+            frames_->frame(begin_frame(length), length);
+            end_frame();
+        }
+        supervisor_.set_time(end);
+        (void)supervisor_.close();
+        tell_of_forgotten();
+    }
+
+    [[nodiscard]] const FrameControl& frames() const {
+        if (!frames_) throw std::logic_error("World.frame: there is none: no tolerance was given");
+        return *frames_;
+    }
+
+    void tell_of_forgotten() {
         const auto forgotten =
             WaitingJoints::all().take([this](const void* body) { return has_body(body); });
         for (std::size_t i = 0; i < forgotten; ++i) {
@@ -191,6 +238,7 @@ class SteppedWorld : private JointKeeper {
 
     Supervisor supervisor_;
     std::optional<Leapfrog> leapfrog_;
+    std::optional<FrameControl> frames_;
     bool stepping_ = false;
     std::atomic<bool> told_of_engine_ = false; ///< that it is stepped by others
 };

@@ -117,6 +117,13 @@ class Supervisor {
         found->joint = nullptr;
         if (!looking_) forget_removed();
     }
+    /// Of a joint in the watch; Watch::nobody where it is not here.
+    [[nodiscard]] std::size_t number(const void* joint) const {
+        const auto found =
+            std::find_if(joints_.begin(), joints_.end(),
+                         [joint](const Entry& entry) { return entry.joint == joint; });
+        return found != joints_.end() ? found->number : Watch<double>::nobody;
+    }
     [[nodiscard]] bool knows(const void* joint) const {
         return std::any_of(joints_.begin(), joints_.end(),
                            [joint](const Entry& entry) { return entry.joint == joint; });
@@ -129,6 +136,8 @@ class Supervisor {
     void on_event(Listener listener) { listener_ = std::move(listener); }
     [[nodiscard]] const Effort& effort() const noexcept { return effort_.effort(); }
     [[nodiscard]] double time() const noexcept { return time_; }
+    /// The end of a frame, its parts having summed up to it but for round-off [s].
+    void set_time(double time) noexcept { time_ = time; }
     /// One line of its own.
     void say(const std::string& line) const {
         if (warn_) warn_(line);

@@ -37,6 +37,7 @@ template <std::floating_point S>
 class Watch {
   public:
     using Listener = std::function<void(const JointEvent<S>&)>;
+    static constexpr std::size_t nobody = std::size_t(-1); ///< no joint's number
 
     /// Number of the new joint; numbers are not used again.
     std::size_t add(std::string name, bool broken = false) {

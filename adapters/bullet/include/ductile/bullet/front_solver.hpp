@@ -4,8 +4,9 @@
 // (island_solver.hpp), all others go to the user's solver in its order, in one call a group, bit
 // for bit as without.
 //
-// Bullet hands over a group of islands. They are told apart by the island tag of their bodies, by
-// which Bullet has sorted them, or not where islands are not split (setSplitIslands(false)).
+// Bullet hands over a group of islands, each of bodies whose bounds overlap, or did of late. What
+// is solved at once is less and does not depend on the past: bodies that contacts and constraints
+// hold together, in the order of the world (touching_islands.hpp).
 //
 // Thread-safety: `solveGroup` may be called by several threads at once, for different islands, as
 // far as the user's solver allows it (btConstraintSolverPoolMt does).
@@ -20,9 +21,19 @@
 #include <vector>
 
 #include "ductile/bullet/island_solver.hpp"
+#include "ductile/bullet/touching_islands.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
+
+/// What a tick is of (world_parts.hpp).
+enum class TickKind {
+    step,
+    part, ///< bodies are half a step ahead: of what is apart they go half a step's way nearer, not
+          ///< a whole one's
+    blow  ///< impulses alone: contacts of islands with plastic joints that touch are closed, all
+          ///< others open
+};
 
 class FrontSolver final : public btConstraintSolver {
   public:
@@ -33,6 +44,9 @@ class FrontSolver final : public btConstraintSolver {
     DUCTILE_INLINE ~FrontSolver() override;
 
     [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
+
+    /// Of the coming ticks.
+    void set_kind(TickKind kind) noexcept { kind_ = kind; }
 
     // ---- Bullet's side
 
@@ -53,15 +67,15 @@ class FrontSolver final : public btConstraintSolver {
   private:
     /// What a call of solveGroup works with.
     struct Room {
-        std::vector<btCollisionObject*> bodies, sorted_bodies; ///< of islands without; of all
-        std::vector<btPersistentManifold*> manifolds, sorted_manifolds;
-        std::vector<btTypedConstraint*> constraints, sorted_constraints;
+        TouchingIslands islands;
     };
     /// The solver of an island, by its first plastic joint: it keeps the topology.
     struct Kept {
         IslandSolver solver;
         bool used = true;
     };
+    void solve_plastic(IslandParts& island, const btContactSolverInfo& info, btIDebugDraw* drawer,
+                       btDispatcher* dispatcher);
     btScalar solve_usual(btCollisionObject** bodies, int body_count,
                          btPersistentManifold** manifolds, int manifold_count,
                          btTypedConstraint** constraints, int constraint_count,
@@ -75,6 +89,7 @@ class FrontSolver final : public btConstraintSolver {
 
     btConstraintSolver& usual_;
     bool owned_;
+    TickKind kind_ = TickKind::step;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
     std::mutex mutex_; ///< of what follows
     std::vector<std::unique_ptr<Room>> idle_;
@@ -90,6 +105,12 @@ class FrontHold {
     ~FrontHold();
     FrontHold(const FrontHold&) = delete;
     FrontHold& operator=(const FrontHold&) = delete;
+
+    /// Of the front, which has to be in place.
+    [[nodiscard]] btConstraintSolver& usual() const { return (**front_.lock()).usual(); }
+    /// False once Bullet's world has ended.
+    [[nodiscard]] bool is_alive() const noexcept { return !front_.expired(); }
+    void set_kind(TickKind kind) const { (**front_.lock()).set_kind(kind); }
 
   private:
     btDiscreteDynamicsWorld& world_;

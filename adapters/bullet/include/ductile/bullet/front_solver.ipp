@@ -4,42 +4,20 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
+#include <array>
 #include <new>
 #include <utility>
 
+#include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/front_solver.hpp"
 
 namespace ductile::bullet {
 
 namespace detail {
 
-[[nodiscard]] DUCTILE_INLINE int island_of(const btCollisionObject& a, const btCollisionObject& b) {
-    return a.getIslandTag() >= 0 ? a.getIslandTag() : b.getIslandTag();
-}
-[[nodiscard]] DUCTILE_INLINE int island_of(const btCollisionObject& body) {
-    return body.getIslandTag();
-}
-[[nodiscard]] DUCTILE_INLINE int island_of(const btTypedConstraint& constraint) {
-    return island_of(constraint.getRigidBodyA(), constraint.getRigidBodyB());
-}
-[[nodiscard]] DUCTILE_INLINE int island_of(const btPersistentManifold& manifold) {
-    return island_of(*manifold.getBody0(), *manifold.getBody1());
-}
-
 /// One that is switched off, as a broken one is, leaves its island to the user's solver.
 [[nodiscard]] DUCTILE_INLINE bool is_plastic(btTypedConstraint* constraint) {
     return constraint->isEnabled() && as_plastic(*constraint) != nullptr;
-}
-
-[[nodiscard]] DUCTILE_INLINE bool differ(const btCollisionObject& a, const btCollisionObject& b) {
-    return a.getIslandTag() >= 0 && b.getIslandTag() >= 0 && a.getIslandTag() != b.getIslandTag();
-}
-[[nodiscard]] DUCTILE_INLINE bool joins_islands(const btTypedConstraint& constraint) {
-    return constraint.isEnabled() && differ(constraint.getRigidBodyA(), constraint.getRigidBodyB());
-}
-[[nodiscard]] DUCTILE_INLINE bool joins_islands(const btPersistentManifold& manifold) {
-    return differ(*manifold.getBody0(), *manifold.getBody1());
 }
 
 /// Bullet's own members are not public.
@@ -58,6 +36,88 @@ DUCTILE_INLINE void forget_second_direction(btPersistentManifold** manifolds, in
         }
     }
 }
+
+/// While this lives contacts that touch are closed, and there are no others. These have no impulse
+/// then.
+class StruckContacts {
+  public:
+    StruckContacts(btPersistentManifold** manifolds, int count) {
+        for (int i = 0; i < count; ++i) {
+            Struck& struck = struck_.emplace_back();
+            struck.manifold = manifolds[i];
+            struck.count = manifolds[i]->getNumContacts();
+            for (int k = 0; k < struck.count; ++k) {
+                struck.points[std::size_t(k)] = manifolds[i]->getContactPoint(k);
+            }
+            manifolds[i]->setNumContacts(0);
+            for (int k = 0; k < struck.count; ++k) {
+                const btManifoldPoint& point = struck.points[std::size_t(k)];
+                if (!touches(point)) continue;
+                const int here = manifolds[i]->addManifoldPoint(point);
+                manifolds[i]->getContactPoint(here).setDistance(0);
+            }
+        }
+    }
+    ~StruckContacts() {
+        for (Struck& struck : struck_) {
+            int solved = 0;
+            for (int k = 0; k < struck.count; ++k) {
+                btManifoldPoint& point = struck.points[std::size_t(k)];
+                const btScalar distance = point.getDistance();
+                if (touches(point)) {
+                    point = struck.manifold->getContactPoint(solved++);
+                    point.setDistance(distance);
+                } else {
+                    point.m_appliedImpulse = 0;
+                    point.m_appliedImpulseLateral1 = point.m_appliedImpulseLateral2 = 0;
+                }
+            }
+            struck.manifold->setNumContacts(0);
+            for (int k = 0; k < struck.count; ++k) {
+                struck.manifold->addManifoldPoint(struck.points[std::size_t(k)]);
+            }
+        }
+    }
+    StruckContacts(const StruckContacts&) = delete;
+    StruckContacts& operator=(const StruckContacts&) = delete;
+
+  private:
+    struct Struck {
+        btPersistentManifold* manifold = nullptr;
+        int count = 0;
+        std::array<btManifoldPoint, MANIFOLD_CACHE_SIZE> points;
+    };
+    [[nodiscard]] static bool touches(const btManifoldPoint& point) {
+        return double(point.getDistance()) < closed_gap;
+    }
+
+    std::vector<Struck> struck_;
+};
+
+/// While this lives contacts that are open are twice as far apart.
+class HalfwayContacts {
+  public:
+    HalfwayContacts(btPersistentManifold** manifolds, int count)
+        : manifolds_(manifolds), count_(count) {
+        scale(2);
+    }
+    ~HalfwayContacts() { scale(btScalar(0.5)); }
+    HalfwayContacts(const HalfwayContacts&) = delete;
+    HalfwayContacts& operator=(const HalfwayContacts&) = delete;
+
+  private:
+    void scale(btScalar by) {
+        for (int i = 0; i < count_; ++i) {
+            for (int k = 0; k < manifolds_[i]->getNumContacts(); ++k) {
+                btManifoldPoint& point = manifolds_[i]->getContactPoint(k);
+                if (point.getDistance() > 0) point.setDistance(by * point.getDistance());
+            }
+        }
+    }
+
+    btPersistentManifold** manifolds_;
+    int count_;
+};
 
 } // namespace detail
 
@@ -89,6 +149,18 @@ DUCTILE_INLINE FrontSolver::~FrontSolver() {
     btAlignedFree(&usual_);
 }
 
+DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btContactSolverInfo& info,
+                                               btIDebugDraw* drawer, btDispatcher* dispatcher) {
+    const detail::StruckContacts struck(island.manifolds.data(),
+                                        kind_ == TickKind::blow ? int(island.manifolds.size()) : 0);
+    const auto first =
+        std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
+    solver_of(**first)->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
+                                          island.manifolds.data(), int(island.manifolds.size()),
+                                          island.constraints.data(), int(island.constraints.size()),
+                                          info, drawer, dispatcher);
+}
+
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
     int manifold_count, btTypedConstraint** constraints, int constraint_count,
@@ -107,75 +179,24 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
                                                 btIDebugDraw* drawer, btDispatcher* dispatcher) {
     // Bullet flushes an empty group after an island above its batch size
     if (body_count == 0 && manifold_count == 0 && constraint_count == 0) return 0;
+    const detail::HalfwayContacts halfway(manifolds, kind_ == TickKind::part ? manifold_count : 0);
     if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic)) {
         return solve_usual(bodies, body_count, manifolds, manifold_count, constraints,
                            constraint_count, info, drawer, dispatcher);
     }
-    const auto join_islands = [](const auto* item) { return detail::joins_islands(*item); };
-    if (std::any_of(manifolds, manifolds + manifold_count, join_islands) ||
-        std::any_of(constraints, constraints + constraint_count, join_islands)) {
-        // tags of islands that Bullet did not find: it was not asked to split them
-        return solver_of(
-                   **std::find_if(constraints, constraints + constraint_count, detail::is_plastic))
-            ->solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
-                                constraint_count, info, drawer, dispatcher);
-    }
     std::unique_ptr<Room> room = borrow();
-    const auto by_island = [](auto** items, int count, auto& copy) {
-        const auto before = [](const auto* a, const auto* b) {
-            return detail::island_of(*a) < detail::island_of(*b);
-        };
-        if (std::is_sorted(items, items + count, before)) return items;
-        copy.assign(items, items + count);
-        std::stable_sort(copy.begin(), copy.end(), before);
-        return copy.data();
-    };
-    bodies = by_island(bodies, body_count, room->sorted_bodies);
-    manifolds = by_island(manifolds, manifold_count, room->sorted_manifolds);
-    constraints = by_island(constraints, constraint_count, room->sorted_constraints);
-    room->bodies.clear();
-    room->manifolds.clear();
-    room->constraints.clear();
-    int body = 0, manifold = 0, constraint = 0;
-    while (body < body_count || manifold < manifold_count || constraint < constraint_count) {
-        // what begins with the lowest island that is left
-        int island = std::numeric_limits<int>::max();
-        const auto see = [&island](auto** items, int at, int count) {
-            if (at < count) island = std::min(island, detail::island_of(*items[at]));
-        };
-        see(bodies, body, body_count);
-        see(manifolds, manifold, manifold_count);
-        see(constraints, constraint, constraint_count);
-        const auto end_of = [island](auto** items, int at, int count) {
-            while (at < count && detail::island_of(*items[at]) == island) ++at;
-            return at;
-        };
-        const int body_end = end_of(bodies, body, body_count);
-        const int manifold_end = end_of(manifolds, manifold, manifold_count);
-        const int constraint_end = end_of(constraints, constraint, constraint_count);
-        if (island >= 0 && std::any_of(constraints + constraint, constraints + constraint_end,
-                                       detail::is_plastic)) {
-            solver_of(*constraints[constraint])
-                ->solver.solveGroup(bodies + body, body_end - body, manifolds + manifold,
-                                    manifold_end - manifold, constraints + constraint,
-                                    constraint_end - constraint, info, drawer, dispatcher);
-        } else {
-            room->bodies.insert(room->bodies.end(), bodies + body, bodies + body_end);
-            room->manifolds.insert(room->manifolds.end(), manifolds + manifold,
-                                   manifolds + manifold_end);
-            room->constraints.insert(room->constraints.end(), constraints + constraint,
-                                     constraints + constraint_end);
-        }
-        body = body_end;
-        manifold = manifold_end;
-        constraint = constraint_end;
+    room->islands.find(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
+                       detail::is_plastic);
+    for (IslandParts& island : room->islands.chosen()) {
+        solve_plastic(island, info, drawer, dispatcher);
     }
+    IslandParts& others = room->islands.others();
     btScalar residual = 0;
-    if (!room->bodies.empty() || !room->constraints.empty()) {
+    if (!others.bodies.empty() || !others.constraints.empty()) {
         residual =
-            solve_usual(room->bodies.data(), int(room->bodies.size()), room->manifolds.data(),
-                        int(room->manifolds.size()), room->constraints.data(),
-                        int(room->constraints.size()), info, drawer, dispatcher);
+            solve_usual(others.bodies.data(), int(others.bodies.size()), others.manifolds.data(),
+                        int(others.manifolds.size()), others.constraints.data(),
+                        int(others.constraints.size()), info, drawer, dispatcher);
     }
     give_back(std::move(room));
     return residual;

@@ -54,6 +54,12 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
                                   double tick, double erp) override;
     DUCTILE_INLINE void close_rows(const solve::Island& island) override;
 
+    DUCTILE_INLINE void begin_part() override;
+    DUCTILE_INLINE void keep_all() override;
+    DUCTILE_INLINE void put_all_back() override;
+    DUCTILE_INLINE void list_part_rows(std::size_t joint,
+                                       std::vector<PartRow>& rows) const override;
+
     // ---- Bullet's side
 
     /// Bullet's own: called for every constraint when a tick opens.
@@ -82,6 +88,12 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
         nothing,
         tick,     ///< rows were handed out
         hand_back ///< a break was found by the solver: this tick gives its energy back
+    };
+    /// What `keep_all` keeps beside the link.
+    struct Kept {
+        BreakRelease<double> release;
+        Vector6<double> forces = Vector6<double>::Zero();
+        bool told = false;
     };
     static constexpr int no_rows = -1;
     struct Reading; ///< what reading Bullet's own rows takes
@@ -117,9 +129,11 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     btScalar rigid_erp_ = -1;                          ///< negative: the world's
     double dt_ = 0;                    ///< for which the rows' forces act in the open tick
     double tick_share_ = 1;            ///< as a share of the tick
+    bool ahead_ = false;               ///< the bodies are half a step ahead in it
     std::array<std::size_t, 6> order_; ///< axis of each row
     std::unique_ptr<Reading> reading_; ///< where Bullet ever solved the rows
     JointImpulse<double> handed_;      ///< what Open::hand_back gives
+    Kept kept_;
 };
 
 /// A constraint with a joint of a given type.

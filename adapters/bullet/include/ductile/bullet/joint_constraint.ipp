@@ -128,11 +128,12 @@ DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
     tell_keepers_of_step();
     dt_ = force_share_.value * tick;
     tick_share_ = force_share_.value;
+    ahead_ = force_share_.ahead;
     const bool masses = link_.reads_mass();
     const BodyState<double> a = at_start(0, tick, masses), b = at_start(1, tick, masses);
-    link_.teleport(a, b);
+    if (!ahead_) link_.teleport(a, b); // else begin_part has looked
     link_.prepare(a, b, dt_, (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick,
-                  force_share_.midway);
+                  force_share_.midway, ahead_);
     open_ = Open::tick;
 }
 
@@ -163,7 +164,8 @@ DUCTILE_INLINE void JointConstraint::book(bool late) {
     if (was != Open::tick) return;
     const Vector6<double> forces = reaction();
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
-    link_.commit_rows(a, b, forces, dt_, tick_share_);
+    // half of a part's way lies before the rows were prepared
+    link_.commit_rows(a, b, forces, dt_, ahead_ ? 2 * tick_share_ : tick_share_);
     booked_ = true;
 }
 
@@ -180,6 +182,49 @@ DUCTILE_INLINE void JointConstraint::finish(bool in_solver) {
     if (release_.energy > 0) {
         apply(m_rbA, release_.a);
         apply(m_rbB, release_.b);
+    }
+}
+
+// ---- a part of a frame
+
+DUCTILE_INLINE void JointConstraint::begin_part() {
+    settle_late(false);
+    link_.teleport(body_motion(m_rbA), body_motion(m_rbB));
+}
+
+DUCTILE_INLINE void JointConstraint::keep_all() {
+    settle_late(false);
+    keep_life();
+    link_.keep();
+    kept_ = {release_, forces_, told_};
+}
+
+DUCTILE_INLINE void JointConstraint::put_all_back() {
+    open_ = Open::nothing;
+    booked_ = false;
+    put_life_back();
+    link_.put_back();
+    release_ = kept_.release;
+    forces_ = kept_.forces;
+    told_ = kept_.told;
+}
+
+DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,
+                                                    std::vector<PartRow>& rows) const {
+    settle();
+    const double share = is_awake() ? link_.utilisation() : 0;
+    for (const JointAxis axis : link_.axes()) {
+        const auto i = Eigen::Index(index(axis));
+        PartRow& row = rows.emplace_back();
+        row.joint = joint;
+        row.noise = resting_share * link_.absolute_residual();
+        row.least = link_.least_travel();
+        row.elastic = !link_.all_rigid();
+        if (!is_awake()) continue;
+        row.start = link_.start_velocities()[i];
+        row.end = link_.end_velocities()[i];
+        row.share = share;
+        row.strength = link_.strength(axis);
     }
 }
 

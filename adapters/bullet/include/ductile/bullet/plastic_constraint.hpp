@@ -28,12 +28,15 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <array>
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "ductile/bullet/driven_body.hpp"
 #include "ductile/bullet/island_rows.hpp"
 #include "ductile/bullet/joint_view.hpp"
 #include "ductile/bullet/tick_account.hpp"
+#include "ductile/frame/part_row.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/kept_joint.hpp"
@@ -66,6 +69,17 @@ class PlasticConstraint : public btTypedConstraint,
     void require_bodies_in_world() const;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
+    // ---- parts of a frame (world_parts.hpp)
+
+    /// The bodies are about to be moved half a step ahead: what hands did to them is seen now.
+    virtual void begin_part() = 0;
+    /// Keeps all that a tick may change, for one put_all_back or more.
+    virtual void keep_all() = 0;
+    /// Everything is as it was at the last `keep_all`, bit for bit; the bodies are already.
+    virtual void put_all_back() = 0;
+    /// Adds what the last tick did along the plastic axes; `joint`: its number.
+    virtual void list_part_rows(std::size_t joint, std::vector<PartRow>& rows) const = 0;
+
     /// True from add_to to remove_from, whoever else took the constraint out.
     [[nodiscard]] bool in_world() const noexcept { return world_ != nullptr; }
 
@@ -84,6 +98,11 @@ class PlasticConstraint : public btTypedConstraint,
     /// Switches the constraint, and what Bullet was told of its bodies' collisions, off or on.
     void let_go();
     void hold_again();
+    /// Of `keep_all` and `put_all_back`, what all kinds have.
+    void keep_life();
+    void put_life_back();
+    /// Of what a row may be off by at rest, the speed that is as good as rest [-].
+    static constexpr double resting_share = 0.01;
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
     ForceShare force_share_;
@@ -105,6 +124,13 @@ class PlasticConstraint : public btTypedConstraint,
     EndOfTick end_of_tick_{*this};
     std::array<std::unique_ptr<DrivenBody>, 2> driven_; ///< of bodies that are kinematic
     bool parts_bodies_ = false;                         ///< let_go has to be undone by hold_again
+    /// What keep_life keeps.
+    struct KeptLife {
+        std::array<std::unique_ptr<DrivenBody>, 2> driven;
+        btScalar impulse = 0;
+        bool enabled = true;
+    };
+    KeptLife kept_life_;
 };
 
 /// Null for any other constraint.

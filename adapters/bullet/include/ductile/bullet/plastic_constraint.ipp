@@ -142,11 +142,30 @@ DUCTILE_INLINE void PlasticConstraint::hold_again() {
     m_rbB.addConstraintRef(this);
 }
 
+DUCTILE_INLINE void PlasticConstraint::keep_life() {
+    kept_life_.impulse = internalGetAppliedImpulse();
+    kept_life_.enabled = isEnabled();
+    for (const std::size_t side : {0u, 1u}) {
+        const auto& driven = driven_[side];
+        kept_life_.driven[side] =
+            driven != nullptr ? std::make_unique<DrivenBody>(*driven) : nullptr;
+    }
+}
+
+DUCTILE_INLINE void PlasticConstraint::put_life_back() {
+    internalSetAppliedImpulse(kept_life_.impulse);
+    if (kept_life_.enabled && !isEnabled()) hold_again();
+    for (const std::size_t side : {0u, 1u}) {
+        const auto& driven = kept_life_.driven[side];
+        driven_[side] = driven != nullptr ? std::make_unique<DrivenBody>(*driven) : nullptr;
+    }
+}
+
 DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double tick,
                                                              bool with_mass) {
     const btRigidBody& body = this->body(side);
     std::unique_ptr<DrivenBody>& driven = driven_[std::size_t(side)];
-    if (!body.isKinematicObject()) {
+    if (!body.isKinematicObject() || force_share_.ahead) { // else see driven_ways.hpp
         driven.reset();
         return with_mass ? body_state(body) : body_motion(body);
     }

@@ -54,6 +54,12 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
                                   double tick, double erp) override;
     DUCTILE_INLINE void close_rows(const solve::Island& island) override;
 
+    DUCTILE_INLINE void begin_part() override;
+    DUCTILE_INLINE void keep_all() override;
+    DUCTILE_INLINE void put_all_back() override;
+    DUCTILE_INLINE void list_part_rows(std::size_t joint,
+                                       std::vector<PartRow>& rows) const override;
+
     // ---- Bullet's side
 
     void buildJacobian() override { settle(); }
@@ -96,7 +102,14 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     [[nodiscard]] Vector6<double> twist(const BodyState<double>& a,
                                         const BodyState<double>& b) const;
     void prepare();
+    void take_in_hands(double now);
     void hand_back();
+    /// What `keep_all` keeps beside the joint.
+    struct Kept {
+        BreakRelease<double> release;
+        double position = 0, force = 0, unseen_turn = 0;
+        bool restored = false, hinge_enabled = true;
+    };
 
     static constexpr int no_row = -1;
 
@@ -109,10 +122,12 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     double tick_ = 0;               ///< [s]
     double dt_ = 0;                 ///< for which the row's moment acts in it [s]
     bool pending_ = false;
-    bool booked_ = false;   ///< and not finished
-    bool restored_ = false; ///< the next position is measured, not compared
-    double moment_ = 0;     ///< that the island gave it [N m]
-    int row_ = no_row;      ///< in the island that is being solved
+    bool booked_ = false;             ///< and not finished
+    bool restored_ = false;           ///< the next position is measured, not compared
+    double moment_ = 0;               ///< that the island gave it [N m]
+    int row_ = no_row;                ///< in the island that is being solved
+    bool hinge_parts_bodies_ = false; ///< a break let the hinge's bodies collide
+    Kept kept_;
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>

@@ -140,16 +140,66 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     const BodyState<double> a = at_start(0, tick_, false), b = at_start(1, tick_, false);
     axis_ = column(times(a.orientation, to_core(hinge_.getAFrame().getBasis())), 2);
     const double now = measure(a, b, position_);
-    // put elsewhere by hand, which is no deformation
-    const bool by_hand = std::isfinite(now) && !std::exchange(restored_, false) && now != position_;
-    if (by_hand) {
-        joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
-    }
+    if (!force_share_.ahead) take_in_hands(now); // else begin_part did
     keep(now, force_);
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
-    limits_ = joint_.prepare({now, turning(a, b), mass, force_share_.midway}, dt_);
+    limits_ =
+        joint_.prepare({now, turning(a, b), mass, force_share_.midway, force_share_.ahead}, dt_);
     pending_ = true;
+}
+
+/// Put elsewhere by hand, which is no deformation.
+DUCTILE_INLINE void MotorConstraint::take_in_hands(double now) {
+    const bool by_hand = std::isfinite(now) && !std::exchange(restored_, false) && now != position_;
+    if (by_hand) joint_.set_plastic_offset(joint_.plastic_offset() + now - position_);
+    keep(now, force_);
+}
+
+// ---- a part of a frame
+
+DUCTILE_INLINE void MotorConstraint::begin_part() {
+    settle();
+    take_in_hands(measure(body_motion(m_rbA), body_motion(m_rbB), position_));
+}
+
+DUCTILE_INLINE void MotorConstraint::keep_all() {
+    settle();
+    keep_life();
+    joint_.keep();
+    kept_ = {release_, position_, force_, unseen_turn_, restored_, hinge_.isEnabled()};
+}
+
+DUCTILE_INLINE void MotorConstraint::put_all_back() {
+    pending_ = booked_ = false;
+    row_ = no_row;
+    put_life_back();
+    joint_.put_back();
+    release_ = kept_.release;
+    position_ = kept_.position;
+    force_ = kept_.force;
+    unseen_turn_ = kept_.unseen_turn;
+    restored_ = kept_.restored;
+    if (!kept_.hinge_enabled || hinge_.isEnabled()) return;
+    hinge_.setEnabled(true);
+    if (!std::exchange(hinge_parts_bodies_, false)) return;
+    m_rbA.addConstraintRef(&hinge_);
+    m_rbB.addConstraintRef(&hinge_);
+}
+
+DUCTILE_INLINE void MotorConstraint::list_part_rows(std::size_t joint,
+                                                    std::vector<PartRow>& rows) const {
+    settle();
+    PartRow& row = rows.emplace_back();
+    row.joint = joint;
+    row.noise = resting_share * joint_.allowed_residual(0);
+    row.least = joint_.least_travel();
+    row.elastic = !joint_.rigid();
+    if (!acts() || joint_.broken()) return;
+    row.start = joint_.start_velocity();
+    row.end = joint_.velocity();
+    row.strength = joint_.strength(force_ > 0 ? -1 : 1);
+    row.share = row.strength > 0 ? std::abs(force_) / row.strength : 0;
 }
 
 DUCTILE_INLINE void MotorConstraint::settle() const {
@@ -168,8 +218,9 @@ DUCTILE_INLINE void MotorConstraint::book(bool late) {
     const double speed = turning(a, b);
     const double force = row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
     row_ = no_row;
-    const double position = measure(a, b, position_ + speed * tick_);
-    see_turn(speed, tick_, position);
+    const double moved = force_share_.ahead ? tick_ / 2 : tick_; // since the row was prepared
+    const double position = measure(a, b, position_ + speed * moved);
+    see_turn(speed, moved, position);
     joint_.commit({force, speed, position}, dt_);
     keep(position, force);
     booked_ = true;
@@ -179,7 +230,7 @@ DUCTILE_INLINE void MotorConstraint::finish_tick() {
     if (!std::exchange(booked_, false) || !joint_.broken()) return;
     if (at_break_ == AtBreak::disable_joint) {
         hinge_.setEnabled(false);
-        detail::let_collide(hinge_);
+        hinge_parts_bodies_ = detail::let_collide(hinge_);
         detail::let_collide(*this);
     }
     if (joint_.last().release > 0) hand_back();

@@ -25,6 +25,19 @@
 // Of a world with multibodies no ledger is kept, and forces on them are not split: what their
 // solve does to energies that depend on their pose cannot be told from outside.
 //
+// tolerance: a step is a frame, done in as many parts as the tolerance needs (world_parts.hpp):
+//
+//   ductile::bullet::World world(dynamics, {.tolerance = 0.01});
+//   world.add(hinge, "lamp post");
+//   world.step(1.0 / 60);
+//   if (!world.run().believed()) ...                   // frame(), run() say what was left, of whom
+//
+// Forces applied before the frame act in all of it. Motion states are told once, at its end; tick
+// callbacks and actions are called in every part, also of those that are put back. Not beside
+// leapfrog, and not in a btMultiBodyDynamicsWorld. Joints have to be added here or by add_to.
+// Bullet then sorts its pairs (m_deterministicOverlappingPairs), so that a frame that was done
+// again is bit for bit what it would have been.
+//
 // leapfrog: steps of second order (world/leapfrog.hpp). Velocities are then those in the middle of
 // the last step, and so is the joints' own clock. Not for btMultiBodyDynamicsWorld.
 //
@@ -50,11 +63,16 @@
 namespace ductile::bullet {
 
 class FrontHold;
+class WorldParts;
 
 struct WorldParameters {
-    EffortParameters effort{};  ///< what is done where the solver did not converge
-    bool ledger = true;         ///< whether the energy account is kept; not with multibodies
-    bool leapfrog = false;      ///< whether positions are of second order in the step
+    EffortParameters effort{}; ///< what is done where the solver did not converge
+    bool ledger = true;        ///< whether the energy account is kept; not with multibodies
+    bool leapfrog = false;     ///< whether positions are of second order in the step
+    /// Share of the plastic work that a frame may misplace [-]: a step is then done in as many
+    /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
+    double tolerance = 0;
+    int budget = 256;           ///< solves of a frame where `tolerance` > 0, >= 4
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 
@@ -85,6 +103,7 @@ class World final : public SteppedWorld {
     /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
     void share(const ForceShare& how);
     void require_leapfrog() const;
+    void start_frames(const WorldParameters& parameters);
     [[nodiscard]] bool holds_multibodies() const noexcept;
     [[nodiscard]] btMultiBodyDynamicsWorld& world_of_multibodies() const;
 
@@ -94,6 +113,8 @@ class World final : public SteppedWorld {
     DUCTILE_INLINE void do_part(double dt, const ForceShare& how, const Effort& effort) override;
     void hold_forces() override { forces_.hold(world_); }
     void apply_held_forces() override { forces_.apply(); }
+    [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
+    DUCTILE_INLINE void end_frame() override;
     [[nodiscard]] DUCTILE_INLINE int iterations() const override;
     DUCTILE_INLINE void set_iterations(int iterations) override;
     DUCTILE_INLINE void suspect(const void* joint) override;
@@ -104,7 +125,9 @@ class World final : public SteppedWorld {
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<FrontHold> front_; ///< not in a world of multibodies
     std::optional<EnergyMeter> meter_;
+    bool tells_ledger_ = false;
     HeldForces forces_;
+    std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;
     std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's
     int told_ = -1; ///< how many constraints know that forces act for the whole step

@@ -10,6 +10,7 @@
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/precision_check.hpp"
 #include "ductile/bullet/world.hpp"
+#include "ductile/bullet/world_parts.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -45,14 +46,44 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
     }
-    if (parameters.ledger) meter_.emplace(world_);
+    tells_ledger_ = parameters.ledger;
+    if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
     if (parameters.leapfrog) {
         require_leapfrog();
         start_leapfrog();
     }
+    if (parameters.tolerance != 0) start_frames(parameters);
 }
 
+DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
+    const FrameParameters frames{.tolerance = parameters.tolerance, .budget = parameters.budget};
+    frames.validate("World");
+    if (parameters.leapfrog) {
+        throw std::invalid_argument(
+            "World.leapfrog = true: must not be asked for beside tolerance");
+    }
+    if (front_ == nullptr) {
+        throw std::invalid_argument(
+            "World.tolerance: must not be asked of a btMultiBodyDynamicsWorld");
+    }
+    start_in_frames(frames);
+    parts_ = std::make_unique<WorldParts>(
+        world_, *front_, *meter_,
+        [this](const PlasticConstraint& joint) {
+            return supervisor().number(detail::address(joint));
+        },
+        [this](double h) { part_stands(h); });
+}
+
+DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
+    share({.ahead = true});
+    parts_->begin(length);
+    return *parts_;
+}
+DUCTILE_INLINE void World::end_frame() { parts_->end(); }
+
 DUCTILE_INLINE World::~World() {
+    parts_.reset();
     for (PlasticConstraint* joint : sharing_) joint->set_force_share({});
 }
 
@@ -155,7 +186,7 @@ DUCTILE_INLINE bool World::has_body(const void* body) const {
     return false;
 }
 DUCTILE_INLINE const Ledger<double>* World::kept_ledger() const noexcept {
-    return meter_ && !holds_multibodies() ? &meter_->ledger() : nullptr;
+    return tells_ledger_ && !holds_multibodies() ? &meter_->ledger() : nullptr;
 }
 
 } // namespace ductile::bullet

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of closing_contacts.hpp.
+#pragma once
+
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "ductile/bullet/closing_contacts.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+/// Null for what a contact cannot push.
+[[nodiscard]] DUCTILE_INLINE const btRigidBody* pushed(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    const bool moves =
+        body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
+    return moves ? body : nullptr;
+}
+
+[[nodiscard]] DUCTILE_INLINE btVector3 velocity_at(const btCollisionObject& object,
+                                                   const btVector3& point) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    if (body == nullptr) return btVector3(0, 0, 0);
+    return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
+}
+
+/// 1/effective mass along `normal` at `point`, of one of the bodies [1/kg].
+[[nodiscard]] DUCTILE_INLINE double yield_at(const btCollisionObject& object,
+                                             const btVector3& point, const btVector3& normal) {
+    const btRigidBody* body = pushed(object);
+    return body != nullptr ? double(body->computeImpulseDenominator(point, normal)) : 0.0;
+}
+
+/// No point of the body is faster than |v| plus this [m/s].
+[[nodiscard]] DUCTILE_INLINE btScalar turning_speed(const btRigidBody& body) {
+    btVector3 centre;
+    btScalar radius;
+    body.getCollisionShape()->getBoundingSphere(centre, radius);
+    return body.getAngularVelocity().length() * (radius + centre.length());
+}
+
+struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
+    ClosingContacts& found;
+    double touching, apart;
+    ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach)
+        : found(result), touching(touch), apart(open) {
+        m_closestDistanceThreshold = reach;
+    }
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
+                             const btCollisionObjectWrapper* b, int, int) override {
+        const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
+        const btVector3 &on_a = point.getPositionWorldOnA(), &on_b = point.getPositionWorldOnB();
+        const btVector3& normal = point.m_normalWorldOnB;
+        const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
+        const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
+        if (!(speed > 0) || !(yields > 0)) return 0;
+        const double energy = speed * speed / (2 * yields);
+        const double distance = double(point.getDistance());
+        if (distance < closed_gap) {
+            found.strikes = found.strikes || energy > touching;
+        } else if (energy > apart) {
+            found.time = std::min(found.time, (distance + closed_gap / 2) / speed);
+        }
+        return 0;
+    }
+};
+
+} // namespace detail
+
+DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWorld& world, double h,
+                                                           double touching, double apart) {
+    ClosingContacts found;
+    find_islands(world);
+    if (joined_.empty()) return found;
+    list_pairs(world, btScalar(h), std::min(touching, apart));
+    for (const Pair& pair : pairs_) {
+        detail::ClosestPoints points(found, touching, apart, pair.reach);
+        world.contactPairTest(pair.a, pair.b, points);
+    }
+    return found;
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld& world) {
+    joined_.clear();
+    islands_.clear();
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        const btTypedConstraint& constraint = *world.getConstraint(i);
+        if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled()) {
+            continue;
+        }
+        for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
+            if (detail::pushed(*body) == nullptr) continue;
+            joined_.push_back(body);
+            if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
+        }
+    }
+    const auto sort_once = [](auto& items) {
+        std::sort(items.begin(), items.end());
+        items.erase(std::unique(items.begin(), items.end()), items.end());
+    };
+    sort_once(joined_);
+    sort_once(islands_);
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
+    return std::binary_search(joined_.begin(), joined_.end(), &body) ||
+           (body.getIslandTag() >= 0 &&
+            std::binary_search(islands_.begin(), islands_.end(), body.getIslandTag()));
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
+                                                      double least) {
+    const auto& objects = world.getCollisionObjectArray();
+    btScalar fastest = 0;
+    for (int i = 0; i < objects.size(); ++i) {
+        const btRigidBody* body = btRigidBody::upcast(objects[i]);
+        if (body == nullptr || body->isStaticObject() || !body->isActive()) continue;
+        fastest =
+            std::max(fastest, body->getLinearVelocity().length() + detail::turning_speed(*body));
+    }
+    constexpr btScalar margin = btScalar(1e-3);
+    pairs_.clear();
+    struct Near final : btBroadphaseAabbCallback {
+        std::vector<btCollisionObject*> found;
+        bool process(const btBroadphaseProxy* proxy) override {
+            found.push_back(static_cast<btCollisionObject*>(proxy->m_clientObject));
+            return true;
+        }
+    } near;
+    btOverlappingPairCache& cache = *world.getPairCache();
+    for (int i = 0; i < objects.size(); ++i) {
+        btRigidBody* body = btRigidBody::upcast(objects[i]);
+        if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
+            detail::pushed(*body) == nullptr || !is_plastic(*body)) {
+            continue;
+        }
+        const btScalar turning = detail::turning_speed(*body);
+        const btScalar speed = body->getLinearVelocity().length() + turning;
+        const double most = double(speed + fastest);
+        if (!(most * most > 2 * double(body->getInvMass()) * least)) continue;
+        btVector3 low, high;
+        body->getAabb(low, high);
+        const btScalar swept = (speed + fastest) * h + margin;
+        const btVector3 around(swept, swept, swept);
+        near.found.clear();
+        world.getBroadphase()->aabbTest(low - around, high + around, near);
+        for (btCollisionObject* other : near.found) {
+            btRigidBody* mate = btRigidBody::upcast(other);
+            if (other == body || other->getBroadphaseHandle() == nullptr) continue;
+            // both ways only once
+            if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
+                std::less<const btCollisionObject*>()(other, body)) {
+                continue;
+            }
+            const btVector3 away =
+                body->getLinearVelocity() -
+                (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
+            const btScalar closing = away.length() + turning +
+                                     (mate != nullptr ? detail::turning_speed(*mate) : btScalar(0));
+            const double yields =
+                double(body->getInvMass()) +
+                (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
+            if (!(double(closing * closing) > 2 * yields * least)) continue;
+            const btScalar reach = closing * h + margin;
+            btVector3 from, to;
+            other->getCollisionShape()->getAabb(other->getWorldTransform(), from, to);
+            bool meet = true;
+            for (int k = 0; k < 3; ++k) {
+                meet = meet && from[k] - reach <= high[k] && to[k] + reach >= low[k];
+            }
+            if (!meet || !cache.needsBroadphaseCollision(body->getBroadphaseHandle(),
+                                                         other->getBroadphaseHandle())) {
+                continue;
+            }
+            if (!world.getDispatcher()->needsCollision(body, other)) continue;
+            pairs_.push_back({body, other, reach});
+        }
+    }
+}
+
+} // namespace ductile::bullet

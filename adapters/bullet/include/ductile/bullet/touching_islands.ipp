@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of touching_islands.hpp.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "ductile/bullet/touching_islands.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_count,
+                                          btPersistentManifold** manifolds, int manifold_count,
+                                          btTypedConstraint** constraints, int constraint_count,
+                                          Choice choice) {
+    parent_.resize(std::size_t(body_count));
+    for (int i = 0; i < body_count; ++i) {
+        parent_[std::size_t(i)] = i;
+        bodies[i]->setCompanionId(bodies[i]->isStaticOrKinematicObject() ? nowhere : i);
+    }
+    for (int i = 0; i < manifold_count; ++i) {
+        if (manifolds[i]->getNumContacts() == 0) continue;
+        unite(*manifolds[i]->getBody0(), *manifolds[i]->getBody1());
+    }
+    for (int i = 0; i < constraint_count; ++i) {
+        if (!constraints[i]->isEnabled()) continue;
+        unite(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB());
+    }
+    island_.assign(std::size_t(body_count), nowhere);
+    count_ = 0;
+    others_.clear();
+    for (int i = 0; i < constraint_count; ++i) {
+        if (!choice(constraints[i])) continue;
+        const int at = island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB());
+        if (at == nowhere || island_[std::size_t(at)] != nowhere) continue;
+        island_[std::size_t(at)] = int(count_++);
+        if (count_ > islands_.size()) islands_.emplace_back();
+        islands_[count_ - 1].clear();
+    }
+    for (int i = 0; i < body_count; ++i) {
+        const int id = bodies[i]->getCompanionId();
+        parts_of(id == nowhere ? nowhere : root(id)).bodies.push_back(bodies[i]);
+    }
+    for (int i = 0; i < manifold_count; ++i) {
+        parts_of(island_of(*manifolds[i]->getBody0(), *manifolds[i]->getBody1()))
+            .manifolds.push_back(manifolds[i]);
+    }
+    for (int i = 0; i < constraint_count; ++i) {
+        parts_of(island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB()))
+            .constraints.push_back(constraints[i]);
+    }
+    // as solvers begin with
+    for (int i = 0; i < body_count; ++i) bodies[i]->setCompanionId(nowhere);
+    const auto place = [](const btCollisionObject& a, const btCollisionObject& b) {
+        return std::pair(a.getWorldArrayIndex(), b.getWorldArrayIndex());
+    };
+    for (IslandParts& island : chosen()) {
+        std::sort(island.bodies.begin(), island.bodies.end(),
+                  [](const btCollisionObject* x, const btCollisionObject* y) {
+                      return x->getWorldArrayIndex() < y->getWorldArrayIndex();
+                  });
+        std::stable_sort(island.manifolds.begin(), island.manifolds.end(),
+                         [&place](const btPersistentManifold* x, const btPersistentManifold* y) {
+                             return place(*x->getBody0(), *x->getBody1()) <
+                                    place(*y->getBody0(), *y->getBody1());
+                         });
+        std::stable_sort(island.constraints.begin(), island.constraints.end(),
+                         [&place](const btTypedConstraint* x, const btTypedConstraint* y) {
+                             return place(x->getRigidBodyA(), x->getRigidBodyB()) <
+                                    place(y->getRigidBodyA(), y->getRigidBodyB());
+                         });
+    }
+}
+
+DUCTILE_INLINE int TouchingIslands::root(int body) noexcept {
+    while (parent_[std::size_t(body)] != body) {
+        int& above = parent_[std::size_t(body)];
+        above = parent_[std::size_t(above)];
+        body = above;
+    }
+    return body;
+}
+
+DUCTILE_INLINE int TouchingIslands::island_of(const btCollisionObject& a,
+                                              const btCollisionObject& b) noexcept {
+    const btCollisionObject& held = a.isStaticOrKinematicObject() ? b : a;
+    const int id = held.isStaticOrKinematicObject() ? nowhere : held.getCompanionId();
+    return id < 0 || id >= int(parent_.size()) ? nowhere : root(id);
+}
+
+DUCTILE_INLINE void TouchingIslands::unite(const btCollisionObject& a,
+                                           const btCollisionObject& b) noexcept {
+    if (a.isStaticOrKinematicObject() || b.isStaticOrKinematicObject()) return;
+    if (a.getCompanionId() < 0 || b.getCompanionId() < 0) return;
+    const int of_a = root(a.getCompanionId()), of_b = root(b.getCompanionId());
+    parent_[std::size_t(std::max(of_a, of_b))] = std::min(of_a, of_b);
+}
+
+DUCTILE_INLINE IslandParts& TouchingIslands::parts_of(int root) noexcept {
+    const int island = root == nowhere ? nowhere : island_[std::size_t(root)];
+    return island == nowhere ? others_ : islands_[std::size_t(island)];
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// A Bullet world as a frame asks for it (frame/part_engine.hpp): parts, what they told, and the
+// world as it was before them.
+//
+//   part    half a step ahead (half_ahead.hpp), a tick of h, the rest of the way within it
+//   blow    a tick of a nanosecond in which contacts of islands with plastic joints that touch are
+//           closed and all others open (front_solver.hpp); nothing is pushed apart
+//   ERP     what a part removes of the error of rigid rows and of overlap: the world's share, or
+//           less where the part is short, h/5 ms
+//
+// A share of each part would throw joints about: parts may be as short as 0.1 µs.
+//
+// User's forces act in every part. Motion states are told once, at the end of the frame. Tick
+// callbacks and actions are called for each tick, also of parts that are put back, and have to
+// allow that. Kinematic bodies go their way over the frame (driven_ways.hpp).
+//
+// Not thread-safe.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+
+#include <functional>
+
+#include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/energy_meter.hpp"
+#include "ductile/bullet/half_ahead.hpp"
+#include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/world_snapshot.hpp"
+#include "ductile/frame/part_engine.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+class FrontHold;
+
+class WorldParts final : public PartEngine {
+  public:
+    /// Number of a plastic joint as reports know it.
+    using Number = std::function<std::size_t(const PlasticConstraint&)>;
+    /// A part of this length stands [s].
+    using Accept = std::function<void(double)>;
+
+    WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter, Number number,
+               Accept accept);
+    ~WorldParts();
+    WorldParts(const WorldParts&) = delete;
+    WorldParts& operator=(const WorldParts&) = delete;
+
+    /// A frame of `length` [s] begins, with the forces that are applied for it.
+    void begin(double length);
+    /// It is over.
+    void end();
+
+    DUCTILE_INLINE void save() override;
+    DUCTILE_INLINE void put_back() override;
+    DUCTILE_INLINE const PartMotion& part(double h) override;
+    DUCTILE_INLINE const PartMotion& blow() override;
+    DUCTILE_INLINE void accept(double h) override;
+    [[nodiscard]] DUCTILE_INLINE ClosingContacts closing(double h, double touching,
+                                                         double apart) override;
+    [[nodiscard]] DUCTILE_INLINE double kinetic_energy() const override;
+
+  private:
+    class Settings;
+    void tick(double h, bool ahead);
+    const PartMotion& tell();
+
+    btDiscreteDynamicsWorld& world_;
+    FrontHold& front_;
+    EnergyMeter& meter_;
+    Number number_;
+    Accept accept_;
+    HalfAhead half_ahead_;
+    DrivenWays ways_;
+    double time_ = 0, kept_time_ = 0; ///< since the frame's begin [s]
+    HeldForces forces_;
+    WorldSnapshot snapshot_;
+    ClosingContactsFinder closing_;
+    PartMotion motion_;
+    bool forces_act_ = false; ///< they are applied for the coming tick
+    bool pairs_were_sorted_;  ///< the user's setting
+};
+
+} // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/world_parts.ipp"
+#endif

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of world_snapshot.hpp.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/world_snapshot.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE bool WorldSnapshot::Manifold::is_before(const Manifold& other) const {
+    const std::less<const btCollisionObject*> before;
+    if (a != other.a) return before(a, other.a);
+    if (b != other.b) return before(b, other.b);
+    return order < other.order;
+}
+
+DUCTILE_INLINE void WorldSnapshot::take(btDiscreteDynamicsWorld& world,
+                                        btConstraintSolver& solver) {
+    bodies_.clear();
+    const auto& objects = world.getCollisionObjectArray();
+    for (int i = 0; i < objects.size(); ++i) {
+        btRigidBody* body = btRigidBody::upcast(objects[i]);
+        if (body == nullptr || body->isStaticObject()) continue;
+        bodies_.push_back(
+            {body, body->getWorldTransform(), body->getInterpolationWorldTransform(),
+             body->getLinearVelocity(), body->getAngularVelocity(),
+             body->getInterpolationLinearVelocity(), body->getInterpolationAngularVelocity(),
+             unweighted(body->getTotalForce(), body->getLinearFactor()),
+             unweighted(body->getTotalTorque(), body->getAngularFactor()),
+             body->getDeactivationTime(), body->getHitFraction(), body->getActivationState(),
+             body->getIslandTag(), body->getCompanionId()});
+    }
+    take_manifolds(*world.getDispatcher());
+    constraints_.clear();
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        btTypedConstraint* constraint = world.getConstraint(i);
+        if (PlasticConstraint* plastic = as_plastic(*constraint)) plastic->keep_all();
+        constraints_.push_back(
+            {constraint, constraint->internalGetAppliedImpulse(), constraint->isEnabled()});
+    }
+    const auto* sweeps = dynamic_cast<btSequentialImpulseConstraintSolver*>(&solver);
+    if (sweeps != nullptr) seed_ = sweeps->getRandSeed();
+}
+
+DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
+                                            btConstraintSolver& solver) {
+    for (const Body& kept : bodies_) {
+        btRigidBody& body = *kept.body;
+        body.setWorldTransform(kept.transform);
+        body.setLinearVelocity(kept.velocity);
+        body.setAngularVelocity(kept.spin);
+        body.updateInertiaTensor();
+        body.setInterpolationWorldTransform(kept.interpolated);
+        body.setInterpolationLinearVelocity(kept.interpolated_velocity);
+        body.setInterpolationAngularVelocity(kept.interpolated_spin);
+        body.clearForces();
+        body.applyCentralForce(kept.force);
+        body.applyTorque(kept.torque);
+        body.forceActivationState(kept.activation);
+        body.setDeactivationTime(kept.deactivation_time);
+        body.setHitFraction(kept.hit_fraction);
+        body.setIslandTag(kept.island);
+        body.setCompanionId(kept.companion);
+    }
+    if (!write_manifolds(*world.getDispatcher())) {
+        world.performDiscreteCollisionDetection();
+        (void)write_manifolds(*world.getDispatcher());
+    }
+    for (const Constraint& kept : constraints_) {
+        if (PlasticConstraint* plastic = as_plastic(*kept.constraint)) {
+            plastic->put_all_back();
+            continue;
+        }
+        kept.constraint->internalSetAppliedImpulse(kept.impulse);
+        kept.constraint->setEnabled(kept.enabled);
+    }
+    auto* sweeps = dynamic_cast<btSequentialImpulseConstraintSolver*>(&solver);
+    if (sweeps != nullptr) sweeps->setRandSeed(seed_);
+}
+
+DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher,
+                                                  std::vector<Manifold>& manifolds,
+                                                  std::vector<btPersistentManifold*>& in_order) {
+    manifolds.clear();
+    in_order.clear();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
+        manifolds.push_back({manifold->getBody0(), manifold->getBody1(), i});
+        in_order.push_back(manifold);
+    }
+    const auto before = [](const Manifold& x, const Manifold& y) { return x.is_before(y); };
+    std::sort(manifolds.begin(), manifolds.end(), before);
+}
+
+DUCTILE_INLINE void WorldSnapshot::take_manifolds(btDispatcher& dispatcher) {
+    list_manifolds(dispatcher, manifolds_, listed_);
+    points_.clear();
+    for (Manifold& kept : manifolds_) {
+        const btPersistentManifold& manifold = *listed_[std::size_t(kept.order)];
+        kept.first = points_.size();
+        kept.count = manifold.getNumContacts();
+        for (int k = 0; k < kept.count; ++k) points_.push_back(manifold.getContactPoint(k));
+    }
+}
+
+DUCTILE_INLINE bool WorldSnapshot::write_manifolds(btDispatcher& dispatcher) {
+    list_manifolds(dispatcher, now_, listed_);
+    auto kept = manifolds_.cbegin();
+    const std::less<const btCollisionObject*> before;
+    bool all = true;
+    for (const Manifold& here : now_) {
+        btPersistentManifold& manifold = *listed_[std::size_t(here.order)];
+        const auto gone = [&] {
+            return before(kept->a, here.a) || (kept->a == here.a && before(kept->b, here.b));
+        };
+        for (; kept != manifolds_.cend() && gone(); ++kept) all = all && kept->count == 0;
+        // its points are overwritten: what a user keeps with a point has to outlive this
+        manifold.setNumContacts(0);
+        if (kept == manifolds_.cend() || kept->a != here.a || kept->b != here.b) continue;
+        for (int k = 0; k < kept->count; ++k) {
+            manifold.addManifoldPoint(points_[kept->first + std::size_t(k)]);
+        }
+        ++kept;
+    }
+    for (; kept != manifolds_.cend(); ++kept) all = all && kept->count == 0;
+    return all;
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// The course of a step of any_link.hpp: templates, seen everywhere.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "ductile/joint/any_link.hpp"
+
+namespace ductile {
+
+template <std::floating_point S>
+void AnyLink<S>::start(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+    pose_.look(a, b);
+    pose_.set_rest(Matrix3<S>::Identity());
+    const Vector6<S> q = strain();
+    set_offset(q);
+    turn_rest(angular(q));
+}
+
+template <std::floating_point S>
+void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept {
+    if (pose_.is_now(a, b)) return;
+    const bool was_somewhere = pose_.finite();
+    const Vector6<S> before = strain();
+    pose_.look(a, b);
+    if (!was_somewhere || !pose_.finite()) return;
+    Vector6<S> moved = strain(), rest = offset();
+    for (int i = 0; i < 6; ++i) {
+        moved[i] = plastic_[std::size_t(i)] ? moved[i] - before[i] : S(0);
+        rest[i] += moved[i];
+    }
+    const Vector3<S> kept = difference(pose_.elastic_rotation(), angular(moved));
+    set_offset(rest);
+    if (!is_zero(angular(moved))) {
+        pose_.set_rest(turned_by<S>(scaled(-1, kept), pose_.orientation()));
+    }
+}
+
+template <std::floating_point S>
+const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
+                                                       S dt, S rate, bool midway,
+                                                       bool ahead) noexcept {
+    pose_.look(a, b);
+    on_surface_ = false;
+    const Vector6<S> error = strain();
+    sound_ = pose_.finite();
+    const bool whole = !broken() && sound_;
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
+        if (!whole) limits_[i] = {.lower = 0, .upper = 0};
+    }
+    if (!sound_) return limits_;
+    if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
+    start_ = pose_.twist(a, b);
+    prepare_joint(error, a, b, dt, midway, ahead);
+    return limits_;
+}
+
+template <std::floating_point S>
+const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
+                                  const JointWrench<S>& wrench, S dt, S share) noexcept {
+    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt, share);
+}
+
+template <std::floating_point S>
+const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>& b,
+                                       const Vector6<S>& forces, S dt, S share) noexcept {
+    // velocities belong to the rows that were solved, positions to where the bodies are now
+    const Vector6<S> velocity = pose_.twist(a, b);
+    end_ = velocity;
+    const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
+    certify_rigid_rows(a, velocity);
+    unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
+    pose_.look(a, b);
+    if (!broken() && !(sound && pose_.finite())) {
+        unseen_turn_ = 0;
+        rigid_residual_ = std::numeric_limits<S>::infinity();
+        rigid_unsolved_ = true;
+        leave_unbooked();
+        return last();
+    }
+    force_ = forces;
+    commit_joint(velocity, a, b, dt);
+    return last();
+}
+
+template <std::floating_point S>
+BreakRelease<S> AnyLink<S>::release(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
+    if (!(last().release > 0)) return {};
+    return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
+                         pose_.twist_in_world(a, b), last().release);
+}
+
+template <std::floating_point S>
+JointImpulse<S> AnyLink<S>::release_impulse(const BodyState<S>& a,
+                                            const BodyState<S>& b) const noexcept {
+    if (!(last().release > 0)) return {};
+    return ductile::release_impulse(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
+                                    pose_.twist_in_world(a, b), last().release);
+}
+
+template <std::floating_point S>
+inline Vector6<S> AnyLink<S>::strain() const noexcept {
+    Vector6<S> result = twist_of(pose_.displacement(), pose_.elastic_rotation());
+    const Vector6<S> rest = offset();
+    for (int i = 0; i < 3; ++i) result[i] -= rest[i];
+    return result;
+}
+
+template <std::floating_point S>
+inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
+                                           const Vector6<S>& velocity) noexcept {
+    std::array<S, 2> worst{}; // of translations and rotations
+    for (std::size_t i = 0; i < limits_.size(); ++i) {
+        if (plastic_[i]) continue;
+        const S residual = std::abs(velocity[Eigen::Index(i)] - limits_[i].bias);
+        worst[i / 3] = worse(worst[i / 3], residual);
+    }
+    rigid_residual_ = worse(worst[0], worst[1]);
+    const Allowed& allow = allowed_;
+    const auto within = [&](S residual, S speed) {
+        return residual <= allow.absolute_residual + allow.relative_residual * speed;
+    };
+    rigid_unsolved_ = !(rigid_residual_ <= allow.absolute_residual) &&
+                      !(within(worst[0], pose_.speed_of_a(a)) && within(worst[1], norm(a.spin)));
+}
+
+template <std::floating_point S>
+inline void AnyLink<S>::turn_rest(const Vector3<S>& flow) noexcept {
+    Vector3<S> turn = Vector3<S>::Zero();
+    for (int i = 0; i < 3; ++i) {
+        if (plastic_[std::size_t(3 + i)]) turn[i] = flow[i];
+    }
+    if (several_turn_) {
+        const Vector3<S> back = difference(turn, pose_.elastic_rotation());
+        pose_.set_rest(turned_by<S>(back, pose_.orientation()));
+    } else {
+        pose_.set_rest(is_zero(turn) ? pose_.rest() : turned_by<S>(turn, pose_.rest()));
+    }
+}
+
+} // namespace ductile

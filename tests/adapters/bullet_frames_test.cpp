@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames with a tolerance in Bullet, on problems with known answers: World({.tolerance = 0.01}).
+#include <btBulletDynamicsCommon.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/world_parts.hpp"
+#include "support/throws.hpp"
+
+namespace {
+
+using namespace ductile;
+using bullet::World;
+using bullet::WorldParameters;
+using ductile::test::message_of;
+using Law = OneAxisJoint<Perfect<double>>;
+using Hinge = bullet::PlasticHinge<Law>;
+using Slider = bullet::PlasticSlider<Law>;
+
+constexpr bool rough = sizeof(btScalar) == sizeof(float);
+constexpr double all_frames[] = {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30};
+constexpr double tolerance = 0.01;
+
+[[nodiscard]] Law law(double strength, double limit = 1e9,
+                      double stiffness = std::numeric_limits<double>::infinity()) {
+    return Law(Perfect<double>({.strength = strength}), TravelLimit<double>({.limit = limit}),
+               {.stiffness = stiffness});
+}
+
+/// A world with what a test puts into it.
+struct Rig {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+    std::vector<std::unique_ptr<btTypedConstraint>> guides;
+    std::unique_ptr<World> world;
+
+    explicit Rig(const WorldParameters& parameters = {.tolerance = tolerance, .warn = {}}) {
+        engine.setGravity(btVector3(0, 0, 0));
+        // what overlaps by what a tick leaves is not thrown apart
+        engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
+        world = std::make_unique<World>(engine, parameters);
+    }
+    ~Rig() {
+        world.reset();
+        for (auto& guide : guides) engine.removeConstraint(guide.get());
+        for (auto& body : bodies) engine.removeRigidBody(body.get());
+    }
+    Rig(const Rig&) = delete;
+    Rig& operator=(const Rig&) = delete;
+
+    /// `group` 0: it meets nothing.
+    btRigidBody& body(double mass, const btVector3& inertia, const btVector3& at,
+                      std::unique_ptr<btCollisionShape> shape = nullptr, int group = 0,
+                      int mask = 0) {
+        if (shape == nullptr) shape = std::make_unique<btSphereShape>(btScalar(0.1));
+        shapes.push_back(std::move(shape));
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, shapes.back().get(),
+                                                      inertia);
+        info.m_friction = 0;
+        info.m_startWorldTransform.setIdentity();
+        info.m_startWorldTransform.setOrigin(at);
+        bodies.push_back(std::make_unique<btRigidBody>(info));
+        bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+        engine.addRigidBody(bodies.back().get(), group, mask);
+        return *bodies.back();
+    }
+    /// Frames until `duration` [s] or more is over.
+    void run(double duration, double frame) {
+        while (world->time() < duration - 1e-9) world->step(frame);
+    }
+};
+
+[[nodiscard]] btTransform at(const btVector3& origin) {
+    btTransform frame;
+    frame.setIdentity();
+    frame.setOrigin(origin);
+    return frame;
+}
+/// z of the frame along x or y.
+[[nodiscard]] btTransform along(const btVector3& axis, const btVector3& origin = {0, 0, 0}) {
+    btTransform frame = at(origin);
+    const btVector3 z(0, 0, 1);
+    frame.setRotation(btQuaternion(z.cross(axis), btScalar(std::numbers::pi / 2)));
+    return frame;
+}
+[[nodiscard]] std::unique_ptr<btCollisionShape> box(double x, double y, double z) {
+    auto shape = std::make_unique<btBoxShape>(btVector3(btScalar(x), btScalar(y), btScalar(z)));
+    shape->setMargin(btScalar(1e-3));
+    return shape;
+}
+
+} // namespace
+
+TEST_CASE("Frames: a rotor stops where it should, its energy in the hinge", "[frame]") {
+    constexpr double inertia = 2, spin = 7, strength = 40; // 49 J, 1.225 rad, 0.35 s
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& rotor = rig.body(1, btVector3(2, 2, 2), {0, 0, 0});
+        rotor.setAngularVelocity({0, 0, btScalar(spin)});
+        Hinge hinge(rotor, at({0, 0, 0}), law(strength));
+        rig.world->add(hinge);
+        rig.run(0.5, frame);
+        const double energy = inertia * spin * spin / 2;
+        CHECK(hinge.absorbed_energy() == Approx(energy).epsilon(rough ? 1e-4 : 1e-9));
+        CHECK(hinge.rotation() == Approx(energy / strength).epsilon(rough ? 1e-3 : 1e-6));
+        CHECK(std::abs(double(rotor.getAngularVelocity().z())) < (rough ? 1e-4 : 1e-9));
+        CHECK(rig.world->run().believed());
+        CHECK(std::abs(rig.world->ledger().unexplained()) < (rough ? 1e-3 : 1e-9) * energy);
+        rig.world->remove(hinge);
+    }
+}
+
+TEST_CASE("Frames: a hinge breaks with the energy of its travel", "[frame]") {
+    constexpr double inertia = 2, spin = 7, strength = 40, limit = 0.4; // takes 16 of 49 J
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& rotor = rig.body(1, btVector3(2, 2, 2), {0, 0, 0});
+        rotor.setAngularVelocity({0, 0, btScalar(spin)});
+        Hinge hinge(rotor, at({0, 0, 0}), law(strength, limit));
+        int broke = 0, yielded = 0;
+        rig.world->add(hinge);
+        rig.world->on_event([&](const auto& event) {
+            broke += event.kind == EventKind::broke;
+            yielded += event.kind == EventKind::yielded;
+        });
+        rig.run(0.2, frame);
+        CHECK(hinge.broken());
+        CHECK(broke == 1); // once, however often a part was done
+        CHECK(yielded == 1);
+        CHECK(hinge.absorbed_energy() == Approx(strength * limit).epsilon(rough ? 1e-4 : 1e-9));
+        const double left = std::sqrt(spin * spin - 2 * strength * limit / inertia);
+        CHECK(double(rotor.getAngularVelocity().z()) == Approx(left).epsilon(rough ? 1e-4 : 1e-8));
+    }
+}
+
+TEST_CASE("Frames: an elastic row keeps its energy at any stiffness and frame", "[frame]") {
+    constexpr double mass = 10, speed = 2, strength = 1e7; // never yields
+    for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            btRigidBody& body = rig.body(mass, btVector3(1, 1, 1), {0, 0, 0});
+            body.setLinearVelocity({btScalar(speed), 0, 0});
+            Slider slider(body, along({1, 0, 0}), law(strength, 1e9, stiffness));
+            rig.world->add(slider);
+            const double energy = mass * speed * speed / 2;
+            for (int i = 0; i < 100; ++i) {
+                rig.world->step(frame);
+                const double v = double(body.getLinearVelocity().x());
+                const double now = mass * v * v / 2 + slider.stored_energy();
+                REQUIRE(now == Approx(energy).epsilon(rough ? 1e-3 : 1e-9));
+            }
+            rig.world->remove(slider);
+        }
+    }
+}
+
+TEST_CASE("Frames: an elastic-plastic row under a sudden load peaks where it should", "[frame]") {
+    // P04: a load of 0.75 of the strength at once: yields, peaks at
+    // q = q_y + m u²/(2 (R - F)) with m u²/2 = F q_y - k q_y²/2
+    constexpr double mass = 1000, strength = 1e4, load = 0.75 * strength;
+    for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            btRigidBody& body = rig.body(mass, btVector3(1, 1, 1), {0, 0, 0});
+            Slider slider(body, along({1, 0, 0}), law(strength, 1e9, stiffness));
+            rig.world->add(slider);
+            const double yield = strength / stiffness;
+            const double flow =
+                (load * yield - strength * yield / 2) / (strength - load); // beyond yield
+            const double period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);
+            while (rig.world->time() < std::max(period, 2 * frame)) {
+                body.applyCentralForce({btScalar(load), 0, 0});
+                rig.world->step(frame);
+            }
+            CHECK(slider.plastic_travel() == Approx(flow).epsilon(rough ? 0.03 : 0.02));
+            CHECK(slider.absorbed_energy() == Approx(strength * flow).epsilon(0.02));
+            CHECK(rig.world->run().believed());
+            rig.world->remove(slider);
+        }
+    }
+}
+
+TEST_CASE("Frames: a mass dropped on a crushing head, by Bullet's own contact", "[frame]") {
+    constexpr double mass = 500, head_mass = 50, height = 2, strength = 30e3, g = 9.81;
+    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
+    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.engine.setGravity({0, btScalar(-g), 0});
+        btRigidBody& head =
+            rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2);
+        rig.body(mass, btVector3(50, 50, 50), {0, btScalar(0.2 + height), 0}, box(0.4, 0.1, 0.4), 2,
+                 1);
+        Slider slider(head, along({0, 1, 0}), law(strength));
+        rig.world->add(slider);
+        rig.run(1.2, frame);
+        CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(rough ? 0.01 : 2e-3));
+        CHECK(-double(head.getCenterOfMassPosition().y()) ==
+              Approx(crush).epsilon(rough ? 0.02 : 5e-3));
+        CHECK(rig.world->run().believed());
+        rig.world->remove(slider);
+    }
+}
+
+TEST_CASE("Frames: a vehicle against a lamp post, by Bullet's own contact", "[frame]") {
+    // bench/scenes/lamp_post.hpp has the closed form: M θ = E₁ + m_p g (L/2)(1 - cos θ)
+    constexpr double vehicle = 1000, speed = 10, bumper = 0.6, post = 60, length = 5;
+    constexpr double moment = 25e3, g = 9.81;
+    constexpr double inertia = post * length * length / 3;
+    constexpr double both = vehicle * bumper * bumper + inertia;
+    constexpr double after = vehicle * vehicle * speed * speed * bumper * bumper / (2 * both);
+    double angle = after / moment;
+    for (int i = 0; i < 100; ++i) {
+        angle = (after + post * g * length / 2 * (1 - std::cos(angle))) / moment;
+    }
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.engine.setGravity({0, btScalar(-g), 0});
+        constexpr double half = 0.01;
+        btRigidBody& rod = rig.body(post, btVector3(125, 1, 125), {0, btScalar(length / 2), 0},
+                                    box(half, length / 2, 0.1), 1, 2);
+        btRigidBody& car = rig.body(vehicle, btVector3(100, 100, 100),
+                                    {btScalar(-0.3 - half - 0.02), btScalar(bumper), 0},
+                                    std::make_unique<btSphereShape>(btScalar(0.02)), 2, 1);
+        car.setLinearVelocity({btScalar(speed), 0, 0});
+        car.setGravity({0, 0, 0});
+        auto guide = std::make_unique<btGeneric6DofSpring2Constraint>(
+            btTypedConstraint::getFixedBody(), car, at(car.getCenterOfMassPosition()),
+            at({0, 0, 0}));
+        guide->setLimit(0, 1, 0); // free along x
+        for (int k = 1; k < 6; ++k) guide->setLimit(k, 0, 0);
+        rig.engine.addConstraint(guide.get(), true);
+        rig.guides.push_back(std::move(guide));
+        Hinge hinge(rod, at({0, btScalar(-length / 2), 0}), law(moment));
+        rig.world->add(hinge);
+        rig.run(0.6, frame);
+        CHECK(hinge.plastic_rotation() == Approx(angle).epsilon(rough ? 0.02 : 0.01));
+        CHECK(hinge.absorbed_energy() == Approx(moment * angle).epsilon(rough ? 0.02 : 0.01));
+        CHECK(rig.world->run().believed());
+        rig.world->remove(hinge);
+    }
+}
+
+TEST_CASE("Frames: balls on a post of five hinges take the same at any frame", "[frame]") {
+    // plastic work at frames of 1 ms [J]
+    struct Case {
+        int balls;
+        double speed, work;
+    };
+    for (const Case& scene :
+         {Case{1, 1, 46.391}, Case{1, 2, 185.41}, Case{1, 5, 1122.5}, Case{2, 1, 87.109}}) {
+        for (const double frame : all_frames) {
+            CAPTURE(scene.balls, scene.speed, frame);
+            Rig rig;
+            std::vector<std::unique_ptr<Hinge>> hinges;
+            for (int i = 0; i < 5; ++i) {
+                auto shape = std::make_unique<btBoxShape>(
+                    btVector3(btScalar(0.05), btScalar(0.2), btScalar(0.05)));
+                btRigidBody& piece =
+                    rig.body(12, btVector3(btScalar(0.482), btScalar(0.00964), btScalar(0.482)),
+                             {0, btScalar(0.4 * i + 0.2), 0}, std::move(shape), 2, 4);
+                const btTransform foot = at({0, btScalar(-0.2), 0});
+                const btTransform head = at({0, btScalar(0.2), 0});
+                hinges.push_back(i == 0 ? std::make_unique<Hinge>(piece, foot, law(4000))
+                                        : std::make_unique<Hinge>(piece,
+                                                                  *rig.bodies[std::size_t(i - 1)],
+                                                                  foot, head, law(4000)));
+                rig.world->add(*hinges.back());
+            }
+            for (int i = 0; i < scene.balls; ++i) {
+                btRigidBody& ball =
+                    rig.body(100, btVector3(btScalar(1.6), btScalar(1.6), btScalar(1.6)),
+                             {btScalar(-0.3 - 0.05 * i), btScalar(1.95 - 0.9 * i), 0},
+                             std::make_unique<btSphereShape>(btScalar(0.2)), 4, 2);
+                ball.setLinearVelocity({btScalar(scene.speed), 0, 0});
+            }
+            const double energy = 50 * scene.speed * scene.speed * scene.balls;
+            double most = 0;
+            while (rig.world->time() < 0.6 - 1e-9) {
+                rig.world->step(frame);
+                most = std::max(most, rig.world->ledger().held().kinetic);
+            }
+            double work = 0;
+            for (auto& hinge : hinges) work += hinge->absorbed_energy();
+            CHECK(work == Approx(scene.work).epsilon(rough ? 0.01 : 1e-3));
+            CHECK(most <= energy * (1 + (rough ? 1e-5 : 1e-9)));
+            CHECK(rig.world->run().believed());
+            for (auto& hinge : hinges) rig.world->remove(*hinge);
+        }
+    }
+}
+
+TEST_CASE("Frames: a blow closes what touches, and nothing else", "[frame]") {
+    // onto a head of 1 kg on a strong row: one ball a hair above it, one a millimetre
+    for (const double gap : {bullet::closed_gap / 2, 1e-3}) {
+        CAPTURE(gap);
+        btDefaultCollisionConfiguration configuration;
+        btCollisionDispatcher dispatcher(&configuration);
+        btDbvtBroadphase broadphase;
+        btSequentialImpulseConstraintSolver solver;
+        btDiscreteDynamicsWorld engine(&dispatcher, &broadphase, &solver, &configuration);
+        engine.setGravity(btVector3(0, 0, 0));
+        btBoxShape block(btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5)));
+        btSphereShape round(btScalar(0.5));
+        const auto body_of = [&](btCollisionShape& shape, btScalar mass, const btVector3& at) {
+            btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape,
+                                                          btVector3(1, 1, 1));
+            info.m_startWorldTransform.setIdentity();
+            info.m_startWorldTransform.setOrigin(at);
+            auto body = std::make_unique<btRigidBody>(info);
+            engine.addRigidBody(body.get());
+            return body;
+        };
+        // about the origin, where a float tells a micrometre
+        auto head = body_of(block, 1, {0, btScalar(-0.5), 0}),
+             top = body_of(round, 3, {0, btScalar(0.5 + gap), 0});
+        top->setLinearVelocity({0, -1, 0});
+        Slider slider(*head, along({0, 1, 0}), law(1e-3));
+        {
+            bullet::FrontHold front(engine);
+            bullet::EnergyMeter meter(engine);
+            bullet::WorldParts parts(
+                engine, front, meter, [](const bullet::PlasticConstraint&) { return 0u; },
+                [](double) {});
+            slider.add_to(engine);
+            parts.begin(1);
+            (void)parts.blow();
+        }
+        const bool touches = gap < 1e-5;
+        CHECK(double(top->getLinearVelocity().y()) == Approx(touches ? -0.75 : -1.0).epsilon(1e-5));
+        CHECK(double(head->getLinearVelocity().y()) == Approx(touches ? -0.75 : 0).margin(1e-5));
+        slider.remove_from(engine);
+        engine.removeRigidBody(head.get());
+        engine.removeRigidBody(top.get());
+    }
+}
+
+TEST_CASE("Frames: a base that is driven by hand goes its way in parts too", "[frame]") {
+    // the base turns at 3 rad/s for 1 s, then stands: the rotor is dragged along at 2 rad/s², and
+    // brought to rest: 3 rad of slip
+    constexpr double strength = 4;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& base = rig.body(0, btVector3(0, 0, 0), {0, 0, 0});
+        base.setCollisionFlags(base.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+        btRigidBody& rotor = rig.body(1, btVector3(2, 2, 2), {0, 0, 0});
+        Hinge hinge(rotor, base, at({0, 0, 0}), at({0, 0, 0}), law(strength));
+        rig.world->add(hinge);
+        const int frames = int(std::lround(3 / frame));
+        for (int i = 1; i <= frames; ++i) {
+            btTransform place = at({0, 0, 0});
+            place.setRotation(btQuaternion({0, 0, 1}, btScalar(3 * std::min(1.0, i * frame))));
+            base.setWorldTransform(place);
+            rig.world->step(frame);
+        }
+        CHECK(hinge.absorbed_energy() == Approx(3 * strength).epsilon(rough ? 1e-2 : 1e-6));
+        rig.world->remove(hinge);
+    }
+}
+
+TEST_CASE("Frames: six elastic axes keep their energy at any stiffness and frame", "[frame]") {
+    using Joint = UsualSixAxisJoint;
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    for (const double stiffness : {1e3, 1e5, 1e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            btRigidBody& body = rig.body(10, btVector3(1, 1, 1), {0, 0, 0});
+            body.setLinearVelocity({btScalar(0.2), btScalar(-0.1), btScalar(0.05)});
+            body.setAngularVelocity({btScalar(0.1), btScalar(0.05), btScalar(-0.02)});
+            Joint joint(Ellipsoid<double, 6>({.capacity = Vector6d::Constant(1e9)}),
+                        Perfect<double>({.strength = 1}), TravelLimit<double>(),
+                        {.stiffness = Vector6d::Constant(stiffness)});
+            bullet::PlasticJoint<Joint> link(body, at({0, 0, 0}), joint);
+            rig.world->add(link);
+            double first = 0, least = 1e300, most = 0;
+            for (int i = 0; i < 200; ++i) {
+                rig.world->step(frame);
+                const HeldEnergy<double>& held = rig.world->ledger().held();
+                const double now = held.kinetic + link.stored_energy();
+                if (i == 0) first = now;
+                least = std::min(least, now);
+                most = std::max(most, now);
+            }
+            CHECK(link.absorbed_energy() == 0);
+            CHECK(most / least < 1 + (rough ? 1e-2 : 1e-3));
+            CHECK(first == Approx(10 * 0.0525 / 2 + 0.0129 / 2).epsilon(rough ? 1e-3 : 1e-3));
+            rig.world->remove(link);
+        }
+    }
+}
+
+TEST_CASE("Frames: what the budget does not allow is said", "[frame]") {
+    Rig rig({.tolerance = 1e-3, .budget = 8, .warn = {}});
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    for (int i = 0; i < 8; ++i) {
+        btRigidBody& rod = rig.body(1, btVector3(0.1, 0.1, 0.1), {btScalar(i + 0.5), 0, 0});
+        const btTransform inner = at({btScalar(-0.5), 0, 0});
+        hinges.push_back(i == 0
+                             ? std::make_unique<Hinge>(rod, inner, law(100))
+                             : std::make_unique<Hinge>(rod, *rig.bodies[std::size_t(i - 1)], inner,
+                                                       at({btScalar(0.5), 0, 0}), law(100)));
+        rig.world->add(*hinges.back());
+    }
+    rig.bodies.back()->setLinearVelocity({0, 10, 0});
+    rig.world->step(1.0 / 30);
+    CHECK(rig.world->frame().solves() <= 9);
+    CHECK(rig.world->frame().left.energy > 0);
+    CHECK_FALSE(rig.world->frame().joints.empty());
+    CHECK_FALSE(rig.world->run().believed());
+    CHECK(rig.world->time() == Approx(1.0 / 30));
+}
+
+TEST_CASE("Frames: parameters and frames are checked by name", "[frame]") {
+    using Catch::Matchers::Contains;
+    Rig plain({.warn = {}});
+    CHECK_THROWS_AS(plain.world->run(), std::logic_error);
+    CHECK_THAT(message_of([] { Rig rig({.tolerance = -0.01}); }),
+               Contains("World.tolerance = -0.01: must be finite and > 0"));
+    CHECK_THAT(message_of([] { Rig rig({.tolerance = 0.01, .budget = 1}); }),
+               Contains("World.budget = 1"));
+    CHECK_THAT(message_of([] { Rig rig({.leapfrog = true, .tolerance = 0.01}); }),
+               Contains("World.leapfrog"));
+    Rig rig;
+    CHECK_THAT(message_of([&] { rig.world->step(0); }), Contains("World.step.dt = 0 s"));
+}
