@@ -12,6 +12,7 @@
 #include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
+#include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>

@@ -59,7 +59,7 @@ int frames_that_differ(const Options& options, double trial, int parts) {
 TEST_CASE("A pile that tried a frame and was put back goes on bit for bit", "[frame]") {
     for (const bool spread : {false, true}) {
         for (const bool sleeps : {false, true}) {
-            for (const double trial : {1.0, 4.0}) {
+            for (const double trial : {1.0, 4.0, 16.0}) {
                 for (const int parts : {1, 3}) {
                     CAPTURE(spread, sleeps, trial, parts);
                     CHECK(frames_that_differ({.spread = spread, .sleeps = sleeps}, trial, parts) ==

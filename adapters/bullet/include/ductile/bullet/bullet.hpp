@@ -12,6 +12,7 @@
 #include "ductile/bullet/island_rows.hpp"
 #include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/joint_constraint.hpp"
+#include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/multibody_ball.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/multibody_energy.hpp"

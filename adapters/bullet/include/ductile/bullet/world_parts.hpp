@@ -26,6 +26,7 @@
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -72,6 +73,7 @@ class WorldParts final : public PartEngine {
     Number number_;
     Accept accept_;
     HalfAhead half_ahead_;
+    MeetingIslands* islands_; ///< the world's; null: it kept its own
     DrivenWays ways_;
     double time_ = 0, kept_time_ = 0; ///< since the frame's begin [s]
     HeldForces forces_;

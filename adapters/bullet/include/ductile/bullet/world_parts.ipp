@@ -61,6 +61,7 @@ DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold&
       number_(std::move(number)),
       accept_(std::move(accept)),
       half_ahead_(world),
+      islands_(MeetingIslands::enter(world)),
       pairs_were_sorted_(world.getDispatchInfo().m_deterministicOverlappingPairs) {
     world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
 }
@@ -68,6 +69,7 @@ DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold&
 DUCTILE_INLINE WorldParts::~WorldParts() {
     if (!front_.is_alive()) return;
     half_ahead_.leave();
+    if (islands_ != nullptr) islands_->leave(world_);
     world_.getDispatchInfo().m_deterministicOverlappingPairs = pairs_were_sorted_;
 }
 

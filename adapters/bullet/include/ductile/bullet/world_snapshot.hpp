@@ -13,6 +13,7 @@
 // of the frames of a pile of boxes differ.
 //
 // Traps of Bullet 3.24 that this header deals with
+//   - Who falls asleep with whom hangs on pairs that are not yet dropped: meeting_islands.hpp.
 //   - A manifold may have gone in between, with the pair; then the pairs are found anew first. One
 //     that came stays, empty.
 //   - Manifolds of compound shapes have the same two bodies: their order tells them apart.
