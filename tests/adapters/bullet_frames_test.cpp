@@ -414,7 +414,8 @@ TEST_CASE("Frames: what the budget does not allow is said", "[frame]") {
     Rig rig({.tolerance = 1e-3, .budget = 8, .warn = {}});
     std::vector<std::unique_ptr<Hinge>> hinges;
     for (int i = 0; i < 8; ++i) {
-        btRigidBody& rod = rig.body(1, btVector3(0.1, 0.1, 0.1), {btScalar(i + 0.5), 0, 0});
+        btRigidBody& rod = rig.body(1, btVector3(btScalar(0.1), btScalar(0.1), btScalar(0.1)),
+                                    {btScalar(i + 0.5), 0, 0});
         const btTransform inner = at({btScalar(-0.5), 0, 0});
         hinges.push_back(i == 0
                              ? std::make_unique<Hinge>(rod, inner, law(100))

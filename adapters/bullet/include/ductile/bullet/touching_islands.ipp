@@ -43,8 +43,10 @@ DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_c
         parts_of(id == nowhere ? nowhere : root(id)).bodies.push_back(bodies[i]);
     }
     for (int i = 0; i < manifold_count; ++i) {
-        parts_of(island_of(*manifolds[i]->getBody0(), *manifolds[i]->getBody1()))
-            .manifolds.push_back(manifolds[i]);
+        const btCollisionObject &a = *manifolds[i]->getBody0(), &b = *manifolds[i]->getBody1();
+        IslandParts& parts = parts_of(island_of(a, b));
+        // a solver writes to both bodies of a manifold, also of one without points
+        if (&parts == &parts_of(island_of(b, a))) parts.manifolds.push_back(manifolds[i]);
     }
     for (int i = 0; i < constraint_count; ++i) {
         parts_of(island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB()))
