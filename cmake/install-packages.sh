@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing of debian-packages.txt, beside this script. Does nothing, and needs no
-# network, where everything is there.
+# Installs what is missing of debian-packages.txt, beside this script: what is neither a package nor a
+# command that is there. Does nothing, and needs no network, where everything is.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/debian-packages.txt
 missing=()
 while read -r package; do
     status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [ "$status" = installed ] || missing+=("$package")
+    # npm, for one, comes with Node.js where that is not Debian's
+    [ "$status" = installed ] || command -v "$package" >/dev/null || missing+=("$package")
 done < <(grep -vE '^(#|$)' "$list")
 [ ${#missing[@]} -eq 0 ] && exit 0
 

@@ -97,6 +97,7 @@ class SteppedWorld : private JointKeeper {
         }
         return *kept;
     }
+    [[nodiscard]] bool keeps_ledger() const noexcept { return kept_ledger() != nullptr; }
     /// Of the last step() or advance(), valid until the next one.
     [[nodiscard]] std::span<const JointEvent<double>> events() const noexcept {
         return supervisor_.events();

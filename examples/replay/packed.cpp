@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "packed.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace ductile::replay {
+
+namespace {
+
+using Json = nlohmann::json;
+using Quantised = std::vector<std::uint16_t>;
+
+constexpr double levels = 65534;
+constexpr std::uint16_t no_number = 65535;
+
+class Columns {
+  public:
+    /// Over the range of its own.
+    template <class Values, class Value>
+    void add(const Values& values, Value value) {
+        double low = 0, high = 0;
+        bool any = false;
+        for (const auto& sample : values) {
+            const double v = double(value(sample));
+            if (!std::isfinite(v)) continue;
+            low = any ? std::min(low, v) : v;
+            high = any ? std::max(high, v) : v;
+            any = true;
+        }
+        add(values, value, low, (high - low) / levels);
+    }
+    template <class Values, class Value>
+    void add(const Values& values, Value value, double low, double step) {
+        Quantised quantised;
+        quantised.reserve(values.size());
+        for (const auto& sample : values) {
+            const double v = double(value(sample));
+            const double q = step > 0 ? std::round((v - low) / step) : 0;
+            quantised.push_back(std::isfinite(v) ? std::uint16_t(q) : no_number);
+        }
+        add(quantised, low, step);
+    }
+    void add(const std::vector<double>& values) {
+        add(values, [](double v) { return v; });
+    }
+
+    [[nodiscard]] Json text() const {
+        return {{"low", lows_}, {"step", steps_}, {"order", orders_}};
+    }
+    [[nodiscard]] std::string bytes() const {
+        std::string result;
+        result.reserve(2 * samples_.size());
+        for (const std::uint16_t sample : samples_) result.push_back(char(sample & 0xff));
+        for (const std::uint16_t sample : samples_) result.push_back(char(sample >> 8));
+        return result;
+    }
+
+  private:
+    void add(const Quantised& quantised, double low, double step) {
+        const Quantised once = differences(quantised), twice = differences(once);
+        const bool second = weight(twice) < weight(once);
+        const Quantised& chosen = second ? twice : once;
+        samples_.insert(samples_.end(), chosen.begin(), chosen.end());
+        for (auto at = samples_.end() - std::ptrdiff_t(chosen.size()); at != samples_.end(); ++at) {
+            const auto d = std::int16_t(*at);
+            *at = std::uint16_t((unsigned(std::uint16_t(d)) << 1) ^ unsigned(d >> 15));
+        }
+        lows_.push_back(low);
+        steps_.push_back(step);
+        orders_.push_back(second ? 2 : 1);
+    }
+    static Quantised differences(const Quantised& values) {
+        Quantised result(values.size());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            result[i] = std::uint16_t(values[i] - (i > 0 ? values[i - 1] : 0));
+        }
+        return result;
+    }
+    static long weight(const Quantised& values) {
+        long sum = 0;
+        for (const std::uint16_t value : values) sum += std::abs(long(std::int16_t(value)));
+        return sum;
+    }
+
+    std::vector<double> lows_, steps_;
+    std::vector<int> orders_;
+    std::vector<std::uint16_t> samples_;
+};
+
+Json text_of(const Pose& pose) {
+    Json result = Json::array();
+    for (const double value : pose.position) result.push_back(value);
+    for (const double value : pose.turn) result.push_back(value);
+    return result;
+}
+
+Json text_of(const Body& body, const std::vector<Pose>& poses) {
+    constexpr std::array kinds{"box", "sphere", "cylinder", "plane"};
+    Json result{{"name", body.name}, {"moves", body.moves}, {"shapes", Json::array()}};
+    for (const Shape& shape : body.shapes) {
+        result["shapes"].push_back({{"kind", kinds[std::size_t(shape.kind)]},
+                                    {"size", shape.size},
+                                    {"pose", text_of(shape.in_body)}});
+    }
+    if (!body.moves) result["pose"] = text_of(poses.front());
+    return result;
+}
+
+Json text_of(const Joint& joint, const JointSamples& samples) {
+    Json facts = Json::array();
+    for (const Fact& fact : joint.facts) facts.push_back({fact.first, fact.second});
+    return {{"name", joint.name},
+            {"a", joint.a},
+            {"b", joint.b},
+            {"in_a", joint.in_a},
+            {"axis", samples.curve.axis},
+            {"turns", samples.curve.turns},
+            {"facts", std::move(facts)}};
+}
+
+Json text_of(const Strip& strip) {
+    Json stations = Json::array();
+    for (const Strip::Station& station : strip.stations) {
+        stations.push_back({{"body", station.body}, {"in_body", station.in_body}});
+    }
+    return {{"name", strip.name},
+            {"half_width", strip.half_width},
+            {"half_height", strip.half_height},
+            {"stations", std::move(stations)}};
+}
+
+Json text_of(const Event& event) {
+    return {{"time", event.time},
+            {"kind", event.kind},
+            {"joint", event.joint},
+            {"name", event.name},
+            {"energy", event.energy}};
+}
+
+void add_columns(Columns& columns, const Recording& recording) {
+    for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
+        if (!recording.bodies[i].moves) continue;
+        const std::vector<Pose>& poses = recording.poses[i];
+        for (std::size_t k = 0; k < 3; ++k) {
+            columns.add(poses, [k](const Pose& pose) { return pose.position[k]; });
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            columns.add(
+                poses, [k](const Pose& pose) { return std::clamp(pose.turn[k], -1.0, 1.0); }, -1,
+                2 / levels);
+        }
+    }
+    for (const JointSamples& samples : recording.samples) {
+        columns.add(samples.utilisation);
+        columns.add(samples.plastic_travel);
+        columns.add(samples.absorbed);
+        columns.add(samples.residual);
+        columns.add(
+            samples.state, [](std::uint8_t state) { return state; }, 0, 1);
+        columns.add(samples.curve.force);
+        columns.add(samples.curve.position);
+    }
+    for (const auto& energy : recording.energies) columns.add(energy.second);
+    columns.add(
+        recording.hashes, [](std::uint32_t hash) { return hash & 0x7fff; }, 0, 1);
+    columns.add(
+        recording.hashes, [](std::uint32_t hash) { return (hash >> 16) & 0x7fff; }, 0, 1);
+}
+
+std::string zipped(const std::string& bytes) {
+    z_stream stream{};
+    constexpr int gzip = 15 + 16, memory = 9;
+    if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip, memory, Z_DEFAULT_STRATEGY) !=
+        Z_OK) {
+        throw Error("zlib could not be started");
+    }
+    std::string result(deflateBound(&stream, uLong(bytes.size())), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream.avail_in = uInt(bytes.size());
+    stream.next_out = reinterpret_cast<Bytef*>(result.data());
+    stream.avail_out = uInt(result.size());
+    const int end = deflate(&stream, Z_FINISH);
+    result.resize(stream.total_out);
+    deflateEnd(&stream);
+    if (end != Z_STREAM_END) throw Error("zlib could not pack the recording");
+    return result;
+}
+
+} // namespace
+
+std::string pack(const Recording& recording) {
+    check(recording);
+    Columns columns;
+    add_columns(columns, recording);
+    Json text{{"name", recording.name},   {"about", recording.about},  {"engine", recording.engine},
+              {"times", recording.times}, {"bodies", Json::array()},   {"joints", Json::array()},
+              {"strips", Json::array()},  {"energies", Json::array()}, {"events", Json::array()},
+              {"columns", columns.text()}};
+    for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
+        text["bodies"].push_back(text_of(recording.bodies[i], recording.poses[i]));
+    }
+    for (std::size_t i = 0; i < recording.joints.size(); ++i) {
+        text["joints"].push_back(text_of(recording.joints[i], recording.samples[i]));
+    }
+    for (const Strip& strip : recording.strips) text["strips"].push_back(text_of(strip));
+    for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
+    for (const Event& event : recording.events) text["events"].push_back(text_of(event));
+    const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string bytes = "ductrec1";
+    for (int shift = 0; shift < 32; shift += 8) bytes.push_back(char(words.size() >> shift & 0xff));
+    return zipped(bytes + words + columns.bytes());
+}
+
+} // namespace ductile::replay

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+//
+// The replay page: time, controls, and what they show. `window.replay` is for tests and the console.
+import { css, gradient, brokenColour, lostColour } from "./colours.js";
+import { CurvePlot, EnergyPlot, short } from "./plots.js";
+import { broken, decode, firstDifference, flowed, fromBase64, ofPage, placeOf, RecordingError, unreliable } from "./recording.js";
+import { Scene } from "./scene.js";
+
+const $ = (id) => document.getElementById(id);
+const speeds = [1 / 1000, 1 / 300, 1 / 100, 1 / 30, 1 / 10, 1 / 4, 1 / 2, 1, 2, 4];
+
+function say(message) {
+    $("message").textContent = message;
+    $("message").hidden = false;
+}
+
+function option(value, text) {
+    const made = document.createElement("option");
+    made.value = value;
+    made.textContent = text;
+    return made;
+}
+
+class Replay {
+    constructor(recording) {
+        this.recording = recording;
+        this.time = recording.times[0];
+        this.end = recording.times[recording.times.length - 1];
+        this.playing = false;
+        this.speed = 1;
+        this.colour = "utilisation";
+        this.joint = recording.joints.length ? 0 : -1;
+        this.drawn = 0;
+        const events = recording.events.find((event) => event.joint >= 0);
+        if (events) this.joint = events.joint;
+        this.scene = new Scene($("view"), recording);
+        const shown = { time: () => this.time, setTime: (time) => this.setTime(time), index: () => this.index() };
+        this.energy = new EnergyPlot($("energy"), recording, shown);
+        this.curve = new CurvePlot($("curve"), recording, shown);
+        this.describe();
+        this.listen();
+        this.restore();
+        this.setJoint(this.joint);
+        this.setTime(this.time);
+        this.loop();
+    }
+
+    index() {
+        return placeOf(this.recording.times, this.time).index;
+    }
+
+    describe() {
+        const { recording } = this;
+        document.title = recording.name;
+        $("name").textContent = recording.name;
+        $("engine").textContent = recording.engine;
+        $("about").textContent = recording.about;
+        for (const speed of speeds) $("speed").append(option(speed, speed < 1 ? `1/${Math.round(1 / speed)}` : `${speed}`));
+        $("follow").append(option(-1, "nothing"));
+        recording.bodies.forEach((body, i) => body.moves && $("follow").append(option(i, body.name)));
+        recording.joints.forEach((joint, i) => $("joint").append(option(i, joint.name)));
+        const start = recording.times[0];
+        const span = this.end - start || 1;
+        for (const event of recording.events) {
+            const tick = document.createElement("i");
+            tick.className = event.kind;
+            tick.title = `${event.name} ${event.kind}, ${event.time.toFixed(4)} s`;
+            tick.style.left = `${(100 * (event.time - start)) / span}%`;
+            $("ticks").append(tick);
+            const line = document.createElement("li");
+            const button = document.createElement("button");
+            button.textContent = `${event.time.toFixed(3)} s  ${event.name} ${event.kind}${event.energy > 0 ? `, ${short(event.energy)}J` : ""}`;
+            button.addEventListener("click", () => {
+                this.setJoint(event.joint);
+                this.setTime(event.time);
+            });
+            line.append(button);
+            $("events").append(line);
+        }
+        if (recording.events.length === 0) $("events").textContent = "nothing yielded or broke";
+        $("scrub").min = start;
+        $("scrub").max = this.end;
+    }
+
+    legend() {
+        const plastic = this.colour === "plastic";
+        const most = plastic ? `${short(this.scene.largestTravel)} rad or m` : "1 (flows)";
+        $("legend").innerHTML = `<div>${plastic ? "plastic travel" : "utilisation of strength"}</div>
+            <div class="bar" style="background:${gradient}"></div><div class="ends"><span>0</span><span></span></div>
+            <span style="color:${css(brokenColour)}">&#9679;</span> broken
+            <span style="color:${css(lostColour)}">&#9679;</span> unreliable`;
+        $("legend").querySelector(".ends").lastChild.textContent = most;
+    }
+
+    listen() {
+        $("play").addEventListener("click", () => this.play(!this.playing));
+        $("back").addEventListener("click", () => this.step(-1));
+        $("forth").addEventListener("click", () => this.step(1));
+        $("scrub").addEventListener("input", () => this.setTime(Number($("scrub").value)));
+        $("speed").addEventListener("change", () => this.setSpeed(Number($("speed").value)));
+        $("colour").addEventListener("change", () => this.setColour($("colour").value));
+        $("joint").addEventListener("change", () => this.setJoint(Number($("joint").value)));
+        $("follow").addEventListener("change", () => this.scene.setFollowed(Number($("follow").value)));
+        $("reset").addEventListener("click", () => this.scene.reset());
+        $("compare").addEventListener("change", () => this.compare($("compare").files[0]));
+        const canvas = this.scene.renderer.domElement;
+        let down;
+        canvas.addEventListener("pointerdown", (event) => (down = event));
+        canvas.addEventListener("click", (event) => {
+            if (Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > 4) return;
+            const joint = this.scene.pick(event);
+            if (joint >= 0) this.setJoint(joint);
+        });
+        this.scene.controls.addEventListener("end", () => this.remember());
+        addEventListener("keydown", (event) => {
+            if (event.target.closest?.("select, input[type=file]")) return;
+            const keys = {
+                " ": () => this.play(!this.playing), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1),
+                Home: () => this.setTime(this.recording.times[0]), End: () => this.setTime(this.end),
+                r: () => this.scene.reset(), "+": () => this.faster(1), "-": () => this.faster(-1), n: () => this.nextEvent(),
+            };
+            if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
+            event.preventDefault();
+            keys[event.key]();
+        });
+    }
+
+    faster(by) {
+        const at = speeds.indexOf(this.speed);
+        this.setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, at + by))]);
+    }
+
+    nextEvent() {
+        const next = this.recording.events.find((event) => event.time > this.time + 1e-9);
+        if (next) this.setTime(next.time);
+    }
+
+    play(on) {
+        if (on && this.time >= this.end) this.time = this.recording.times[0];
+        this.playing = on;
+        this.last = undefined;
+        $("play").textContent = on ? "pause" : "play";
+        if (!on) this.remember();
+    }
+
+    step(by) {
+        this.play(false);
+        const { times } = this.recording;
+        const { index, share } = placeOf(times, this.time);
+        const to = by < 0 && share > 0 ? index : index + by;
+        this.setTime(times[Math.min(times.length - 1, Math.max(0, to))]);
+    }
+
+    setSpeed(speed) {
+        this.speed = speed;
+        $("speed").value = String(speed);
+        this.remember();
+    }
+
+    setColour(colour) {
+        this.colour = colour;
+        $("colour").value = colour;
+        this.legend();
+        this.show();
+        this.remember();
+    }
+
+    setJoint(joint) {
+        this.joint = joint;
+        if (joint >= 0) $("joint").value = String(joint);
+        this.curve.show(joint);
+        this.facts();
+        this.remember();
+    }
+
+    setTime(time) {
+        this.time = Math.min(this.end, Math.max(this.recording.times[0], time));
+        this.show();
+        if (!this.playing) this.remember();
+    }
+
+    show() {
+        $("scrub").value = this.time;
+        $("time").textContent = `${this.time.toFixed(4)} s`;
+        this.scene.update(this.time, this.colour);
+        this.energy.update();
+        this.curve.update();
+        this.facts();
+    }
+
+    /** Numbers of the joint that is shown, at the sample that is shown. */
+    facts() {
+        const joint = this.recording.joints[this.joint];
+        if (!joint) return;
+        const i = this.index();
+        const state = joint.state[i];
+        const words = state & broken ? "broken" : state & unreliable ? "unreliable" : state & flowed ? "has flowed" : "holds";
+        const unit = joint.turns ? ["N m", "rad"] : ["N", "m"];
+        const rows = [
+            ["state", words],
+            ["utilisation", joint.utilisation[i].toFixed(3)],
+            [joint.turns ? "moment" : "force", `${short(joint.force[i])} ${unit[0]}`],
+            ["plastic travel", `${short(joint.plastic[i])} ${unit[1]}`],
+            ["absorbed", `${short(joint.absorbed[i])} J`],
+            ["certificate", short(joint.residual[i])],
+            ...joint.facts,
+        ];
+        $("facts").replaceChildren(
+            ...rows.flatMap(([name, value]) => {
+                const term = document.createElement("dt");
+                const fact = document.createElement("dd");
+                term.textContent = name;
+                fact.textContent = value;
+                return [term, fact];
+            }),
+        );
+    }
+
+    async compare(file) {
+        if (!file) return;
+        try {
+            const other = await decode(ofPage(await file.text()));
+            const at = firstDifference(this.recording, other);
+            document.querySelector("#ticks .differs")?.remove();
+            if (at < 0) return say("both recordings are the same, bit for bit");
+            const time = this.recording.times[Math.min(at, this.recording.times.length - 1)];
+            const tick = document.createElement("i");
+            tick.className = "differs";
+            tick.title = `differs from ${time.toFixed(4)} s on`;
+            tick.style.left = `${(100 * (time - this.recording.times[0])) / (this.end - this.recording.times[0] || 1)}%`;
+            $("ticks").append(tick);
+            say(`the recordings differ from ${time.toFixed(4)} s on`);
+            this.setTime(time);
+        } catch (error) {
+            say(`${file.name}: ${error.message}`);
+        }
+    }
+
+    /** The state is in the address: t, speed, joint, colour, camera. */
+    remember() {
+        const state = new URLSearchParams({ t: this.time.toFixed(5), speed: this.speed, joint: this.joint, colour: this.colour, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") });
+        history.replaceState(null, "", `#${state}`);
+    }
+
+    restore() {
+        const state = new URLSearchParams(location.hash.slice(1));
+        const number = (key) => (state.has(key) ? Number(state.get(key)) : NaN);
+        if (Number.isFinite(number("t"))) this.time = number("t");
+        if (this.recording.joints[number("joint")]) this.joint = number("joint");
+        const camera = (state.get("camera") ?? "").split(",").map(Number);
+        if (camera.length === 6 && camera.every(Number.isFinite)) this.scene.setPose(camera);
+        const speed = speeds.find((each) => Math.abs(each - number("speed")) < 1e-9);
+        const colour = state.get("colour") === "plastic" ? "plastic" : "utilisation";
+        this.speed = speed ?? 1;
+        $("speed").value = String(this.speed);
+        this.colour = colour;
+        $("colour").value = colour;
+        this.legend();
+    }
+
+    loop() {
+        const frame = (now) => {
+            requestAnimationFrame(frame);
+            if (this.playing) {
+                const passed = this.last === undefined ? 0 : (now - this.last) / 1000;
+                this.last = now;
+                this.setTime(this.time + this.speed * passed);
+                if (this.time >= this.end) this.play(false);
+            }
+            if (this.scene.render()) ++this.drawn;
+        };
+        requestAnimationFrame(frame);
+    }
+}
+
+async function start() {
+    try {
+        const script = document.getElementById("recording");
+        if (!script) throw new RecordingError("there is no recording in this page");
+        window.replay = new Replay(await decode(fromBase64(script.textContent)));
+    } catch (error) {
+        say(error.message);
+        if (!(error instanceof RecordingError)) throw error;
+    }
+}
+
+start();

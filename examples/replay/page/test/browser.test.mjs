@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// The page in a real browser, from disk. CHROMIUM: its program; REPLAY_DIR: where replay_test wrote.
+// Drawn by software, which has to be asked for: else nothing is drawn, and tests pass on nothing.
+import assert from "node:assert/strict";
+import { readFile, writeFile } from "node:fs/promises";
+import { resolve } from "node:path";
+import test, { after, before } from "node:test";
+
+import { chromium } from "playwright-core";
+
+const folder = resolve(process.env.REPLAY_DIR ?? ".");
+const file = resolve(folder, "replay_rotor.html");
+const expected = JSON.parse(await readFile(resolve(folder, "replay_rotor.json"), "utf8"));
+let browser;
+
+before(async () => {
+    browser = await chromium.launch({
+        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+        args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    });
+});
+after(() => browser?.close());
+
+async function open(path = file, options = {}) {
+    const page = await browser.newPage({ viewport: { width: 1000, height: 700 }, ...options });
+    page.faults = [];
+    page.on("console", (message) => message.type() === "error" && page.faults.push(message.text()));
+    page.on("pageerror", (error) => page.faults.push(error.message));
+    page.on("request", (request) => /^(file|data|blob):/.test(request.url()) || page.faults.push(`asked for ${request.url()}`));
+    await page.goto(`file://${path}`);
+    await page.waitForFunction(() => window.replay || !document.getElementById("message").hidden);
+    return page;
+}
+
+/** Colours of the scene's middle, as the browser drew them. */
+const pixels = (page) =>
+    page.evaluate(() => {
+        replay.scene.stale = true;
+        replay.scene.render();
+        const canvas = replay.scene.renderer.domElement;
+        const copy = document.createElement("canvas");
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        const context = copy.getContext("2d", { willReadFrequently: true });
+        context.drawImage(canvas, 0, 0);
+        const { data } = context.getImageData(0, 0, copy.width, copy.height);
+        const colours = new Set();
+        let sum = 0;
+        for (let i = 0; i < data.length; i += 4) {
+            colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+            sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 2147483647;
+        }
+        return { colours: colours.size, sum };
+    });
+
+test("something is drawn, it changes with time, without errors or a network", async () => {
+    const page = await open();
+    const start = await pixels(page);
+    assert.ok(start.colours > 20, `${start.colours} colours`);
+    await page.evaluate(() => replay.setTime(0.4));
+    const later = await pixels(page);
+    assert.notEqual(later.sum, start.sum);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+});
+
+test("scrubbing moves both plots' cursors and the numbers are the recording's", async () => {
+    const page = await open();
+    const line = () => page.$eval("#energy .now", (mark) => parseFloat(mark.style.left));
+    const dot = () => page.$eval("#curve .dot", (mark) => parseFloat(mark.style.left));
+    await page.evaluate(() => replay.setTime(replay.recording.times[0]));
+    const before = [await line(), await dot()];
+    await page.locator("#scrub").evaluate((scrub) => {
+        scrub.value = scrub.max;
+        scrub.dispatchEvent(new Event("input"));
+    });
+    const after = [await line(), await dot()];
+    assert.ok(after[0] > before[0] + 100, `${before[0]} to ${after[0]}`);
+    assert.ok(Math.abs(after[1] - before[1]) > 50);
+    const facts = await page.$$eval("#facts > *", (items) => items.map((item) => item.textContent));
+    const fact = (name) => facts[facts.indexOf(name) + 1];
+    assert.equal(fact("absorbed"), "96 J");
+    assert.equal(fact("plastic travel"), "1.5 rad");
+    assert.equal(fact("state"), "broken");
+    assert.equal(fact("strength"), "64 N m");
+    assert.ok(Math.abs(parseFloat(await page.textContent("#time")) - expected.times.at(-1)) < 1e-4);
+    await page.close();
+});
+
+test("a click on the energies sets the time", async () => {
+    const page = await open();
+    const box = await page.locator("#energy .u-over").boundingBox();
+    await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+    const { time, end, start } = await page.evaluate(() => ({ time: replay.time, end: replay.end, start: replay.recording.times[0] }));
+    assert.ok(time > start + 0.2 * (end - start) && time < end, `${time}`);
+    await page.close();
+});
+
+test("a broken joint has its colour, and an event leads to its time", async () => {
+    const page = await open();
+    const colour = () => page.evaluate(() => Array.from(replay.scene.markers.instanceColor.array.slice(0, 3)));
+    await page.evaluate(() => replay.setTime(replay.recording.times[1]));
+    const [red, green] = await colour();
+    assert.ok(red > 0.8 && green < 0.3, "it flows: red");
+    await page.click("#events li:last-child button");
+    assert.ok(Math.abs((await page.evaluate(() => replay.time)) - expected.broke) < 1e-9);
+    await page.evaluate(() => replay.setTime(replay.end));
+    assert.ok((await colour()).every((value) => value < 0.2), "broken: black");
+    await page.close();
+});
+
+test("keys play, step and go to events; the address keeps the state", async () => {
+    const page = await open();
+    await page.keyboard.press("Home");
+    await page.keyboard.press("ArrowRight");
+    assert.equal(await page.evaluate(() => replay.time), expected.times[1]);
+    await page.keyboard.press("n");
+    await page.keyboard.press(" ");
+    await page.waitForFunction(() => replay.drawn > 5 && replay.time > replay.recording.times[4]);
+    await page.keyboard.press(" ");
+    await page.evaluate(() => replay.setTime(0.25));
+    const url = page.url();
+    await page.close();
+    const again = await browser.newPage();
+    await again.goto(url);
+    await again.waitForFunction(() => window.replay);
+    assert.ok(Math.abs((await again.evaluate(() => replay.time)) - 0.25) < 1e-4);
+    await again.close();
+});
+
+test("it is readable on a phone and in the dark", async () => {
+    const page = await open(file, { viewport: { width: 390, height: 800 }, colorScheme: "dark" });
+    const width = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(width <= 390, `${width} px wide`);
+    assert.match(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), /rgb\(18, 22, 28\)/);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+});
+
+test("a page whose recording is damaged says so", async () => {
+    const text = await readFile(file, "utf8");
+    const cut = resolve(folder, "replay_cut.html");
+    await writeFile(cut, text.replace(/(<script id="recording"[^>]*>.{400})[^<]*/, "$1"));
+    const page = await open(cut);
+    assert.match(await page.textContent("#message"), /damaged or cut short/);
+    await page.close();
+});

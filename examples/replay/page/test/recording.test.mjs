@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+//
+// What the page reads is what was recorded. REPLAY_DIR: where replay_test wrote its files.
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import test from "node:test";
+
+import validator from "gltf-validator";
+
+import { decode, firstDifference, ofPage, placeOf, poseAt, RecordingError } from "../src/recording.js";
+
+const folder = process.env.REPLAY_DIR ?? ".";
+const page = await readFile(join(folder, "replay_rotor.html"), "utf8");
+const expected = JSON.parse(await readFile(join(folder, "replay_rotor.json"), "utf8"));
+const bytes = ofPage(page);
+const recording = await decode(bytes);
+
+/** To a 65535th of the column's range. */
+function near(values, wanted) {
+    const low = Math.min(...wanted);
+    const high = Math.max(...wanted);
+    assert.equal(values.length, wanted.length);
+    wanted.forEach((value, i) => assert.ok(Math.abs(values[i] - value) <= 0.51 * (high - low) / 65534 + 1e-12, `${values[i]} for ${value}`));
+}
+
+test("columns are those of the run", () => {
+    near(Array.from(recording.times), expected.times);
+    near(recording.joints[0].absorbed, expected.absorbed);
+    near(recording.joints[0].force, expected.force);
+    near(recording.joints[0].position, expected.position);
+    for (const { name, values } of recording.energies) near(values, expected.energies[name]);
+    assert.equal(recording.joints[0].state.at(-1), 3);
+    assert.equal(recording.bodies[1].shapes[0].kind, "plane");
+});
+
+test("poses between samples are between", () => {
+    const [a, b] = recording.times;
+    const pose = poseAt(recording.bodies[0], placeOf(recording.times, (a + b) / 2), new Float64Array(7));
+    const middle = expected.turn[0].map((value, k) => (value + expected.turn[1][k]) / 2);
+    const length = Math.hypot(...middle);
+    middle.forEach((value, k) => assert.ok(Math.abs(pose[3 + k] - value / length) < 1e-4));
+});
+
+test("a recording that is damaged, cut short or none is refused in words", async () => {
+    await assert.rejects(decode(bytes.subarray(0, bytes.length / 2)), RecordingError);
+    await assert.rejects(decode(new Uint8Array([1, 2, 3])), RecordingError);
+    assert.throws(() => ofPage("<html></html>"), RecordingError);
+});
+
+test("recordings are compared by their hashes", async () => {
+    const other = await decode(bytes);
+    assert.equal(firstDifference(recording, other), -1);
+    other.hashes[7] ^= 1;
+    assert.equal(firstDifference(recording, other), 7);
+});
+
+test("the glb is valid glTF", async () => {
+    const report = await validator.validateBytes(new Uint8Array(await readFile(join(folder, "replay_rotor.glb"))));
+    assert.equal(report.issues.numErrors, 0, JSON.stringify(report.issues.messages));
+    assert.equal(report.issues.numWarnings, 0, JSON.stringify(report.issues.messages));
+});

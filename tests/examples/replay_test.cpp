@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+//
+// The recorder and its files: a rotor of 2 kg m² at 10 rad/s whose bar of 64 N m breaks at 1.5 rad,
+// after 96 J. What it writes into the working directory, the page's own tests read
+// (examples/replay/page/test).
+#include <ode/ode.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "ductile/fracture/travel_limit.hpp"
+#include "ductile/law/perfect.hpp"
+#include "ductile/ode/ode.hpp"
+#include "files.hpp"
+#include "of_ode.hpp"
+#include "packed.hpp"
+#include "recorder.hpp"
+#include "write_glb.hpp"
+#include "write_html.hpp"
+
+using namespace ductile;
+
+namespace {
+
+using BreakingHinge = ode::PlasticHinge<OneAxisJoint<Perfect<double>, TravelLimit<double>>>;
+
+struct Rotor {
+    Rotor() {
+        dMass mass;
+        dMassSetParameters(&mass, 24, 0, 0, 0, 1.6, 1.6, 2, 0, 0, 0);
+        dBodySetMass(body, &mass);
+        dBodySetAngularVel(body, 0, 0, 10);
+        dGeomSetBody(box, body);
+        bar.emplace(
+            engine, body, nullptr, ode::HingeFrame{.axis = {0, 0, 1}},
+            OneAxisJoint(Perfect<double>({.strength = 64}), TravelLimit<double>({.limit = 1.5})));
+        world.add(body);
+        world.add(*bar, "bar");
+    }
+    ~Rotor() {
+        bar.reset();
+        dSpaceDestroy(space);
+        dWorldDestroy(engine);
+    }
+    Rotor(const Rotor&) = delete;
+    Rotor& operator=(const Rotor&) = delete;
+
+    struct Library {
+        Library() { dInitODE(); }
+        ~Library() { dCloseODE(); }
+    } library;
+    dWorldID engine = dWorldCreate();
+    dSpaceID space = dSimpleSpaceCreate(nullptr);
+    dBodyID body = dBodyCreate(engine);
+    dGeomID box = dCreateBox(space, 1, 0.2, 0.1), floor = dCreatePlane(space, 0, 0, 1, -0.5);
+    ode::World world{engine, ode::WorldParameters{}};
+    std::optional<BreakingHinge> bar;
+};
+
+replay::Recording record(Rotor& rotor, double rate, double seconds) {
+    replay::Recorder recorder({.name = "rotor",
+                               .about = "A bar of 64 N m breaks at 1.5 rad, after 96 J.",
+                               .engine = "ode",
+                               .rate = rate});
+    replay::add_body(recorder, rotor.body, "rotor");
+    replay::add_ground(recorder, rotor.floor, "floor");
+    replay::add_joint(recorder, *rotor.bar, "bar", {0, 0, 0}, {{"strength", "64 N m"}});
+    while (rotor.world.time() < seconds - 1e-9) {
+        rotor.world.step(1.0 / 240);
+        recorder.look(rotor.world);
+    }
+    return recorder.finish();
+}
+
+} // namespace
+
+TEST_CASE("replay: what is recorded is what happened", "[replay]") {
+    Rotor rotor;
+    const replay::Recording seen = record(rotor, 60, 0.5);
+    REQUIRE(seen.times.size() == 31); // the first step, and one each 1/60 s
+    CHECK(seen.times.front() == Approx(1.0 / 240));
+    CHECK(seen.times.back() == Approx(0.5));
+    REQUIRE(seen.joints.size() == 1);
+    const replay::JointSamples& bar = seen.samples[0];
+    CHECK(bar.absorbed.back() == Approx(96).epsilon(1e-9));
+    CHECK(bar.plastic_travel.back() == Approx(1.5).epsilon(1e-9));
+    CHECK(bar.state.back() == (replay::flowed | replay::broken));
+    CHECK(std::abs(bar.curve.force[1]) == Approx(64));
+    CHECK(bar.curve.turns);
+    REQUIRE(seen.events.size() == 2);
+    CHECK(seen.events[0].kind == "yielded");
+    CHECK(seen.events[1].kind == "broke");
+    CHECK(seen.events[1].joint == 0);
+    CHECK(seen.events[1].energy == Approx(96).epsilon(1e-9));
+    double total = 0;
+    for (const auto& [name, column] : seen.energies) {
+        if (name == "kinetic" || name == "plastic") total += column.back();
+    }
+    CHECK(total == Approx(100).epsilon(1e-6));
+    CHECK(seen.poses[0].size() == seen.times.size());
+    CHECK(seen.poses[1].size() == 1);
+
+    // for the page's tests
+    replay::write_html(seen, "replay_rotor.html");
+    replay::write_glb(seen, "replay_rotor.glb");
+    nlohmann::json expected{{"times", seen.times},
+                            {"absorbed", bar.absorbed},
+                            {"force", bar.curve.force},
+                            {"position", bar.curve.position},
+                            {"broke", seen.events[1].time},
+                            {"energies", nlohmann::json::object()},
+                            {"turn", nlohmann::json::array()}};
+    for (const auto& [name, column] : seen.energies) expected["energies"][name] = column;
+    for (const replay::Pose& pose : seen.poses[0]) expected["turn"].push_back(pose.turn);
+    std::ofstream("replay_rotor.json") << expected;
+    CHECK(std::filesystem::file_size("replay_rotor.html") < 2'000'000);
+}
+
+TEST_CASE("replay: two runs have the same hashes, another has not", "[replay]") {
+    Rotor first, second, other;
+    dBodySetAngularVel(other.body, 0, 0, std::nextafter(10.0, 11.0));
+    const auto a = record(first, 60, 0.1), b = record(second, 60, 0.1), c = record(other, 60, 0.1);
+    CHECK(a.hashes == b.hashes);
+    CHECK(a.hashes != c.hashes);
+    CHECK(replay::pack(a) == replay::pack(b));
+}
+
+TEST_CASE("replay: bodies and joints that come late or go are kept", "[replay]") {
+    Rotor rotor;
+    replay::Recorder recorder({.name = "late", .about = "", .engine = "ode", .rate = 240});
+    replay::add_body(recorder, rotor.body, "rotor");
+    const auto step = [&] {
+        rotor.world.step(1.0 / 240);
+        recorder.look(rotor.world);
+    };
+    step();
+    replay::add_joint(recorder, *rotor.bar, "bar", {0, 0, 0});
+    step();
+    recorder.remove(rotor.bar->queries());
+    recorder.remove(rotor.body);
+    step();
+    const replay::Recording seen = recorder.finish();
+    REQUIRE(seen.times.size() == 3);
+    CHECK(seen.samples[0].utilisation[0] == 0);
+    CHECK(seen.samples[0].utilisation[1] == Approx(1));
+    CHECK(seen.samples[0].utilisation[2] == 0);
+    CHECK(seen.poses[0][2].turn == seen.poses[0][1].turn);
+}
+
+TEST_CASE("replay: bad input is one clear line, and nothing is half-written", "[replay]") {
+    using Catch::Contains;
+    CHECK_THROWS_WITH(replay::Recorder({.name = "x", .about = "", .engine = "", .rate = 0}),
+                      Contains("Recorder.rate") && Contains("positive"));
+    const replay::Recorder empty({.name = "x", .about = "", .engine = "", .rate = 60});
+    CHECK_THROWS_WITH(empty.finish(), Contains("no body"));
+    Rotor rotor;
+    replay::Recorder twice({.name = "x", .about = "", .engine = "", .rate = 60});
+    replay::add_body(twice, rotor.body, "rotor");
+    CHECK_THROWS_WITH(replay::add_body(twice, rotor.body, "rotor"), Contains("already"));
+    CHECK_THROWS_WITH(twice.finish(), Contains("nothing was sampled"));
+
+    replay::Recording seen = record(rotor, 60, 0.1);
+    CHECK_THROWS_WITH(replay::write_html(seen, "no/such/folder/x.html"), Contains("cannot write"));
+    CHECK_THROWS_WITH(replay::write_glb(seen, "no/such/folder/x.glb"), Contains("cannot write"));
+    CHECK_THROWS_WITH(replay::write_html(seen, "x.html", "replay_rotor.json"), Contains("page"));
+    CHECK_FALSE(std::filesystem::exists("x.html"));
+    // a body that is lost to infinity is recorded as such
+    seen.poses[0].back().position[0] = std::numeric_limits<double>::quiet_NaN();
+    CHECK_NOTHROW(replay::pack(seen));
+    seen.samples[0].absorbed.pop_back();
+    CHECK_THROWS_WITH(replay::pack(seen), Contains("\"bar\""));
+}
