@@ -41,13 +41,17 @@ struct PartRow {
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
     double strength = 0;   ///< R; 0 where broken [N | N m]
     double noise = 0;      ///< speed that is as good as rest [m/s | rad/s]
+    double turning = 0;    ///< speed that a row may keep that turns with its bodies and holds
+                           ///< [m/s | rad/s]
     double least = 0;      ///< travel that nobody misses [m | rad]
     bool elastic = false;  ///< below its strength it is a spring
 
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
     /// Negated so that a speed that is no number moves.
     [[nodiscard]] bool moves() const noexcept {
-        return strength > 0 && !(std::abs(start) <= noise && std::abs(end) <= noise);
+        constexpr double holds = 1 - 1e-6;
+        const double rest = share < holds ? std::max(noise, turning) : noise;
+        return strength > 0 && !(std::abs(start) <= rest && std::abs(end) <= rest);
     }
 };
 

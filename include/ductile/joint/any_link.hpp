@@ -29,12 +29,20 @@
 // to e, not k e itself: the rows of rotation are those of ė = G(e) ω (rotation.hpp), and k e acts
 // as the moment Gᵀ k e. Then no closed path of rotations makes energy.
 //
+// Turning rows. In a part of a frame a body that spins goes straight on, so that what it holds
+// would end it too far out, by half the turn squared. A row of it is asked to be where it should at
+// the end of the part: it comes to the solve at w, across its arm, and leaves it at -w; o, along
+// its way, is of third order in the turn. Joints see u - w - o and u' + w + o: the same sum, and so
+// the same account. (Not in a step as it is, which begins where rows are solved: whoever stops in
+// it had nothing that could be turned round.)
+//
 // Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
 // does not, `outcome` is unreliable although the plastic rows may look solved.
 //
 // Symbols
 //   d, R   displacement and orientation of frame A in frame B   [m], [-]
 //   e      elastic part of the rotation, axes of frame B        [rad]
+//   w, o   velocities of a row that come of its turning         [m/s | rad/s]
 //   K      inverse mass at the joint, 6×6, axes of frame B      [1/kg ... 1/(kg m²)]
 //   M      mass of the plastic rows while the rigid ones hold, (K⁻¹)_pp
 //
@@ -58,6 +66,7 @@
 #include "ductile/joint/link_pose.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/rotation.hpp"
+#include "ductile/joint/swing.hpp"
 #include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
@@ -114,7 +123,8 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_, force_, start_, end_, rigid_residual_, unseen_turn_, rigid_unsolved_};
+        kept_ = {pose_,  force_,          start_,       end_,
+                 swing_, rigid_residual_, unseen_turn_, rigid_unsolved_};
         keep_joint();
     }
     /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
@@ -123,6 +133,7 @@ class AnyLink {
         force_ = kept_->force;
         start_ = kept_->start;
         end_ = kept_->end;
+        swing_ = kept_->swing;
         rigid_residual_ = kept_->rigid_residual;
         unseen_turn_ = kept_->unseen_turn;
         rigid_unsolved_ = kept_->rigid_unsolved;
@@ -136,6 +147,12 @@ class AnyLink {
         rigid_residual_ = unseen_turn_ = 0;
         rigid_unsolved_ = false;
     }
+
+    /// Least τ of the elastic axes in the steps to come [s].
+    void damp(S time) noexcept { damping_ = time; }
+    /// Whether it swings, flows or rests.
+    [[nodiscard]] SwingState<S>& swing() noexcept { return swing_; }
+    [[nodiscard]] const SwingState<S>& swing() const noexcept { return swing_; }
 
     // ---- what it says
 
@@ -196,9 +213,11 @@ class AnyLink {
     /// Forces and moments of the last step in the order of JointAxis [N | N m].
     [[nodiscard]] const Vector6<S>& forces() const noexcept { return force_; }
     /// Velocities of the rows at the start and the end of the last step, both along them as they
-    /// were solved, in the order of JointAxis [m/s | rad/s].
+    /// were solved, their turning taken out, in the order of JointAxis [m/s | rad/s].
     [[nodiscard]] const Vector6<S>& start_velocities() const noexcept { return start_; }
     [[nodiscard]] const Vector6<S>& end_velocities() const noexcept { return end_; }
+    /// What may be left of them where the joint holds, as parts of other lengths turn otherwise.
+    [[nodiscard]] S turning_speed() const noexcept { return norm(linear(turning_.drift())); }
     /// Force at which an axis flowed or would have, in the last step [N | N m].
     [[nodiscard]] virtual S strength(JointAxis axis) const noexcept = 0;
     /// Plastic travel that nobody misses [m | rad].
@@ -217,6 +236,13 @@ class AnyLink {
     }
 
   protected:
+    /// The rows as a step begins, in the order of JointAxis, their turning taken out.
+    struct RowsAtStart {
+        Vector6<S> strain;   ///< where they are solved [m | rad]
+        Vector6<S> before;   ///< at the start of a part, else the same [m | rad]
+        Vector6<S> velocity; ///< u [m/s | rad/s]
+        RowTurning<S> turning;
+    };
     /// What the joint's parameters allow a row to be off by.
     struct Allowed {
         S absolute_residual, relative_residual;
@@ -246,6 +272,8 @@ class AnyLink {
     Limits limits_{};                       ///< between prepare and commit
     Vector6<S> force_ = Vector6<S>::Zero(); ///< of the last step, axes of frame B [N | N m]
     bool on_surface_ = false;               ///< between prepare and commit: see meet_surface
+    S damping_ = 0;                         ///< see damp
+    SwingState<S> swing_;
 
   private:
     // ---- what the joint does; six-vectors in the order of JointAxis, zero for what is not its own
@@ -256,8 +284,7 @@ class AnyLink {
     /// M of the joint's rows from K of all.
     virtual void take_mass(const Matrix6<S>& k) noexcept = 0;
     /// Writes the limits of the joint's own rows.
-    virtual void prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
-                               const BodyState<S>& b, S dt, bool midway, bool ahead) noexcept = 0;
+    virtual void prepare_joint(const RowsAtStart& rows, S dt, bool midway, bool ahead) noexcept = 0;
     /// Books force_ and `velocity` with the bodies where they are now.
     virtual void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a,
                               const BodyState<S>& b, S dt) noexcept = 0;
@@ -272,12 +299,14 @@ class AnyLink {
     struct Kept {
         LinkPose<S> pose;
         Vector6<S> force, start, end;
+        SwingState<S> swing;
         S rigid_residual, unseen_turn;
         bool rigid_unsolved;
     };
 
     std::optional<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
+    RowTurning<S> turning_; ///< between prepare and commit
     bool sound_ = true; ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;

@@ -45,19 +45,25 @@ template <std::floating_point S>
 const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
                                                        S dt, S rate, bool midway,
                                                        bool ahead) noexcept {
+    const Vector6<S> last = strain();
     pose_.look(a, b);
     on_surface_ = false;
-    const Vector6<S> error = strain();
     sound_ = pose_.finite();
+    const Vector6<S> now = strain();
+    const Vector6<S> before = ahead ? last : now;
+    turning_ =
+        ahead ? pose_.turning(a, b, linear(offset()), dt, totals().flowing) : RowTurning<S>();
+    const Vector6<S> turned = turning_.target();
     const bool whole = !broken() && sound_;
     for (std::size_t i = 0; i < limits_.size(); ++i) {
-        limits_[i] = {.bias = -rate * error[Eigen::Index(i)]};
+        const auto k = Eigen::Index(i);
+        limits_[i] = {.bias = turned[k] - rate * before[k]};
         if (!whole) limits_[i] = {.lower = 0, .upper = 0};
     }
     if (!sound_) return limits_;
     if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
-    start_ = pose_.twist(a, b);
-    prepare_joint(error, a, b, dt, midway, ahead);
+    start_ = turning_.before(pose_.twist(a, b));
+    prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, midway, ahead);
     return limits_;
 }
 
@@ -72,7 +78,7 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
                                        const Vector6<S>& forces, S dt, S share) noexcept {
     // velocities belong to the rows that were solved, positions to where the bodies are now
     const Vector6<S> velocity = pose_.twist(a, b);
-    end_ = velocity;
+    end_ = turning_.after(velocity);
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
     unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
@@ -85,7 +91,14 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
         return last();
     }
     force_ = forces;
-    commit_joint(velocity, a, b, dt);
+    const S travel = totals().plastic_travel;
+    commit_joint(end_, a, b, dt);
+    const bool flows = totals().plastic_travel - travel > allowed_.absolute_residual * dt;
+    if (all_rigid_) {
+        swing_.step(flows, dt);
+    } else {
+        swing_.step(utilisation(), flows, dt);
+    }
     return last();
 }
 

@@ -167,8 +167,11 @@ class CoupledJoint {
 
     void bound(const Motion& motion, Scalar dt) noexcept {
         using Met = Impedance<Scalar, dimension>;
-        const Scalar share = ahead_ ? mean_share<Scalar> : Scalar(1);
-        const Vector compliance = parameters_.stiffness.cwiseInverse() / (share * dt * dt);
+        Vector compliance;
+        for (int i = 0; i < dimension; ++i) {
+            const Scalar share = (ahead_ ? mean_share<Scalar> : Scalar(1)) + damping(i) / dt;
+            compliance[i] = 1 / (parameters_.stiffness[i] * share * dt * dt);
+        }
         const Met impedance = all_rigid_ ? Met(motion.mass, dt) : Met(motion.mass, dt, compliance);
         const Grown<Surface> now{surface_, growth(0)};
         // an elastic row starts from its spring: a resolved one acts a step late, and a box around
@@ -207,20 +210,31 @@ class CoupledJoint {
     }
 
     [[nodiscard]] RowLimits<Scalar> row(int i, Scalar mass, Scalar dt) noexcept {
+        RowLimits<Scalar> limits;
         if (rigid(i)) {
-            return rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
+            limits = rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
+        } else {
+            implicit_[i] =
+                ahead_ ? mean_share<Scalar> : implicit_share(parameters_.stiffness[i], mass, dt);
+            limits = spring(i, dt).limits(lower_[i], upper_[i], dt);
         }
+        limits.bias += drift_[i];
+        return limits;
+    }
+
+    /// τ; the springs of steps as they are lose more than steel by themselves.
+    [[nodiscard]] Scalar damping(int i) const noexcept {
+        return ahead_ ? std::max(parameters_.damping_time[i], damping_) : damping_;
+    }
+    [[nodiscard]] SpringRow<Scalar> spring(int i, Scalar dt) const noexcept {
+        using Spring = SpringRow<Scalar>;
         const Scalar k = parameters_.stiffness[i];
-        if (ahead_) {
-            implicit_[i] = mean_share<Scalar>;
-            return mean_spring_row(k, elastic_[i], start_[i], lower_[i], upper_[i], dt);
-        }
-        implicit_[i] = implicit_share(k, mass, dt);
-        return spring_row(k, elastic_[i], implicit_[i], lower_[i], upper_[i], dt);
+        return ahead_ ? Spring::half_ahead(k, damping(i), elastic_[i], middle_[i], dt)
+                      : Spring::now(k, damping(i), elastic_[i], implicit_[i], dt);
     }
 
     /// `jump`: a change of velocity between the steps by more is somebody's [m/s | rad/s].
-    [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar jump) const noexcept {
+    [[nodiscard]] OpenRow<Scalar> open_row(int i, Scalar jump, Scalar dt) const noexcept {
         const bool jumped = std::abs(start_[i] - state_.velocity[i]) > jump;
         return {.limits = rows_[std::size_t(i)],
                 .lower = lower_[i],
@@ -230,12 +244,14 @@ class CoupledJoint {
                 .stiffness = parameters_.stiffness[i],
                 .implicit = implicit_[i],
                 .start = start_[i],
+                .drift = drift_[i],
                 .noise = parameters_.absolute_residual,
                 .elastic = elastic_[i],
                 .offset = state_.plastic_offset[i],
                 .predicted = jumped ? Scalar(0) : predicted_.change[i],
                 .midway = predicted_.midway,
                 .ahead = ahead_,
+                .spring = spring(i, dt),
                 .may_stop = (state_.flowing || jumped) &&
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
@@ -351,6 +367,7 @@ class CoupledJoint {
     bool sound_ = true; ///< the input of `prepare` was finite
     Rows rows_{};
     Vector start_ = Vector::Zero(), elastic_ = Vector::Zero(); ///< u, q_e at the start
+    Vector middle_ = Vector::Zero();                           ///< q_e where the rows are solved
     Vector lower_ = Vector::Zero(), upper_ = Vector::Zero();   ///< bounds of the forces
     Vector implicit_ = Vector::Ones();                         ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it
@@ -358,6 +375,8 @@ class CoupledJoint {
            share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
     Scalar cap_ = 0;     ///< γ of a brittle break
     bool ahead_ = false; ///< Motion::ahead
+    Scalar turning_ = 0, damping_ = 0; ///< Motion's
+    Vector drift_ = Vector::Zero();    ///< Motion's
     Predicted<Vector> predicted_{Vector::Zero()};
 };
 } // namespace ductile

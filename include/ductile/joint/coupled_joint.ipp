@@ -19,7 +19,11 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
     ahead_ = motion.ahead;
-    if (ahead_) elastic_ -= start_ * (dt / 2);
+    turning_ = motion.turning;
+    damping_ = motion.damping;
+    drift_ = motion.drift;
+    middle_ = elastic_;
+    if (ahead_) elastic_ = motion.before - state_.plastic_offset;
     sound_ = is_finite(motion, dt);
     rows_.fill({.lower = 0, .upper = 0});
     if (state_.broken || !sound_) return rows_;
@@ -40,12 +44,12 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     if (!sound_ || !is_finite(reaction, start_, dt)) return unbooked_step<Step>();
     Taken taken{.force = reaction.force};
     Scalar most = 0;
-    const Scalar jump = allowed_residual(start_);
+    const Scalar jump = allowed_residual(start_) + turning_;
     const bool flows = surface_.value(reaction.force) >= reach() * (1 - bound_tolerance);
     const Vector off = reaction.on_surface ? off_normal(reaction, flows, dt) : Vector::Zero();
     std::array<RowBooking<Scalar>, std::size_t(dimension)> rows;
     for (int i = 0; i < dimension; ++i) {
-        const OpenRow<Scalar> open = open_row(i, jump);
+        const OpenRow<Scalar> open = open_row(i, jump, dt);
         const ductile::Reaction<Scalar> of_row{reaction.force[i], reaction.velocity[i],
                                                reaction.position[i]};
         RowBooking<Scalar>& booked = rows[std::size_t(i)];
@@ -64,6 +68,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
             taken.axis = i;
         }
         step.elastic += booked.elastic;
+        step.damped += booked.damped;
         step.other_work += booked.other + (1 - share) * booked.flow;
         if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
         if (!solved) continue;

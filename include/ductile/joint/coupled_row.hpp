@@ -11,6 +11,7 @@
 #include <concepts>
 #include <limits>
 
+#include "ductile/joint/elastic_row.hpp"
 #include "ductile/joint/step_error.hpp"
 #include "ductile/vocabulary/row.hpp"
 
@@ -19,7 +20,7 @@ namespace ductile {
 /// What one row did in a step [J], and how far it flowed [m | rad].
 template <std::floating_point S>
 struct RowBooking {
-    S flow = 0, elastic = 0, other = 0, residual = 0, travel = 0;
+    S flow = 0, elastic = 0, damped = 0, other = 0, residual = 0, travel = 0;
     StepError<S> error{};
     bool at_bound = false;
     bool moved = false; ///< a rigid row that goes on from where it is
@@ -35,12 +36,14 @@ struct OpenRow {
     S stiffness;         ///< k; infinite: rigid [N/m | N m/rad]
     S implicit;          ///< θ of an elastic row
     S start;             ///< u [m/s | rad/s]
+    S drift;             ///< as Motion's [m/s | rad/s]
     S noise;             ///< speed below which nothing moves [m/s | rad/s]
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
     S predicted;         ///< as RowStep's [m/s | rad/s]
     bool midway;         ///< as RowStep's
     bool ahead;          ///< as Motion's
+    SpringRow<S> spring; ///< of an elastic row
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
 
     [[nodiscard]] RowBooking<S> book(const Reaction<S>& reaction, S dt) const noexcept {
@@ -77,7 +80,8 @@ struct OpenRow {
             std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
         booked.travel = trial - strained;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
-        const S rest = work - booked.elastic;
+        booked.damped = spring.damped(reaction.velocity - drift, booked.travel, strained, dt);
+        const S rest = work - booked.elastic - booked.damped;
         const S slipped = std::abs(stiffness * strained * booked.travel);
         if (booked.travel != 0) {
             const S by_work = ahead ? S(1) : implicit;
@@ -106,15 +110,12 @@ struct OpenRow {
             if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
             return booked;
         }
-        // f = -k (q_e + θ u' dt - Δ), the spring's part of it at the end of the step; the mean of
-        // a step half ahead is -k (2 q_e + (u + u') dt/2 - Δ)/2
         const S trial = reaction.position - offset;
-        const S beyond = ahead ? 2 * (elastic + travel / 2 + f / stiffness)
-                               : elastic + implicit * reaction.velocity * dt + f / stiffness;
-        booked.travel = flows ? beyond : S(0);
+        booked.travel = flows ? spring.flow(f, reaction.velocity - drift) : S(0);
         const S strained = trial - booked.travel;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
-        const S rest = work - booked.elastic;
+        booked.damped = spring.damped(reaction.velocity - drift, booked.travel, strained, dt);
+        const S rest = work - booked.elastic - booked.damped;
         const S slipped = -f * booked.travel;
         const S by_work = ahead ? S(0) : implicit;
         if (flows) booked.flow = (1 - by_work) * slipped + by_work * rest;

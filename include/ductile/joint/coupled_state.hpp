@@ -27,6 +27,10 @@ struct CoupledMotion {
     Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
     bool midway = false; ///< as Motion's
     bool ahead = false;  ///< as Motion's
+    Eigen::Matrix<S, N, 1> before = Eigen::Matrix<S, N, 1>::Zero(); ///< as Motion's
+    S turning = 0;                                                  ///< as Motion's
+    Eigen::Matrix<S, N, 1> drift = Eigen::Matrix<S, N, 1>::Zero();  ///< as Motion's
+    S damping = 0;                                                  ///< as Motion's
 };
 
 /// What the engine did to the rows in the step.
@@ -42,7 +46,7 @@ struct CoupledReaction {
 template <std::floating_point S, int N>
 [[nodiscard]] bool is_finite(const CoupledMotion<S, N>& motion, S dt) noexcept {
     return is_finite(motion.position) && is_finite(motion.velocity) && is_finite(motion.mass) &&
-           are_finite(dt);
+           is_finite(motion.before) && are_finite(dt);
 }
 /// The same, and the work from the velocities `start` on.
 template <std::floating_point S, int N>
@@ -90,6 +94,9 @@ struct CoupledParameters {
     /// known.
     Eigen::Matrix<S, N, 1> section_stiffness =
         Eigen::Matrix<S, N, 1>::Constant(std::numeric_limits<S>::infinity());
+    /// As OneAxisParameters, of each axis [s], >= 0; with none at all, waves that no part resolves
+    /// may grow.
+    Eigen::Matrix<S, N, 1> damping_time = Eigen::Matrix<S, N, 1>::Constant(S(3e-6));
     S drift_time = S(0.02);         ///< as OneAxisParameters [s], > 0
     S absolute_residual = S(1e-3);  ///< [m/s | rad/s], > 0
     S relative_residual = S(1e-2);  ///< [-], in [0, 1]
@@ -108,6 +115,8 @@ struct CoupledParameters {
                                         stiffness[i], "N/m or N m/rad");
             check::positive_or_infinite("CoupledJoint.largest_travel[" + std::to_string(i) + "]",
                                         largest_travel[i], "m or rad");
+            check::non_negative("CoupledJoint.damping_time[" + std::to_string(i) + "]",
+                                damping_time[i], "s");
             check::positive_or_infinite("CoupledJoint.section_stiffness[" + std::to_string(i) + "]",
                                         section_stiffness[i], "N/m or N m/rad");
         }

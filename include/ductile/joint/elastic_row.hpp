@@ -48,37 +48,62 @@ template <std::floating_point S>
     return {.lower = lower, .upper = upper, .bias = -elastic / std::max(drift_time, 5 * dt)};
 }
 
-/// The row of a spring strained by `elastic` [m | rad] whose force stays within [lower, upper]
-/// [N | N m]; `implicit`: θ.
-template <std::floating_point S>
-[[nodiscard]] constexpr RowLimits<S> spring_row(S stiffness, S elastic, S implicit, S lower,
-                                                S upper, S dt) noexcept {
-    if (implicit > 0) {
-        return {.lower = lower,
-                .upper = upper,
-                .bias = -elastic / (implicit * dt),
-                .compliance = 1 / (implicit * stiffness * dt * dt)};
-    }
-    const S given = std::clamp(-stiffness * elastic, lower, upper);
-    return {.lower = given, .upper = given};
-}
-
-/// θ of which the compliance of a mean spring's row is 1/(θ k dt²).
+/// Share of its end in the mean force of a spring whose bodies are half a step ahead [-].
 template <std::floating_point S>
 inline constexpr S mean_share = S(0.25);
 
-/// The row of a spring whose bodies are half a step ahead, strained by `elastic` at the start
-/// [m | rad], `start` being u: its force is the mean of those at the start and the end of the step,
-///   f = -k (q_e + (u + u') dt/4)   <=>   C = 4/(k dt²),  b = u - 4 q_m/dt,  q_m = q_e + u dt/2
-/// whose work is exactly what it stores, at any step and stiffness.
+/// A spring and a damper of k τ beside it, in a step in which Δ of it flows,
+///
+///   f = -k (q + g u' - c Δ)   <=>   C = 1/(g k dt),  b = -q/g
+///
+///   as it is          q = q_e,           g = θ dt + τ,    c = 1 + τ/dt
+///   half a step ahead q = (q_e + q_m)/2, g = dt/4 + τ,    c = 1/2 + τ/dt
+///
+/// q_m is q_e in the middle of the step: its force is then the mean of those at the start and the
+/// end, whose work is exactly what it stores, at any step and stiffness; with a damper k → ∞ keeps
+/// the share 1/(1 + 4 τ/dt) of what vibrates in a step. g = 0: the force is given.
 template <std::floating_point S>
-[[nodiscard]] constexpr RowLimits<S> mean_spring_row(S stiffness, S elastic, S start, S lower,
-                                                     S upper, S dt) noexcept {
-    return {.lower = lower,
-            .upper = upper,
-            .bias = -start - 4 * elastic / dt,
-            .compliance = 1 / (mean_share<S> * stiffness * dt * dt)};
-}
+struct SpringRow {
+    S stiffness; ///< k [N/m | N m/rad]
+    S damping;   ///< τ [s], >= 0
+    S start;     ///< q_e [m | rad]
+    S reach;     ///< q [m | rad]
+    S lead;      ///< g [s]
+    S give;      ///< c [-]
+
+    [[nodiscard]] static constexpr SpringRow now(S stiffness, S damping, S elastic, S implicit,
+                                                 S dt) noexcept {
+        return {stiffness, damping, elastic, elastic, implicit * dt + damping, 1 + damping / dt};
+    }
+    [[nodiscard]] static constexpr SpringRow half_ahead(S stiffness, S damping, S elastic, S middle,
+                                                        S dt) noexcept {
+        return {stiffness,
+                damping,
+                elastic,
+                (elastic + middle) / 2,
+                mean_share<S> * dt + damping,
+                S(0.5) + damping / dt};
+    }
+    /// Its force stays within [lower, upper] [N | N m].
+    [[nodiscard]] constexpr RowLimits<S> limits(S lower, S upper, S dt) const noexcept {
+        if (!(lead > 0)) {
+            const S given = std::clamp(-stiffness * reach, lower, upper);
+            return {.lower = given, .upper = given};
+        }
+        return {.lower = lower,
+                .upper = upper,
+                .bias = -reach / lead,
+                .compliance = 1 / (lead * stiffness * dt)};
+    }
+    /// Δ of a row that ended at `velocity` with `force`.
+    [[nodiscard]] constexpr S flow(S force, S velocity) const noexcept {
+        return (reach + lead * velocity + force / stiffness) / give;
+    }
+    /// What the damper took, the row having flowed by `flow` and being strained by `end` now [J].
+    [[nodiscard]] constexpr S damped(S velocity, S flow, S end, S dt) const noexcept {
+        return stiffness * damping * (velocity - flow / dt) * (end - start);
+    }
+};
 
 /// Share of a flow's account that its work gives, the geometry giving the rest, for a law whose
 /// range moves: θ where the slip is within `range`, half of that between the two yield points, and

@@ -12,7 +12,7 @@
 namespace ductile {
 
 /// What one committed step did. Plain value. The work that the rows took from the bodies is
-///   plastic_work + elastic + other_work + release + lost [J].
+///   plastic_work + elastic + damped + other_work + release + lost [J].
 template <std::floating_point S>
 struct Step {
     Outcome outcome = Outcome::elastic;
@@ -20,6 +20,7 @@ struct Step {
     bool fracture = false;    ///< it broke in this step: fracture() of the joint reports how
     S plastic_work = 0;       ///< dissipated by flow, >= 0 [J]
     S elastic = 0;            ///< change of what is stored, elastic and by a back force [J]
+    S damped = 0;             ///< taken by the material's damping, either sign within a swing [J]
     S other_work = 0; ///< solver residual, drift removal, numerical damping; either sign [J]
     S release = 0;    ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
     S lost = 0;       ///< stored energy that a break set free inside the part, >= 0 [J]
@@ -50,6 +51,7 @@ struct JointTotals {
     S plastic_travel = 0; ///< p, work-conjugate or equivalent, never decreases [m | rad]
     S plastic_work = 0;   ///< D, never decreases [J]
     S stored = 0;         ///< elastic energy, and what a back force holds [J]
+    S damped = 0;         ///< taken by the material's damping [J]
     S other_work = 0;     ///< sum of Step::other_work, either sign [J]
     S lost = 0;           ///< stored energy that the break set free [J]
     S residual_max = 0;   ///< largest residual so far [m/s | rad/s]

@@ -44,6 +44,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     struct State {
         typename Joint::State joint;
         Matrix3<S> rest = Matrix3<S>::Identity(); ///< R_p
+        SwingState<S> swing{};
 
         bool operator==(const State&) const = default;
     };
@@ -67,10 +68,11 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
 
     [[nodiscard]] const Joint& joint() const noexcept { return joint_; }
-    [[nodiscard]] State state() const noexcept { return {joint_.state(), pose_.rest()}; }
+    [[nodiscard]] State state() const noexcept { return {joint_.state(), pose_.rest(), swing_}; }
     void restore(const State& state) noexcept {
         joint_.restore(state.joint);
         pose_.set_rest(state.rest);
+        swing_ = state.swing;
         if constexpr (one_axis) {
             force_ = from_joint(JointVector::Constant(state.joint.force));
         } else {
@@ -140,6 +142,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     using Base::limits_;
     using Base::plastic_;
     using Base::pose_;
+    using Base::swing_;
 
     [[nodiscard]] static bool all_rigid(const Joint& joint) noexcept {
         constexpr S rigid = std::numeric_limits<S>::infinity();
@@ -171,8 +174,8 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         }
     }
     void take_mass(const Matrix6<S>& k) noexcept override { mass_ = mass_of_rows(k, axes_); }
-    void prepare_joint(const Vector6<S>& strain, const BodyState<S>& a, const BodyState<S>& b, S dt,
-                       bool midway, bool ahead) noexcept override;
+    void prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool midway,
+                       bool ahead) noexcept override;
     void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a, const BodyState<S>& b,
                       S dt) noexcept override;
     void leave_unbooked() noexcept override { booked_.leave_unbooked(); }
@@ -245,18 +248,42 @@ class Link final : public AnyLink<typename Joint::Scalar> {
 };
 
 template <class Joint>
-void Link<Joint>::prepare_joint(const Vector6<S>& strain, const BodyState<S>& a,
-                                const BodyState<S>& b, S dt, bool midway, bool ahead) noexcept {
+void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool midway,
+                                bool ahead) noexcept {
     offset_ = joint_offset();
+    const RowTurning<S>& turning = rows.turning;
+    const JointVector position = from_rest(rows.strain), before = from_rest(rows.before),
+                      velocity = to_joint(rows.velocity), drift = to_joint(turning.drift()),
+                      back = to_joint(turning.before(Vector6<S>::Zero()));
+    const S speed = this->turning_speed(), damping = this->damping_;
     if constexpr (one_axis) {
-        const std::size_t i = index(axes_[0]);
-        limits_[i] = joint_.prepare({strain[Eigen::Index(i)] + offset_[0],
-                                     pose_.twist_along(i, a, b), mass_(0, 0), midway, ahead},
-                                    dt);
+        RowLimits<S>& limits = limits_[index(axes_[0])];
+        limits = joint_.prepare({.position = position[0],
+                                 .velocity = velocity[0],
+                                 .mass = mass_(0, 0),
+                                 .midway = midway,
+                                 .ahead = ahead,
+                                 .before = before[0],
+                                 .turning = speed,
+                                 .drift = drift[0],
+                                 .damping = damping},
+                                dt);
+        limits.bias += back[0];
     } else {
-        const auto limits = joint_.prepare(
-            {from_rest(strain), to_joint(pose_.twist(a, b)), mass_, midway, ahead}, dt);
-        for (std::size_t k = 0; k < limits.size(); ++k) limits_[index(axes_[k])] = limits[k];
+        const auto limits = joint_.prepare({.position = position,
+                                            .velocity = velocity,
+                                            .mass = mass_,
+                                            .midway = midway,
+                                            .ahead = ahead,
+                                            .before = before,
+                                            .turning = speed,
+                                            .drift = drift,
+                                            .damping = damping},
+                                           dt);
+        for (std::size_t k = 0; k < limits.size(); ++k) {
+            limits_[index(axes_[k])] = limits[k];
+            limits_[index(axes_[k])].bias += back[Eigen::Index(k)];
+        }
     }
 }
 

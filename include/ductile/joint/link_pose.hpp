@@ -114,6 +114,11 @@ class LinkPose {
         }
         return dot(column(axes_, int(axis)), relative_velocity(a, b));
     }
+    /// What the turning of the bodies does to the rows in a part of `dt` [s], in the middle of
+    /// which they are, while they hold A at the displacement `rest`; `slides`: they will go on
+    /// moving as they do.
+    [[nodiscard]] RowTurning<S> turning(const BodyState<S>& a, const BodyState<S>& b,
+                                        const Vector3<S>& rest, S dt, bool slides) const noexcept;
     /// Speed of A at the joint [m/s].
     [[nodiscard]] S speed_of_a(const BodyState<S>& a) const noexcept {
         return norm(sum(a.velocity, cross(a.spin, arm_a_)));
@@ -190,6 +195,39 @@ class LinkPose {
     mutable bool turned_ = true; ///< e is to be worked out anew
     bool conjugate_ = false;
 };
+
+template <std::floating_point S>
+RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
+                                   const Vector3<S>& rest, S dt, bool slides) const noexcept {
+    // [rad]: below, nothing is noticed; beyond twice, a part is no picture of the motion any more,
+    // and the whole of it would make rows swing
+    constexpr S least = S(1e-5), largest = S(0.25);
+    const S turn_a = dot(a.spin, a.spin) * dt * dt, turn_b = dot(b.spin, b.spin) * dt * dt;
+    if (!(turn_a + turn_b > least * least) || !std::isfinite(turn_a + turn_b)) return {};
+    Vector3<S> across = Vector3<S>::Zero(), along = across;
+    // on a circle of radius r the way through its middle is a tangent at both ends of a part:
+    // w = 2 r (1/cos φ - cos φ)/dt, o = 2 r (sin φ - φ/cos φ)/dt, φ half the turn
+    const auto add = [&](const Vector3<S>& spin, const Vector3<S>& arm, S turn, S sign) {
+        if (!(turn > 0)) return;
+        const S half = std::sqrt(turn) / 2, bounded = std::min(half, largest);
+        const S sine = std::sin(bounded), cosine = std::cos(bounded);
+        const Vector3<S> swept = cross(spin, arm);
+        across =
+            sum(across, scaled(sign * sine * sine / cosine * 2 * dt / turn, cross(spin, swept)));
+        along = difference(along, scaled(sign * (sine - bounded / cosine) / half, swept));
+    };
+    add(a.spin, arm_a_, turn_a, 1);
+    add(b.spin, sum(times(b.orientation, in_b_.origin), times(axes_, rest)), turn_b, -1);
+    Vector3<S> turned = Vector3<S>::Zero();
+    if (slides) {
+        const Vector3<S> way = difference(relative_velocity(a, b), sum(across, along));
+        if (!is_finite(way)) return {};
+        across = difference(across, scaled(dt, cross(b.spin, way)));
+        turned = scaled(-dt / 2, cross(b.spin, a.spin));
+    }
+    return {twist_of(transposed_times(axes_, across), transposed_times(moment_axes(), turned)),
+            twist_of(transposed_times(axes_, along), Vector3<S>(Vector3<S>::Zero()))};
+}
 
 template <std::floating_point S>
 S LinkPose<S>::unseen_turn(const BodyState<S>& a, const BodyState<S>& b, S time) const noexcept {

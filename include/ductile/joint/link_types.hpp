@@ -55,6 +55,25 @@ struct LinkRow {
     }
 };
 
+/// Velocities of rows that come of the turning of their bodies, in the order of JointAxis
+/// [m/s | rad/s].
+template <std::floating_point S>
+struct RowTurning {
+    Vector6<S> across = Vector6<S>::Zero(); ///< w: less before the solve, more after it
+    Vector6<S> along = Vector6<S>::Zero();  ///< o: the same before and after
+
+    /// Where the row is at rest 0 before the step and `drift` after it; their sum is that of u, u'.
+    [[nodiscard]] Vector6<S> before(const Vector6<S>& u) const noexcept {
+        return u - across - along;
+    }
+    [[nodiscard]] Vector6<S> after(const Vector6<S>& u) const noexcept {
+        return u + across + along;
+    }
+    [[nodiscard]] Vector6<S> drift() const noexcept { return 2 * along; }
+    /// u' of a row that is at rest after the step.
+    [[nodiscard]] Vector6<S> target() const noexcept { return along - across; }
+};
+
 /// Force and moment on body A at the joint, world axes.
 template <std::floating_point S>
 struct JointWrench {

@@ -136,12 +136,7 @@ class OneAxisJoint {
     [[nodiscard]] bool rigid() const noexcept { return std::isinf(parameters_.stiffness); }
 
     /// True where the force of an elastic row was given, not solved for.
-    [[nodiscard]] bool given() const noexcept {
-        return !rigid() && (implicit_ == 0 || lower_ == upper_);
-    }
-    [[nodiscard]] Scalar compliance(Scalar dt) const noexcept {
-        return rigid() ? Scalar(0) : 1 / (implicit_ * parameters_.stiffness * dt * dt);
-    }
+    [[nodiscard]] bool given() const noexcept { return given_; }
     [[nodiscard]] Scalar cap(Scalar sign) const noexcept {
         return criterion_.force_cap(state_.criterion, sign);
     }
@@ -169,7 +164,7 @@ class OneAxisJoint {
 
     /// True where somebody changed the velocity between the steps, well above solver noise.
     [[nodiscard]] bool jumped() const noexcept {
-        return std::abs(start_ - state_.velocity) > allowed_residual(start_);
+        return std::abs(start_ - state_.velocity) > allowed_residual(start_) + turning_;
     }
     [[nodiscard]] Scalar allowed_residual(Scalar velocity) const noexcept {
         const Scalar speed = std::max(std::abs(start_), std::abs(velocity));
@@ -178,7 +173,7 @@ class OneAxisJoint {
 
     [[nodiscard]] Scalar violation(const Reaction& reaction, const Taken& taken) const noexcept {
         if (given()) return 0;
-        const Scalar soft = compliance(taken.dt) * reaction.force * taken.dt;
+        const Scalar soft = compliance_ * reaction.force * taken.dt;
         return taken.violation(reaction.velocity + soft - bias_);
     }
 
@@ -257,7 +252,8 @@ class OneAxisJoint {
         const Scalar slipped = spring_slip(law_, state_.law, k, fade_, trial);
         const Scalar strained = trial - slipped;
         step.elastic = k * (strained * strained - elastic_ * elastic_) / 2;
-        const Scalar rest = taken.work - step.elastic;
+        step.damped = spring_.damped(taken.velocity, slipped, strained, taken.dt);
+        const Scalar rest = taken.work - step.elastic - step.damped;
         const Scalar direction = std::copysign(Scalar(1), slipped != 0 ? slipped : taken.travel);
         const Scalar strength = flow_.resistance(direction);
         if (slipped != 0) {
@@ -344,7 +340,10 @@ class OneAxisJoint {
 
     // between prepare and commit
     bool sound_ = true;                         ///< the input of `prepare` was finite
-    Scalar bias_ = 0, start_ = 0, elastic_ = 0; ///< b, u, q_e at the start
+    Scalar bias_ = 0, compliance_ = 0;          ///< b, C
+    Scalar start_ = 0, elastic_ = 0;            ///< u, q_e at the start
+    SpringRow<Scalar> spring_{};                ///< of an elastic row
+    bool given_ = false;                        ///< its force is
     FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
     Scalar lower_ = 0, upper_ = 0,
            tolerance_ = 0;           ///< bounds of the row's force, how near is at them
@@ -352,6 +351,7 @@ class OneAxisJoint {
     Scalar left_ = 0,
            share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
     bool ahead_ = false; ///< Motion::ahead
+    Scalar turning_ = 0, drift_ = 0; ///< Motion's
     Predicted<Scalar> predicted_{};
 };
 } // namespace ductile

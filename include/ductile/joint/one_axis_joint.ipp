@@ -18,21 +18,29 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
     predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
     ahead_ = motion.ahead;
-    if (ahead_) elastic_ -= start_ * dt / 2;
+    turning_ = motion.turning;
+    drift_ = motion.drift;
+    const Scalar middle = elastic_;
+    if (ahead_) elastic_ = motion.before - state_.plastic_offset;
     sound_ = are_finite(start_, elastic_, dt) && (rigid() || motion.mass >= 0);
     if (state_.broken || !sound_) return {.lower = 0, .upper = 0};
     bound(dt);
     RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
     if (rigid()) {
-        row.bias = -elastic_ / std::max(parameters_.drift_time, 5 * dt);
-    } else if (ahead_) {
-        implicit_ = mean_share<Scalar>;
-        row = mean_spring_row(parameters_.stiffness, elastic_, start_, lower_, upper_, dt);
+        row = rigid_row(elastic_, lower_, upper_, parameters_.drift_time, dt);
     } else {
-        implicit_ = implicit_share(parameters_.stiffness, motion.mass, dt);
-        row = spring_row(parameters_.stiffness, elastic_, implicit_, lower_, upper_, dt);
+        using Spring = SpringRow<Scalar>;
+        const Scalar k = parameters_.stiffness;
+        implicit_ = ahead_ ? mean_share<Scalar> : implicit_share(k, motion.mass, dt);
+        // the springs of steps as they are lose more than steel by themselves
+        const Scalar material = std::max(parameters_.damping_time, motion.damping);
+        spring_ = ahead_ ? Spring::half_ahead(k, material, elastic_, middle, dt)
+                         : Spring::now(k, motion.damping, elastic_, implicit_, dt);
+        row = spring_.limits(lower_, upper_, dt);
     }
-    bias_ = row.bias;
+    given_ = !rigid() && row.lower == row.upper;
+    bias_ = row.bias += drift_;
+    compliance_ = row.compliance;
     return row;
 }
 
@@ -48,6 +56,7 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
     const Taken taken{.force = reaction.force,
                       .work = -reaction.force * dt * (start_ + reaction.velocity) / 2,
                       .travel = (start_ + reaction.velocity) / 2 * dt,
+                      .velocity = reaction.velocity - drift_,
                       .position = reaction.position,
                       .dt = dt,
                       .at_upper = reaction.force >= upper_ - tolerance_,

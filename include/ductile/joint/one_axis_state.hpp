@@ -20,6 +20,7 @@ struct RowTaken {
     S force;    ///< f [N | N m]
     S work;     ///< W [J]
     S travel;   ///< (u + u')/2 dt, signed [m | rad]
+    S velocity; ///< u' beyond the row's drift [m/s | rad/s]
     S position; ///< q after the step [m | rad]
     S dt;       ///< [s]
     bool at_upper, at_lower;
@@ -51,6 +52,9 @@ template <std::floating_point S>
 struct OneAxisParameters {
     /// k of the elastic part [N/m | N m/rad], > 0; infinity: rigid below yield.
     S stiffness = std::numeric_limits<S>::infinity();
+    /// τ of the elastic part, a damper of k τ beside the spring [s], >= 0; read in parts of a
+    /// frame, as the springs of other steps lose more by themselves.
+    S damping_time = 0;
     /// Time in which a rigid row that holds removes drift from q_p [s], > 0; five steps where that
     /// is longer. A time, not a share of each step: a share would turn the drift left by a long
     /// step into a kick in a short one.
@@ -69,6 +73,7 @@ struct OneAxisParameters {
     /// @throws std::invalid_argument where a parameter is out of range.
     void validate() const {
         check::positive_or_infinite("OneAxisJoint.stiffness", stiffness, "N/m or N m/rad");
+        check::non_negative("OneAxisJoint.damping_time", damping_time, "s");
         check::positive("OneAxisJoint.drift_time", drift_time, "s");
         check::positive("OneAxisJoint.absolute_residual", absolute_residual, "m/s or rad/s");
         check::between("OneAxisJoint.relative_residual", relative_residual, S(0), S(1), "", true);

@@ -91,6 +91,7 @@ void settle(State& state, Step& step, const StepEnd<S, Axes>& end,
     state.dt = end.dt;
     state.plastic_work += step.plastic_work;
     state.stored += step.elastic;
+    state.damped += step.damped;
     state.other_work += step.other_work;
     state.lost += step.lost;
     state.residual_max = worse(state.residual_max, step.residual);

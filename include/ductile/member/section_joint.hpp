@@ -47,6 +47,11 @@ struct SectionJointParameters {
     S largest_twist = std::numeric_limits<S>::infinity();
     /// True: elastic with the stiffness of the length below yield; false: rigid.
     bool elastic = false;
+    /// τ of an elastic joint [s], >= 0: a damper of k τ beside each spring. Of shear and axial
+    /// force, so that waves along members end that no part of a frame resolves; of bending and
+    /// twist less than steel itself loses: a loss factor ω τ of 6e-5 in a structure that swings at
+    /// 20 rad/s.
+    S wave_damping = S(1e-4), bending_damping = S(3e-6);
     ShearYield shear_yield = ShearYield::von_mises;
 };
 
@@ -69,6 +74,10 @@ template <FullSection T>
         rows.section_stiffness[i] = of.stiffness[std::size_t(i)];
         if (parameters.elastic) rows.stiffness[i] = of.stiffness[std::size_t(i)];
     }
+    rows.damping_time.template head<3>().setConstant(
+        check::non_negative("SectionJoint.wave_damping", parameters.wave_damping, "s"));
+    rows.damping_time.template tail<3>().setConstant(
+        check::non_negative("SectionJoint.bending_damping", parameters.bending_damping, "s"));
     const S bending = check::positive_or_infinite("SectionJoint.largest_bending",
                                                   parameters.largest_bending, "rad");
     const S twist =

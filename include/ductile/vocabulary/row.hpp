@@ -50,6 +50,12 @@ struct Motion {
     /// The bodies are half a step ahead (frame/README.md): q is that in the middle of the step, and
     /// they will end it at q + u' dt/2.
     bool ahead = false;
+    Scalar before = 0; ///< then q at the start of the step; else not read [m | rad]
+    /// Change of velocity between steps that is nobody's doing: the row turns with its bodies
+    /// [m/s | rad/s].
+    Scalar turning = 0;
+    Scalar drift = 0;   ///< velocity at which the row is at rest after the step [m/s | rad/s]
+    Scalar damping = 0; ///< least τ of an elastic part in this step [s]
 };
 
 /// What the engine did to the row in the step.

@@ -8,13 +8,14 @@
 // The update of an engine is v' = v + M⁻¹ Σ impulses, so each impulse's work is impulse × (u +
 // u')/2 at its point, and the sum is the change of kinetic energy to round-off. Booked:
 //   plastic      what every plastic joint says it absorbed
-//   joints       work of all joints, less the plastic part, what elastic ones store, which the
-//                world holds, and what a break gave back
+//   joints       work of all joints, less the plastic part, damping, what elastic ones store,
+//                which the world holds, and what a break gave back
+//   damping      what every plastic joint says that its material's damping took
+//   sleep        motion that ends because the engine puts a body to sleep
 //   contact      normal impulses
 //   friction     tangential impulses
 //   integration  gravity's work against the change of potential energy; damping; gyroscopic
-//                torque and the turning of inertia tensors; motion that ends because the engine
-//                puts a body to sleep
+//                torque and the turning of inertia tensors
 // What the engine does not tell stays unexplained.
 //
 // Cost: O(bodies + joints + contacts) per step. Not thread-safe.
@@ -110,7 +111,7 @@ class EnergyMeter {
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();
-    /// What plastic joints took beside their flow and what they store, as booked in
+    /// What plastic joints took beside their flow, damping and what they store, as booked in
     /// Account::joints [J].
     [[nodiscard]] double of_plastic_joints() const noexcept { return of_plastic_joints_; }
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
@@ -151,7 +152,7 @@ class EnergyMeter {
     };
     /// A plastic joint's totals at the start of the step [J].
     struct PlasticStart {
-        double absorbed, stored, released;
+        double absorbed, damped, stored, released;
     };
 
     [[nodiscard]] Course* course_of(const void* body);

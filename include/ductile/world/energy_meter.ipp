@@ -62,8 +62,8 @@ DUCTILE_INLINE void EnergyMeter::before_step() {
     plastic_start_.clear();
     for (const auto& [joint, a, b] : plastic_) {
         if (plastic_numbers_.enter(joint) < plastic_start_.size()) continue;
-        plastic_start_.push_back(
-            {joint->absorbed_energy(), joint->stored_energy(), joint->release().energy});
+        plastic_start_.push_back({joint->absorbed_energy(), joint->damped_energy(),
+                                  joint->stored_energy(), joint->release().energy});
     }
     watch_step();
 }
@@ -167,8 +167,7 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
     const MeteredBody& start = course.start;
     if (course.asleep_after) {
         if (!start.asleep) {
-            ledger_.book(Account::integration,
-                         detail::kinetic_energy(start, start.velocity, start.spin));
+            ledger_.book(Account::sleep, detail::kinetic_energy(start, start.velocity, start.spin));
         }
         return;
     }
@@ -201,10 +200,12 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
     double named = 0;
     if (const PlasticStart* before = start_of(joint.plastic)) {
         const double flow = joint.plastic->absorbed_energy() - before->absorbed;
+        const double damped = joint.plastic->damped_energy() - before->damped;
         ledger_.book(Account::plastic, flow);
+        ledger_.book(Account::damping, damped);
         // what a break released was taken by the row and given back after the solve; what was
         // stored then is set free inside the part
-        named = flow + joint.plastic->stored_energy() - before->stored +
+        named = flow + damped + joint.plastic->stored_energy() - before->stored +
                 joint.plastic->release().energy - before->released;
     }
     ledger_.book(Account::joints, taken - named);
@@ -224,7 +225,8 @@ DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {
 DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,
                                                          const Vector3<double>& point) {
     const Course* course = course_of(body);
-    if (course == nullptr) return Vector3<double>::Zero();
+    // an engine leaves what it told of a sleeping body's contacts as it was, too
+    if (course == nullptr || course->asleep_after) return Vector3<double>::Zero();
     const Vector3<double> arm = difference(point, course->start.position);
     const Vector3<double> spins = sum(course->start.spin, course->spin_after);
     const Vector3<double> velocities = sum(course->start.velocity, course->velocity_after);

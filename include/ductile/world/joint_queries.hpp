@@ -20,6 +20,8 @@ class JointQueries {
     [[nodiscard]] double plastic_travel() const { return totals().plastic_travel; }
     /// Energy dissipated by plastic flow, D [J].
     [[nodiscard]] double absorbed_energy() const { return totals().plastic_work; }
+    /// Energy that the material's damping took below the strength [J].
+    [[nodiscard]] double damped_energy() const { return totals().damped; }
     /// Elastic energy, and what a back force holds [J].
     [[nodiscard]] double stored_energy() const { return totals().stored; }
     [[nodiscard]] bool broken() const { return totals().broken; }

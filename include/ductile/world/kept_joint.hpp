@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/world/structures.hpp"
 #include "ductile/world/waiting_joints.hpp"
 
 namespace ductile {
@@ -16,14 +17,14 @@ namespace ductile {
 class JointKeeper;
 
 /// What an engine's constraint is beside its joint. Not thread-safe.
-class KeptJoint {
+class KeptJoint : public StructureMember {
   public:
     KeptJoint(const KeptJoint&) = delete;
     KeptJoint& operator=(const KeptJoint&) = delete;
 
   protected:
     KeptJoint() = default;
-    ~KeptJoint() {
+    ~KeptJoint() override {
         came_into_world();
         leave_keepers();
     }
@@ -65,11 +66,17 @@ class JointKeeper {
     void keep(KeptJoint& joint, std::function<void()> forget) {
         joint.keepers_.push_back({this, std::move(forget)});
         joints_.push_back(&joint);
+        structures_.add(joint);
     }
     void let_go(KeptJoint& joint) {
         forget_me(joint);
         std::erase(joints_, &joint);
+        structures_.remove(joint);
     }
+    /// As Structures'.
+    void set_rest_damping(double damping) noexcept { structures_.set_damping(damping); }
+    /// Before a step, and after it or a part that stands.
+    void look_at_structures() { structures_.look(); }
 
   private:
     friend class KeptJoint;
@@ -82,11 +89,13 @@ class JointKeeper {
     }
 
     std::vector<KeptJoint*> joints_;
+    Structures structures_;
 };
 
 inline void KeptJoint::leave_keepers() {
     for (auto& [keeper, forget] : std::exchange(keepers_, {})) {
         std::erase(keeper->joints_, this);
+        keeper->structures_.remove(*this);
         forget();
     }
 }

@@ -35,6 +35,8 @@ enum class Account : std::size_t {
     friction,    ///< tangential contact forces
     contact,     ///< normal contact forces: inelastic impact, push-out by velocity
     joints,      ///< rigid rows and the engine's own joints: impact inside a joint, drift removal
+    damping,     ///< the material's, of plastic joints below their strength
+    sleep,       ///< motion that ends because the engine puts a body to sleep
     integration, ///< the engine's own drift: potential over a step against the work of gravity,
                  ///< kinetic energy changed by turning an inertia tensor or by damping
     count
@@ -42,7 +44,7 @@ enum class Account : std::size_t {
 
 [[nodiscard]] constexpr std::string_view to_string(Account account) noexcept {
     constexpr std::array<std::string_view, std::size_t(Account::count)> names{
-        "plastic", "friction", "contact", "joints", "integration"};
+        "plastic", "friction", "contact", "joints", "damping", "sleep", "integration"};
     return account < Account::count ? names[std::size_t(account)] : "unknown";
 }
 

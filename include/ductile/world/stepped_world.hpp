@@ -42,6 +42,7 @@ class SteppedWorld : private JointKeeper {
         check::positive("World.step.dt", dt, "s");
         supervisor_.open();
         supervisor_.look_ahead(scene, dt);
+        look_at_structures();
         if (frames_) {
             do_frame(dt, time() + dt);
         } else {
@@ -122,6 +123,7 @@ class SteppedWorld : private JointKeeper {
     /// Around what an adapter keeps of a joint.
     using JointKeeper::keep;
     using JointKeeper::let_go;
+    using JointKeeper::set_rest_damping;
     /// From the next step on forces act from the middle of one step to the middle of the next.
     void start_leapfrog() { leapfrog_.emplace(); }
     /// From the next step on a step is a frame.
@@ -129,6 +131,7 @@ class SteppedWorld : private JointKeeper {
     /// A part of `h` [s], or a blow of none, stands.
     void part_stands(double h) {
         supervisor_.look(time() + h, [this](const void* joint) { suspect(joint); });
+        look_at_structures();
     }
     [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
 
@@ -205,6 +208,7 @@ class SteppedWorld : private JointKeeper {
             }
             supervisor_.look(i < effort.parts ? start + i * part : end,
                              [this](const void* joint) { suspect(joint); });
+            look_at_structures();
         }
         finish(supervisor_.close());
         tell_of_forgotten();

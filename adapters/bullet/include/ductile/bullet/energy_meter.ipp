@@ -45,6 +45,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
         entry.weight = scaled(entry.mass, to_core(body->getGravity()));
         entry.force = to_core(body->getTotalForce());
         entry.torque = to_core(body->getTotalTorque());
+        entry.asleep = !body->isActive();
     }
 }
 

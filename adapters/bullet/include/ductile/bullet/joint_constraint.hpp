@@ -60,6 +60,13 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     DUCTILE_INLINE void list_part_rows(std::size_t joint,
                                        std::vector<PartRow>& rows) const override;
 
+    // ---- a structure's side
+
+    [[nodiscard]] SwingState<double>* swing() noexcept override {
+        return link_.broken() ? nullptr : &link_.swing();
+    }
+    void damp(double time) noexcept override { link_.damp(time); }
+
     // ---- Bullet's side
 
     /// Bullet's own: called for every constraint when a tick opens.

@@ -218,6 +218,7 @@ DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,
         PartRow& row = rows.emplace_back();
         row.joint = joint;
         row.noise = resting_share * link_.absolute_residual();
+        row.turning = link_.turning_speed();
         row.least = link_.least_travel();
         row.elastic = !link_.all_rigid();
         if (!is_awake()) continue;

@@ -69,6 +69,12 @@ class PlasticConstraint : public btTypedConstraint,
     void require_bodies_in_world() const;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
+    // ---- a structure's side (world/structures.hpp)
+
+    [[nodiscard]] bool is_awake_member() const override { return is_awake(); }
+    [[nodiscard]] DUCTILE_INLINE std::array<const void*, 2> moving_bodies() const override;
+    DUCTILE_INLINE void keep_awake() override;
+
     // ---- parts of a frame (world_parts.hpp)
 
     /// The bodies are about to be moved half a step ahead: what hands did to them is seen now.

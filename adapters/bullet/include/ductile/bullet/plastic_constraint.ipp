@@ -202,6 +202,21 @@ DUCTILE_INLINE bool PlasticConstraint::is_awake() const {
     return isEnabled() && (awake(m_rbA) || awake(m_rbB));
 }
 
+DUCTILE_INLINE std::array<const void*, 2> PlasticConstraint::moving_bodies() const {
+    const auto moving = [](const btRigidBody& body) {
+        return body.isStaticOrKinematicObject() ? nullptr : &body;
+    };
+    return {moving(m_rbA), moving(m_rbB)};
+}
+
+DUCTILE_INLINE void PlasticConstraint::keep_awake() {
+    for (btRigidBody* body : {&m_rbA, &m_rbB}) {
+        if (body->isStaticOrKinematicObject() || !body->isActive()) continue;
+        body->setDeactivationTime(0);
+        if (body->getActivationState() == WANTS_DEACTIVATION) body->setActivationState(ACTIVE_TAG);
+    }
+}
+
 DUCTILE_INLINE void PlasticConstraint::EndOfTick::debugDraw(btIDebugDraw* drawer) {
     if (drawer != nullptr) draw(owner_, *drawer);
 }

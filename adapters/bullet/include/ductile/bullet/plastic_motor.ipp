@@ -144,8 +144,9 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     keep(now, force_);
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
-    limits_ =
-        joint_.prepare({now, turning(a, b), mass, force_share_.midway, force_share_.ahead}, dt_);
+    const double speed = turning(a, b);
+    limits_ = joint_.prepare(
+        {now, speed, mass, force_share_.midway, force_share_.ahead, now - speed * dt_ / 2}, dt_);
     pending_ = true;
 }
 

@@ -73,6 +73,10 @@ struct WorldParameters {
     /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
     double tolerance = 0;
     int budget = 256;           ///< solves of a frame where `tolerance` > 0, >= 4
+    /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
+    /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
+    /// to vibrate, of which this would take for a minute.
+    double rest_damping = ductile::rest_damping<double>;
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 

@@ -46,6 +46,7 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
     }
+    set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     tells_ledger_ = parameters.ledger;
     if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
     if (parameters.leapfrog) {

@@ -14,6 +14,8 @@ class IslandRows {
   public:
     /// True where the constraint takes part in the coming step.
     [[nodiscard]] virtual bool acts() const = 0;
+    /// False while it swings or flows: its bodies are not to fall asleep.
+    [[nodiscard]] virtual bool rests() const = 0;
     /// Adds the rows of a step of `dt` [s] between its bodies A and B.
     virtual void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                            double dt) = 0;

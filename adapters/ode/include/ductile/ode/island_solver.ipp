@@ -118,6 +118,8 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
 DUCTILE_INLINE bool IslandSolver::falls_asleep(Kept& kept, double dt) const {
     const Idle before = std::exchange(kept.idle, {});
     if (!std::all_of(bodies_.begin(), bodies_.end(), detail::is_idle)) return false;
+    const auto rests = [this](std::size_t joint) { return members_[joint].rows->rests(); };
+    if (!std::all_of(joints_.begin(), joints_.end(), rests)) return false;
     const Idle now{before.steps + 1, before.time + dt};
     for (const dBodyID body : bodies_) {
         if (now.steps >= dBodyGetAutoDisableSteps(body) &&

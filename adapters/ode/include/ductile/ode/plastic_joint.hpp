@@ -76,6 +76,14 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries, private Isl
 
     [[nodiscard]] IslandRows* island_rows() noexcept override { return this; }
 
+    [[nodiscard]] SwingState<double>* swing() noexcept override {
+        return link_.broken() ? nullptr : &link_.swing();
+    }
+    [[nodiscard]] DUCTILE_INLINE bool is_awake_member() const override;
+    [[nodiscard]] DUCTILE_INLINE std::array<const void*, 2> moving_bodies() const override;
+    void damp(double time) noexcept override { link_.damp(time); }
+    DUCTILE_INLINE void keep_awake() override;
+
     /// Rules the rows of a step of `dt` [s]. Called by World::step.
     DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step. Called by World::step.
@@ -108,6 +116,7 @@ class LinkConstraint : public PlasticConstraint, public LinkQueries, private Isl
 
     // ---- around ODE's step
     [[nodiscard]] bool acts() const override { return acting_; }
+    [[nodiscard]] bool rests() const override { return link_.swing().rests(); }
     DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                                   double dt) override;
     DUCTILE_INLINE void close_rows(const solve::Island& island, double dt) override;

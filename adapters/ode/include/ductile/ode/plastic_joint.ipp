@@ -95,6 +95,21 @@ DUCTILE_INLINE Vector6<double> LinkConstraint::velocities() const {
     return link_.velocities(body_motion(a_), body_motion(b_));
 }
 
+// ---- a structure's side
+
+DUCTILE_INLINE bool LinkConstraint::is_awake_member() const { return may_act() && solved(); }
+DUCTILE_INLINE std::array<const void*, 2> LinkConstraint::moving_bodies() const {
+    if (detached()) return {};
+    const auto moving = [](dBodyID body) { return can_move(body) ? body : nullptr; };
+    return {moving(a_), moving(b_)};
+}
+/// ODE begins to count anew.
+DUCTILE_INLINE void LinkConstraint::keep_awake() {
+    for (const dBodyID body : {a_, b_}) {
+        if (can_move(body) && dBodyIsEnabled(body) != 0) dBodyEnable(body);
+    }
+}
+
 // ---- a step
 
 DUCTILE_INLINE void LinkConstraint::prepare(double dt) {

@@ -56,6 +56,10 @@ struct WorldParameters {
     EffortParameters effort{};  ///< what is done where the solver did not converge
     bool ledger = true;         ///< whether the energy account is kept
     bool leapfrog = false;      ///< whether positions are of second order in the step
+    /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
+    /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
+    /// to vibrate, of which this would take for a minute.
+    double rest_damping = ductile::rest_damping<double>;
     Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
 };
 

@@ -11,6 +11,7 @@
 #include "ductile/ode/force_share.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
@@ -21,6 +22,7 @@ DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
       solver_(parameters.solver) {
     require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
+    set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     if (parameters.ledger) meter_.emplace(world_);
     if (parameters.leapfrog) start_leapfrog();
 }

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether a joint, and the structure that it is in, still swings or flows, or has come to rest.
+//
+// An elastic joint that keeps energy swings for ever. So a structure in which nothing has flowed
+// for a second, and that was not used more than before either, is damped until it rests
+// (rest_damping): what flows, or will soon, is not touched. A structure that does not come to rest
+// then is driven by something; it is left alone until it rests by itself or flows.
+//
+// A joint rests once its utilisation has stayed within a band for a second, whatever its speed: an
+// engine's own threshold is met in the middle of a swing.
+//
+// Symbols
+//   U   utilisation, share of the strength that the forces use; 0 of a joint without springs [-]
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+
+namespace ductile {
+
+/// Plain value; part of what a joint remembers. Peak and quiet are those of its structure.
+template <std::floating_point S>
+struct SwingState {
+    S used = 0;          ///< U [-]
+    S peak = 0;          ///< largest U since it last rested, fading while it is damped [-]
+    S quiet = 0;         ///< time since something flowed or U came to a new peak [s]
+    S held = 0;          ///< U about which it stays [-]
+    S still = 0;         ///< time for which it has [s]
+    bool flows = false;  ///< in its last step
+    bool driven = false; ///< what damping did not bring to rest
+
+    bool operator==(const SwingState&) const = default;
+
+    /// Somebody woke it, or changed the structure.
+    void stir() noexcept { *this = {}; }
+    /// After a step of `dt` [s] of a joint without springs: what does not flow rests.
+    void step(bool flowed, S dt) noexcept {
+        step(S(0), flowed, dt);
+        if (!flowed) still = std::max(still, 2 * waits);
+    }
+    /// After a step of `dt` [s] that left an elastic joint with `utilisation`.
+    void step(S utilisation, bool flowed, S dt) noexcept {
+        constexpr S fades_in = 10; // [s]
+        used = utilisation;
+        flows = flowed;
+        quiet += dt;
+        still += dt;
+        if (is_quiet()) peak -= peak * std::min(S(1), dt / fades_in);
+        if (flows || std::abs(used - held) > band) {
+            held = used;
+            still = 0;
+        }
+        driven = (driven || quiet > comes_to_rest) && !rests();
+    }
+    /// What its structure did.
+    void share(S structure_peak, bool stirred, bool flowed) noexcept {
+        peak = structure_peak;
+        if (stirred) quiet = 0;
+        driven = driven && !flowed;
+    }
+    /// May be damped until it rests.
+    [[nodiscard]] bool is_quiet() const noexcept { return quiet > waits && !driven; }
+    [[nodiscard]] bool rests() const noexcept { return still > waits; }
+
+    static constexpr S band = S(0.002);    ///< [-]
+    static constexpr S waits = 1;          ///< [s]
+    static constexpr S comes_to_rest = 60; ///< a structure that nothing drives [s]
+};
+
+/// τ of all elastic axes of a structure that is quiet, for each second since something stirred, so
+/// that slow swings end too [-].
+template <std::floating_point S>
+inline constexpr S rest_damping = S(0.05);
+
+} // namespace ductile
