@@ -26,6 +26,7 @@ struct FrameSettings {
     int crates = 0;        ///< of 1 t on every beam
     int frames = 1;        ///< one on the other, jointed by their columns
     bool contacts = false; ///< members collide
+    double wave_damping = 1e-4, bending_damping = 3e-6; ///< of elastic joints [s]
     bullet::WorldParameters world{};
 };
 
@@ -194,10 +195,16 @@ class BulletFrame {
             {.width = 0.2, .height = 0.2, .web_thickness = 0.009, .flange_thickness = 0.015});
         const ISection<double> ipe(
             {.width = 0.15, .height = 0.3, .web_thickness = 0.0071, .flange_thickness = 0.0107});
-        const auto of_columns =
-            section_joint(heb, steel, {.length = 0.2, .elastic = settings_.elastic});
-        const auto of_beams =
-            section_joint(ipe, steel, {.length = 0.3, .elastic = settings_.elastic});
+        const auto of_columns = section_joint(heb, steel,
+                                              {.length = 0.2,
+                                               .elastic = settings_.elastic,
+                                               .wave_damping = settings_.wave_damping,
+                                               .bending_damping = settings_.bending_damping});
+        const auto of_beams = section_joint(ipe, steel,
+                                            {.length = 0.3,
+                                             .elastic = settings_.elastic,
+                                             .wave_damping = settings_.wave_damping,
+                                             .bending_damping = settings_.bending_damping});
         const btMatrix3x3 up = btMatrix3x3::getIdentity();
         // columns: x, y, z of the section
         const btMatrix3x3 along_x(0, 0, 1, 1, 0, 0, 0, 1, 0), along_y(-1, 0, 0, 0, 0, 1, 0, 1, 0);

@@ -47,7 +47,8 @@ struct Rig {
     std::vector<std::unique_ptr<btTypedConstraint>> guides;
     std::unique_ptr<World> world;
 
-    explicit Rig(const WorldParameters& parameters = {.tolerance = tolerance, .warn = {}}) {
+    explicit Rig(const WorldParameters& parameters = {
+                     .tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
         engine.setGravity(btVector3(0, 0, 0));
         // what overlaps by what a tick leaves is not thrown apart
         engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
@@ -388,9 +389,10 @@ TEST_CASE("Frames: six elastic axes keep their energy at any stiffness and frame
             btRigidBody& body = rig.body(10, btVector3(1, 1, 1), {0, 0, 0});
             body.setLinearVelocity({btScalar(0.2), btScalar(-0.1), btScalar(0.05)});
             body.setAngularVelocity({btScalar(0.1), btScalar(0.05), btScalar(-0.02)});
-            Joint joint(Ellipsoid<double, 6>({.capacity = Vector6d::Constant(1e9)}),
-                        Perfect<double>({.strength = 1}), TravelLimit<double>(),
-                        {.stiffness = Vector6d::Constant(stiffness)});
+            Joint joint(
+                Ellipsoid<double, 6>({.capacity = Vector6d::Constant(1e9)}),
+                Perfect<double>({.strength = 1}), TravelLimit<double>(),
+                {.stiffness = Vector6d::Constant(stiffness), .damping_time = Vector6d::Zero()});
             bullet::PlasticJoint<Joint> link(body, at({0, 0, 0}), joint);
             rig.world->add(link);
             double first = 0, least = 1e300, most = 0;

@@ -68,6 +68,20 @@ TEST_CASE("A frame that loses a column or a foot comes to rest where P29 says",
     }
 }
 
+TEST_CASE("The frame without a column swings until it rests, then sleeps", "[ode][structures]") {
+    OdeFrame frame(FrameSettings{});
+    frame.run(1, dt);
+    frame.let_sleep();
+    frame.remove_column();
+    double slept = 0;
+    for (; !frame.asleep() && slept < 15; slept += 0.25) frame.run(0.25, dt);
+    CHECK(slept > 1.5);
+    CHECK(slept < 15);
+    CHECK(frame.absorbed() == 0);
+    CHECK(frame.utilisation() == Approx(0.508898).epsilon(0.005));
+    CHECK(frame.lines().empty());
+}
+
 TEST_CASE("The frame without a column stands at 0.999 of P30's collapse load and falls at 1.001",
           "[ode][structures]") {
     constexpr double collapse = 2.2772731;

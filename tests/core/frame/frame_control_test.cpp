@@ -207,6 +207,27 @@ TEST_CASE("What is no number is never believed, and ends", "[frame]") {
     CHECK_FALSE(control.run().believed());
 }
 
+TEST_CASE("A flow that starts and stops within a frame is no alarm, and goes as far as it should",
+          "[frame]") {
+    // a ball reaches a mass after 2 ms and is stopped with it in another 0.75 ms
+    constexpr double ball = 3, target = 1, v = 5, strength = 20e3, gap = 0.01;
+    constexpr double common = v * ball / (ball + target);
+    constexpr double energy = (ball + target) * common * common / 2;
+    for (const double length : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(length);
+        Engine engine;
+        engine.masses = {{.mass = target, .position = gap}, {.mass = ball, .velocity = v}};
+        engine.rows = {{ground, 0, strength}};
+        engine.contacts = {{1, 0}};
+        FrameControl control;
+        run(engine, control, 1.0 / 30, length);
+        CHECK(engine.rows[0].travel == Approx(energy / strength).epsilon(0.01));
+        CHECK(engine.rows[0].work == Approx(energy).epsilon(0.01));
+        CHECK(control.run().believed());
+        CHECK(control.run().left.energy == 0);
+    }
+}
+
 TEST_CASE("Nothing that moves is one part, whatever the frame", "[frame]") {
     Engine engine = sliding_mass();
     engine.masses[0].velocity = 0;
