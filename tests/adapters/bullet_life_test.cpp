@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <string>
@@ -375,6 +376,30 @@ TEST_CASE("a joint leaves a world with its body and comes back to it", "[bullet]
     close(hinge.absorbed_energy(), 100);
     close(hinge.plastic_rotation(), 2.5);
     hinge.remove_from(world.world());
+}
+
+TEST_CASE("a joint that was taken away is asked nothing, also where its body has ended",
+          "[bullet][life]") {
+    // an address sanitizer sees a world that still asks
+    BulletWorld world;
+    bullet::PlasticHinge stays(rotor(world), here, one(40));
+    stays.add_to(world.world());
+    btEmptyShape nothing;
+    auto body = std::make_unique<btRigidBody>(
+        btRigidBody::btRigidBodyConstructionInfo(1, nullptr, &nothing, {2, 2, 2}));
+    body->setAngularVelocity({0, 0, 10});
+    world.world().addRigidBody(body.get(), 0, 0);
+    bullet::PlasticHinge goes(*body, here, one(40));
+    goes.add_to(world.world());
+    world.step(1.0 / 60);
+    goes.remove_from(world.world());
+    const double absorbed = goes.absorbed_energy();
+    close(absorbed, 40 * (10 + 10 - 40.0 / 2 / 60) / 2 / 60);
+    world.world().removeRigidBody(body.get());
+    body.reset();
+    world.step(1.0 / 60, 2);
+    CHECK(goes.absorbed_energy() == absorbed);
+    stays.remove_from(world.world());
 }
 
 TEST_CASE("a world put back to its start runs the same again, bit for bit", "[bullet][life]") {

@@ -167,10 +167,39 @@ TEST_CASE("bodies of any mass bend alike under forces in proportion", "[six]") {
     for (const double nudge : {1e-9, -1e-9, 1e-11, -1e-11}) {
         enlarged = std::max(enlarged, off(bent(1, nudge)));
     }
-    CHECK(enlarged < 1e-5);
+    CHECK(enlarged < 1e-8);
     for (const double scale : {1e-3, 1e-6, 1e-9, 1e3}) {
         INFO("masses times " << scale << ", stiffness " << stiffness);
         CHECK(off(bent(scale)) < 4 * enlarged);
+    }
+}
+
+TEST_CASE("rows that ODE solves itself bend bodies of any mass alike", "[six]") {
+    // beside a hinge of ODE's own, which keeps the island with ODE; where its solver takes a row out
+    // that is left as it is, all of the answer goes at A = 1e8 1/(kg m²)
+    const auto bent = [](double scale) {
+        Rig rig("direct", none);
+        const V6 capacity = scale * (V6() << 1e5, 1e5, 1e5, 60, 50, 40).finished();
+        const auto arm = rig.body(scale, V3(0.02, 0.09, 0.09) * scale, {0.5, 0, 0}, none, none);
+        const auto flap = rig.body(scale, V3(0.09, 0.09, 0.02) * scale, {1, 0.5, 0}, none, none);
+        auto& root = rig.six_axis(arm, nullptr, {{0, 0, 0}, along({1, 0, 0})}, six(capacity));
+        rig.pin(arm, flap, {1, 0, 0}, {1, 0, 0});
+        for (int step = 0; step < 60; ++step) {
+            Rig::apply_force(arm, scale * V3(0, 70 * std::cos(0.1 * step), 90));
+            Rig::apply_torque(arm, scale * V3(45, 0, 0));
+            rig.step(1e-2);
+        }
+        const V3 at = Rig::position(arm);
+        return std::array{root.absorbed_energy() / scale, at.x(), at.y(), at.z()};
+    };
+    const auto usual = bent(1);
+    CHECK(usual[0] > 1);
+    for (const double scale : {1e-1, 1e-3, 1e-4, 1e-6}) {
+        INFO("masses times " << scale);
+        const auto other = bent(scale);
+        for (std::size_t i = 0; i < usual.size(); ++i) {
+            CHECK(other[i] == Approx(usual[i]).epsilon(2e-9).margin(2e-9));
+        }
     }
 }
 
