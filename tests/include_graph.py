@@ -26,6 +26,8 @@ ALLOWED = {
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
     "world": {"vocabulary", "fracture", "joint", "fidelity", "solve", "frame"},
     "fidelity": {"vocabulary", "material", "section", "law", "fracture", "joint"},
+    "structure": {"vocabulary", "numeric", "material", "section", "law", "surface", "fracture", "joint", "member",
+                  "world"},
 }
 ADAPTERS = ("bullet", "ode")
 

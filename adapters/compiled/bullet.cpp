@@ -16,6 +16,7 @@
 #include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
+#include <ductile/bullet/structure.ipp>
 #include <ductile/bullet/touching_islands.ipp>
 #include <ductile/bullet/world.ipp>
 #include <ductile/bullet/world_parts.ipp>

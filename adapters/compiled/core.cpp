@@ -14,6 +14,10 @@
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>
 #include <ductile/solve/one_pair.ipp>
+#include <ductile/structure/built_structure.ipp>
+#include <ductile/structure/joint_stations.ipp>
+#include <ductile/structure/structure_model.ipp>
+#include <ductile/structure/structure_plan.ipp>
 #include <ductile/world/energy_meter.hpp>
 #include <ductile/world/energy_meter.ipp>
 #include <ductile/world/island_joint.ipp>

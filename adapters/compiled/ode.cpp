@@ -13,6 +13,7 @@
 #include <ductile/ode/plastic_hinge.ipp>
 #include <ductile/ode/plastic_joint.ipp>
 #include <ductile/ode/point_rows.ipp>
+#include <ductile/ode/structure.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
 

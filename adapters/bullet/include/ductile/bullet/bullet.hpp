@@ -23,6 +23,7 @@
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
 #include "ductile/bullet/plastic_slider.hpp"
+#include "ductile/bullet/structure.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/bullet/world_parts.hpp"

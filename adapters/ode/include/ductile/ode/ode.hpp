@@ -16,5 +16,6 @@
 #include "ductile/ode/plastic_slider.hpp"
 #include "ductile/ode/point_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/ode/structure.hpp"
 #include "ductile/ode/thread_pool.hpp"
 #include "ductile/ode/world.hpp"

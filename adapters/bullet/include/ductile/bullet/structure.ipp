@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of structure.hpp.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/structure.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+DUCTILE_INLINE StructurePlan plan_of(const StructureModel& model, const std::vector<OwnBody>& own) {
+    std::vector<NodeId> nodes;
+    for (const OwnBody& one : own) {
+        nodes.push_back(one.node);
+        if (one.body != nullptr) continue;
+        throw std::invalid_argument("Structure.own.body = null at node " +
+                                    std::to_string(one.node.index) + ": must be a body");
+    }
+    return make_plan(model, nodes);
+}
+
+} // namespace detail
+
+DUCTILE_INLINE Structure::Structure(World& world, const StructureModel& model,
+                                    const std::vector<OwnBody>& own)
+    : BuiltStructure(detail::plan_of(model, own)),
+      world_(world),
+      gravity_(world.engine().getGravity()),
+      own_(plan().seats.size(), nullptr) {
+    for (const OwnBody& one : own) own_[one.node.index] = one.body;
+    for (const PlanBody& body : plan().bodies) make_body(body);
+    for (const auto& [a, b] : plan().neighbours) {
+        parts_[a].body->setIgnoreCollisionCheck(parts_[b].body.get(), true);
+    }
+    for (const PlanJoint& joint : plan().joints) make_joint(joint);
+    made();
+}
+
+DUCTILE_INLINE Structure::~Structure() {
+    joints_.clear();
+    for (const Part& part : parts_) {
+        if (part.body != nullptr) world_.engine().removeRigidBody(part.body.get());
+    }
+}
+
+DUCTILE_INLINE void Structure::make_body(const PlanBody& plan) {
+    Part part;
+    part.box = std::make_unique<btBoxShape>(to_bullet(plan.half_lengths));
+    btCollisionShape* shape = part.box.get();
+    if (!is_zero(plan.box.origin) || plan.box.axes != Matrix3<double>::Identity()) {
+        part.around = std::make_unique<btCompoundShape>();
+        part.around->addChildShape(to_bullet(plan.box), shape);
+        shape = part.around.get();
+    }
+    btRigidBody::btRigidBodyConstructionInfo info(btScalar(plan.mass), nullptr, shape,
+                                                  to_bullet(plan.inertia));
+    info.m_startWorldTransform = to_bullet(plan.pose);
+    part.body = std::make_unique<btRigidBody>(info);
+    if (plan.collides) {
+        world_.engine().addRigidBody(part.body.get());
+    } else {
+        world_.engine().addRigidBody(part.body.get(), 0, 0);
+    }
+    parts_.push_back(std::move(part));
+}
+
+DUCTILE_INLINE btRigidBody& Structure::at(const PlanSeat& seat) const {
+    switch (seat.kind) {
+        case PlanSeat::Kind::body:
+            return *parts_[seat.index].body;
+        case PlanSeat::Kind::own:
+            return *own_[seat.index];
+        case PlanSeat::Kind::ground:
+            break;
+    }
+    return btTypedConstraint::getFixedBody();
+}
+
+DUCTILE_INLINE void Structure::make_joint(const PlanJoint& plan) {
+    btRigidBody& a = *parts_[plan.a].body;
+    btRigidBody& b = at(plan.b);
+    const auto frame_in = [&plan](const JointFrame<double>& body) {
+        return to_bullet(JointFrame<double>{
+            transposed_times(body.axes, difference(plan.frame.origin, body.origin)),
+            transposed_times(body.axes, plan.frame.axes)});
+    };
+    // of the plan's bodies from the plan: those of the engine may be rounded to float
+    const auto frame_in_b = plan.b.kind == PlanSeat::Kind::body
+                                ? frame_in(this->plan().bodies[plan.b.index].pose)
+                                : frame_in(to_core(b.getCenterOfMassTransform()));
+    joints_.push_back(std::make_unique<Joint>(a, b, frame_in(this->plan().bodies[plan.a].pose),
+                                              frame_in_b, plan.joint));
+    joints_.back()->add_to(world_.engine(), plan.b.kind != PlanSeat::Kind::ground);
+    world_.add(*joints_.back(), plan.name);
+}
+
+DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member, MemberEnd end) const {
+    return *joints_[present_joint(plan().joint(member, end))];
+}
+DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member,
+                                                  std::size_t number) const {
+    return *joints_[present_joint(plan().joint(member, number))];
+}
+DUCTILE_INLINE btRigidBody& Structure::body(std::string_view member, std::size_t piece) const {
+    return *parts_[present_body(plan().body(member, piece))].body;
+}
+
+// ---- what BuiltStructure asks of Bullet
+
+DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) const {
+    return to_core(at(seat).getCenterOfMassTransform());
+}
+
+DUCTILE_INLINE const PairQueries& Structure::queries(std::size_t joint) const {
+    return *joints_[joint];
+}
+
+DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
+                                    const Vector3<double>& at_place) {
+    btRigidBody& body = at(seat);
+    body.activate();
+    body.applyForce(to_bullet(force), to_bullet(at_place) - body.getCenterOfMassPosition());
+}
+
+DUCTILE_INLINE void Structure::drop_joint(std::size_t joint) {
+    world_.remove(*joints_[joint]);
+    joints_[joint].reset();
+}
+
+DUCTILE_INLINE void Structure::drop_body(std::size_t body) {
+    btRigidBody* gone = parts_[body].body.get();
+    for (const auto& [a, b] : plan().neighbours) {
+        if (b == body && parts_[a].body != nullptr) {
+            parts_[a].body->setIgnoreCollisionCheck(gone, false);
+        }
+    }
+    world_.engine().removeRigidBody(gone);
+    parts_[body] = {};
+}
+
+DUCTILE_INLINE void Structure::wake() {
+    for (const Part& part : parts_) {
+        if (part.body != nullptr) part.body->activate(true);
+    }
+}
+
+DUCTILE_INLINE void Structure::set_gravity(double factor) {
+    const btVector3 gravity = gravity_ * btScalar(factor);
+    btDiscreteDynamicsWorld& engine = world_.engine();
+    for (int i = 0; i < engine.getNumCollisionObjects(); ++i) {
+        engine.getCollisionObjectArray()[i]->activate(); // Bullet leaves out those asleep
+    }
+    engine.setGravity(gravity);
+}
+
+} // namespace ductile::bullet

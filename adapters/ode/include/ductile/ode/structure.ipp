@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of structure.hpp.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/structure.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+DUCTILE_INLINE StructurePlan plan_of(const StructureModel& model, const std::vector<OwnBody>& own) {
+    std::vector<NodeId> nodes;
+    for (const OwnBody& one : own) {
+        nodes.push_back(one.node);
+        if (one.body != nullptr) continue;
+        throw std::invalid_argument("Structure.own.body = null at node " +
+                                    std::to_string(one.node.index) + ": must be a body");
+    }
+    return make_plan(model, nodes);
+}
+
+/// By rows, as ODE stores matrices.
+inline void to_ode(const Matrix3<double>& m, dMatrix3 result) {
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) result[4 * i + j] = dReal(m(i, j));
+        result[4 * i + 3] = 0;
+    }
+}
+
+} // namespace detail
+
+DUCTILE_INLINE Structure::Structure(World& world, dSpaceID space, const StructureModel& model,
+                                    const std::vector<OwnBody>& own)
+    : BuiltStructure(detail::plan_of(model, own)),
+      world_(world),
+      own_(plan().seats.size(), nullptr) {
+    dVector3 gravity;
+    dWorldGetGravity(world_.id(), gravity);
+    gravity_ = to_core(gravity);
+    for (const OwnBody& one : own) own_[one.node.index] = one.body;
+    for (const PlanBody& body : plan().bodies) make_body(body, space);
+    for (const PlanJoint& joint : plan().joints) make_joint(joint);
+    made();
+}
+
+DUCTILE_INLINE Structure::~Structure() {
+    joints_.clear();
+    for (std::size_t b = 0; b < parts_.size(); ++b) {
+        if (parts_[b].body != nullptr) Structure::drop_body(b);
+    }
+}
+
+DUCTILE_INLINE void Structure::make_body(const PlanBody& plan, dSpaceID space) {
+    Part part{.body = dBodyCreate(world_.id())};
+    dMass mass;
+    dMassSetParameters(&mass, dReal(plan.mass), 0, 0, 0, dReal(plan.inertia.x()),
+                       dReal(plan.inertia.y()), dReal(plan.inertia.z()), 0, 0, 0);
+    dBodySetMass(part.body, &mass);
+    const Vector3<double>& centre = plan.pose.origin;
+    dBodySetPosition(part.body, dReal(centre.x()), dReal(centre.y()), dReal(centre.z()));
+    dMatrix3 axes;
+    detail::to_ode(plan.pose.axes, axes);
+    dBodySetRotation(part.body, axes);
+    dBodySetFiniteRotationMode(part.body, 1);
+    if (plan.collides && space != nullptr) {
+        const Vector3<double>& half = plan.half_lengths;
+        part.box = dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()), dReal(2 * half.z()));
+        dGeomSetBody(part.box, part.body);
+        const Vector3<double>& from_centre = plan.box.origin;
+        dGeomSetOffsetPosition(part.box, dReal(from_centre.x()), dReal(from_centre.y()),
+                               dReal(from_centre.z()));
+        detail::to_ode(plan.box.axes, axes);
+        dGeomSetOffsetRotation(part.box, axes);
+    }
+    world_.add(part.body);
+    parts_.push_back(part);
+}
+
+DUCTILE_INLINE dBodyID Structure::at(const PlanSeat& seat) const {
+    switch (seat.kind) {
+        case PlanSeat::Kind::body:
+            return parts_[seat.index].body;
+        case PlanSeat::Kind::own:
+            return own_[seat.index];
+        case PlanSeat::Kind::ground:
+            break;
+    }
+    return nullptr;
+}
+
+DUCTILE_INLINE void Structure::make_joint(const PlanJoint& plan) {
+    joints_.push_back(std::make_unique<Joint>(world_.id(), parts_[plan.a].body, at(plan.b),
+                                              plan.frame, plan.joint));
+    world_.add(*joints_.back(), plan.name);
+}
+
+DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member, MemberEnd end) const {
+    return *joints_[present_joint(plan().joint(member, end))];
+}
+DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member,
+                                                  std::size_t number) const {
+    return *joints_[present_joint(plan().joint(member, number))];
+}
+DUCTILE_INLINE dBodyID Structure::body(std::string_view member, std::size_t piece) const {
+    return parts_[present_body(plan().body(member, piece))].body;
+}
+
+DUCTILE_INLINE bool Structure::meet(dBodyID a, dBodyID b) const {
+    if (a == nullptr || b == nullptr) return false;
+    if (dAreConnected(a, b) != 0) return true;
+    return std::any_of(plan().neighbours.begin(), plan().neighbours.end(), [&](const auto& pair) {
+        const dBodyID first = parts_[pair.first].body, second = parts_[pair.second].body;
+        return (first == a && second == b) || (first == b && second == a);
+    });
+}
+
+// ---- what BuiltStructure asks of ODE
+
+DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) const {
+    const BodyState<double> now = body_motion(at(seat));
+    return {now.position, now.orientation};
+}
+
+DUCTILE_INLINE const PairQueries& Structure::queries(std::size_t joint) const {
+    return *joints_[joint];
+}
+
+DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
+                                    const Vector3<double>& at_place) {
+    dBodyID body = at(seat);
+    dBodyEnable(body);
+    dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
+                       dReal(at_place.x()), dReal(at_place.y()), dReal(at_place.z()));
+}
+
+DUCTILE_INLINE void Structure::drop_joint(std::size_t joint) {
+    world_.remove(*joints_[joint]);
+    joints_[joint].reset();
+}
+
+DUCTILE_INLINE void Structure::drop_body(std::size_t body) {
+    Part& part = parts_[body];
+    world_.remove(part.body);
+    if (part.box != nullptr) dGeomDestroy(part.box);
+    dBodyDestroy(part.body);
+    part = {};
+}
+
+DUCTILE_INLINE void Structure::wake() {
+    for (const Part& part : parts_) {
+        if (part.body != nullptr) dBodyEnable(part.body);
+    }
+}
+
+DUCTILE_INLINE void Structure::set_gravity(double factor) {
+    dWorldSetGravity(world_.id(), dReal(factor * gravity_.x()), dReal(factor * gravity_.y()),
+                     dReal(factor * gravity_.z()));
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+//
+// A structure in an engine: what may be asked of it and done to it, the same in all. An engine's
+// Structure derives from this, makes the bodies and joints of the plan, and answers the private
+// questions at the end.
+//
+// Where a node or a member is, it is the point of its body that was there when the structure was
+// made: a node moves with what it hangs on.
+//
+// Not thread-safe.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ductile/joint/link_types.hpp"
+#include "ductile/structure/structure_plan.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/vector.hpp"
+#include "ductile/world/joint_queries.hpp"
+
+namespace ductile {
+
+class BuiltStructure {
+  public:
+    [[nodiscard]] const StructurePlan& plan() const noexcept { return plan_; }
+
+    // ---- what its joints tell
+
+    /// Largest of all joints (JointQueries::utilisation) [-].
+    [[nodiscard]] double utilisation() const;
+    /// Name of the joint that has it; empty where there is no joint.
+    [[nodiscard]] std::string most_used() const;
+    /// Energy that all joints dissipated, and hold [J]; of those that were removed not.
+    [[nodiscard]] double absorbed_energy() const;
+    [[nodiscard]] double stored_energy() const;
+    /// True where a joint of the plan is still there, broken or not.
+    [[nodiscard]] bool has_joint(std::size_t index) const noexcept { return joint_there_[index]; }
+    [[nodiscard]] bool has_body(std::size_t index) const noexcept { return body_there_[index]; }
+
+    // ---- where it is; world [m]
+
+    /// @throws std::invalid_argument where the node is not of the model, or what it hung on was
+    /// removed.
+    [[nodiscard]] Vector3<double> place(NodeId node) const;
+    [[nodiscard]] Vector3<double> displacement(NodeId node) const;
+    /// Downwards.
+    [[nodiscard]] double sag(NodeId node) const;
+    /// Of the point at `share` of a member's axis, in [0, 1] from its start.
+    /// @throws std::invalid_argument where there is no such member, or that piece was removed, or
+    /// `share` is out of range.
+    [[nodiscard]] Vector3<double> place(std::string_view member, double share = 0.5) const;
+    [[nodiscard]] Vector3<double> displacement(std::string_view member, double share = 0.5) const;
+    [[nodiscard]] double sag(std::string_view member, double share = 0.5) const;
+
+    // ---- what is done to it
+
+    /// Applies a force at a node for the coming step, world [N]. A node that is the ground takes
+    /// it.
+    /// @throws std::invalid_argument as place(), and where the force is not finite.
+    void apply(NodeId node, const Vector3<double>& force);
+    void apply(std::string_view member, double share, const Vector3<double>& force);
+    /// Takes away a member with its joints and those of all that hung on it.
+    /// @throws std::invalid_argument where there is no such member.
+    void remove(std::string_view member);
+    /// Takes away the joint at an end, or that of a number from the start; nothing where it is
+    /// gone.
+    /// @throws std::invalid_argument as StructurePlan::joint.
+    void cut(std::string_view member, MemberEnd end);
+    void cut(std::string_view member, std::size_t number);
+    /// From now on gravity is `factor` times that at which the structure was made, for all that the
+    /// engine's world holds.
+    /// @throws std::invalid_argument where it is not finite.
+    void scale_weights(double factor);
+
+  protected:
+    explicit BuiltStructure(StructurePlan plan);
+    BuiltStructure(const BuiltStructure&) = delete;
+    BuiltStructure& operator=(const BuiltStructure&) = delete;
+    ~BuiltStructure() = default;
+
+    /// To be called when all bodies are made, at the places of the plan as the engine rounds them.
+    void made();
+    /// Index of a joint or body that is there.
+    /// @throws std::invalid_argument where it was removed.
+    [[nodiscard]] std::size_t present_joint(std::size_t index) const;
+    [[nodiscard]] std::size_t present_body(std::size_t index) const;
+
+  private:
+    // ---- the engine's
+
+    /// Place and axes of a body of the plan or of the user's (of the plan's kinds but ground).
+    [[nodiscard]] virtual JointFrame<double> frame_of(const PlanSeat& seat) const = 0;
+    [[nodiscard]] virtual const PairQueries& queries(std::size_t joint) const = 0;
+    /// Adds a force at a place to a body, which is woken.
+    virtual void push(const PlanSeat& seat, const Vector3<double>& force,
+                      const Vector3<double>& at) = 0;
+    virtual void drop_joint(std::size_t joint) = 0;
+    virtual void drop_body(std::size_t body) = 0;
+    virtual void wake() = 0;
+    /// `factor` of the gravity at which the structure was made.
+    virtual void set_gravity(double factor) = 0;
+
+    /// A point that moves with a body.
+    struct Point {
+        PlanSeat seat;
+        Vector3<double> at; ///< when it was made, world [m]
+    };
+    [[nodiscard]] Point point(NodeId node) const;
+    [[nodiscard]] Point point(std::string_view member, double share) const;
+    [[nodiscard]] Vector3<double> moved(const Point& point) const;
+    [[nodiscard]] const JointFrame<double>& made_at(const PlanSeat& seat) const;
+    void cut_joint(std::size_t index);
+    void apply(const Point& point, const Vector3<double>& force);
+    void over_joints(const std::function<void(std::size_t)>& visit) const;
+
+    StructurePlan plan_;
+    std::vector<bool> joint_there_, body_there_;
+    std::vector<JointFrame<double>> body_made_; ///< by body
+    std::vector<JointFrame<double>> own_made_;  ///< by node
+};
+
+} // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/structure/built_structure.ipp"
+#endif

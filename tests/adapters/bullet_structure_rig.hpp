@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+//
+// A Bullet world with a floor as a user makes one, for structures: Bullet's default solver, ten
+// iterations, a default World. Same verbs as ode_structure_rig.hpp.
+#pragma once
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/bullet/bullet.hpp"
+
+namespace ductile::test {
+
+namespace engine = ductile::bullet;
+
+class StructureRig {
+  public:
+    using Body = btRigidBody*;
+    static constexpr bool single = sizeof(btScalar) == sizeof(float);
+    /// How deep into the floor a body is made that is to rest on it [m].
+    static constexpr double layer = 0;
+
+    explicit StructureRig(double gravity = 9.81, bullet::WorldParameters parameters = {}) {
+        engine_.setGravity(btVector3(0, 0, btScalar(-gravity)));
+        parameters.warn = [this](const std::string& line) { lines_.push_back(line); };
+        world_ = std::make_unique<bullet::World>(engine_, parameters);
+        box(0, {50, 50, 1}, {0, 0, -1})->setFriction(1);
+    }
+    ~StructureRig() {
+        for (const Own& own : own_) engine_.removeRigidBody(own.body.get());
+    }
+    StructureRig(const StructureRig&) = delete;
+    StructureRig& operator=(const StructureRig&) = delete;
+
+    [[nodiscard]] bullet::World& world() { return *world_; }
+
+    /// To end before this does.
+    [[nodiscard]] std::unique_ptr<bullet::Structure> build(
+        const StructureModel& model, const std::vector<bullet::OwnBody>& own = {}) {
+        return std::make_unique<bullet::Structure>(*world_, model, own);
+    }
+    void forget() {} // what was built is gone: the engine knows
+    /// That touches others; a mass of zero: static.
+    Body box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
+        Own& own = own_.emplace_back();
+        own.shape = std::make_unique<btBoxShape>(bullet::to_bullet(half));
+        btVector3 inertia(0, 0, 0);
+        if (mass > 0) own.shape->calculateLocalInertia(btScalar(mass), inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, own.shape.get(),
+                                                      inertia);
+        info.m_startWorldTransform.setOrigin(bullet::to_bullet(at));
+        own.body = std::make_unique<btRigidBody>(info);
+        engine_.addRigidBody(own.body.get());
+        return own.body.get();
+    }
+    void set_friction(double coefficient) {
+        each([&](btRigidBody& body) { body.setFriction(btScalar(coefficient)); });
+    }
+
+    void step(double dt) {
+        world_->step(dt);
+        events_ += world_->events().size();
+    }
+    void run(double time, double dt) {
+        for (int i = 0, n = int(time / dt + 0.5); i < n; ++i) step(dt);
+    }
+    /// By forces in proportion to mass and velocity [1/s].
+    void damp(double rate) {
+        const auto share = btScalar(1 - std::exp(-rate)); // that Bullet takes in a second
+        each([&](btRigidBody& body) { body.setDamping(share, share); });
+    }
+    void keep_awake() {
+        each([](btRigidBody& body) { body.setActivationState(DISABLE_DEACTIVATION); });
+    }
+    void let_sleep() {
+        each([](btRigidBody& body) { body.forceActivationState(ACTIVE_TAG); });
+    }
+    [[nodiscard]] bool asleep() {
+        bool all = true;
+        each([&](btRigidBody& body) { all = all && !body.isActive(); });
+        return all;
+    }
+    [[nodiscard]] double speed() {
+        double most = 0;
+        each([&](btRigidBody& body) {
+            most = std::max(most, double(body.getLinearVelocity().length()));
+        });
+        return most;
+    }
+    [[nodiscard]] static double mass(Body body) { return double(body->getMass()); }
+    [[nodiscard]] static Vector3<double> place(Body body) {
+        return bullet::to_core(body->getCenterOfMassPosition());
+    }
+    static void set_velocity(Body body, const Vector3<double>& velocity) {
+        body->setLinearVelocity(bullet::to_bullet(velocity));
+    }
+
+    [[nodiscard]] std::size_t events() const { return events_; }
+    /// Warnings.
+    [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
+
+  private:
+    struct Own {
+        std::unique_ptr<btBoxShape> shape;
+        std::unique_ptr<btRigidBody> body;
+    };
+    /// All that move.
+    template <class Visit>
+    void each(const Visit& visit) {
+        for (int i = 0; i < engine_.getNumCollisionObjects(); ++i) {
+            btRigidBody* body = btRigidBody::upcast(engine_.getCollisionObjectArray()[i]);
+            if (!body->isStaticOrKinematicObject()) visit(*body);
+        }
+    }
+
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btSequentialImpulseConstraintSolver solver_;
+    btDiscreteDynamicsWorld engine_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+    std::vector<Own> own_;
+    std::vector<std::string> lines_;
+    std::unique_ptr<bullet::World> world_;
+    std::size_t events_ = 0;
+};
+
+} // namespace ductile::test

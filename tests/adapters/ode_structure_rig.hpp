@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+//
+// An ODE world with a floor as a user makes one, for structures: dWorldStep, a default World,
+// contacts named to it. Same verbs as bullet_structure_rig.hpp.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ductile/ode/ode.hpp"
+
+namespace ductile::test {
+
+namespace engine = ductile::ode;
+
+class StructureRig {
+  public:
+    using Body = dBodyID;
+    static constexpr bool single = sizeof(dReal) == sizeof(float);
+    /// How deep into the floor a body is made that is to rest on it: ODE lets contacts overlap [m].
+    static constexpr double layer = 1e-3;
+
+    explicit StructureRig(double gravity = 9.81, ode::WorldParameters parameters = {}) {
+        dWorldSetGravity(id_, 0, 0, dReal(-gravity));
+        dWorldSetContactSurfaceLayer(id_, dReal(layer));
+        parameters.warn = [this](const std::string& line) { lines_.push_back(line); };
+        world_ = std::make_unique<ode::World>(id_, parameters);
+        dCreatePlane(space_, 0, 0, 1, 0);
+    }
+    StructureRig(const StructureRig&) = delete;
+    StructureRig& operator=(const StructureRig&) = delete;
+
+    [[nodiscard]] ode::World& world() { return *world_; }
+    [[nodiscard]] dWorldID id() const { return id_; }
+
+    /// To end before this does; one at a time.
+    [[nodiscard]] std::unique_ptr<ode::Structure> build(const StructureModel& model,
+                                                        const std::vector<ode::OwnBody>& own = {}) {
+        auto made = std::make_unique<ode::Structure>(*world_, space_, model, own);
+        built_ = made.get();
+        return made;
+    }
+    /// What was built is gone.
+    void forget() { built_ = nullptr; }
+    /// That touches others.
+    Body box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
+        dBodyID body = dBodyCreate(id_);
+        dMass inertia;
+        dMassSetBoxTotal(&inertia, dReal(mass), dReal(2 * half.x()), dReal(2 * half.y()),
+                         dReal(2 * half.z()));
+        dBodySetMass(body, &inertia);
+        dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        dBodySetFiniteRotationMode(body, 1);
+        dGeomID shape =
+            dCreateBox(space_, dReal(2 * half.x()), dReal(2 * half.y()), dReal(2 * half.z()));
+        dGeomSetBody(shape, body);
+        world_->add(body);
+        own_.push_back(body);
+        return body;
+    }
+    void set_friction(double coefficient) { friction_ = coefficient; }
+
+    void step(double dt) {
+        if (damping_ != 0) each([this](dBodyID body) { apply_damping(body); });
+        dSpaceCollide(space_, this, &StructureRig::touch);
+        world_->step(dt);
+        dJointGroupEmpty(contacts_);
+        events_ += world_->events().size();
+    }
+    void run(double time, double dt) {
+        for (int i = 0, n = int(time / dt + 0.5); i < n; ++i) step(dt);
+    }
+    /// By forces in proportion to mass and velocity [1/s].
+    void damp(double rate) { damping_ = rate; }
+    void keep_awake() { set_sleep(false); }
+    void let_sleep() { set_sleep(true); }
+    [[nodiscard]] bool asleep() {
+        bool all = true;
+        each([&](dBodyID body) { all = all && dBodyIsEnabled(body) == 0; });
+        return all;
+    }
+    [[nodiscard]] double speed() {
+        double most = 0;
+        each([&](dBodyID body) { most = std::max(most, norm(ode::linear_velocity(body))); });
+        return most;
+    }
+    [[nodiscard]] static double mass(Body body) { return ode::mass(body); }
+    [[nodiscard]] static Vector3<double> place(Body body) {
+        return ode::to_core(dBodyGetPosition(body));
+    }
+    static void set_velocity(Body body, const Vector3<double>& v) {
+        dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
+    }
+
+    [[nodiscard]] std::size_t events() const { return events_; }
+    /// Warnings.
+    [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
+    /// All that move: those of the structure built last, and the user's.
+    template <class Visit>
+    void each(const Visit& visit) {
+        for (dBodyID body : own_) visit(body);
+        if (built_ == nullptr) return;
+        for (std::size_t i = 0; i < built_->plan().bodies.size(); ++i) {
+            if (built_->has_body(i)) visit(built_->body(i));
+        }
+    }
+
+  private:
+    /// First made, last destroyed.
+    struct Library {
+        Library() { dInitODE2(0); }
+        ~Library() { dCloseODE(); }
+        Library(const Library&) = delete;
+        Library& operator=(const Library&) = delete;
+    };
+    struct Engine {
+        Engine() = default;
+        ~Engine() {
+            dJointGroupDestroy(contacts);
+            dSpaceDestroy(space);
+            dWorldDestroy(id);
+        }
+        Engine(const Engine&) = delete;
+        Engine& operator=(const Engine&) = delete;
+        dWorldID id = dWorldCreate();
+        dSpaceID space = dHashSpaceCreate(nullptr);
+        dJointGroupID contacts = dJointGroupCreate(0);
+    };
+
+    static void touch(void* rig, dGeomID a, dGeomID b) {
+        static_cast<StructureRig*>(rig)->add_contacts(a, b);
+    }
+    void add_contacts(dGeomID a, dGeomID b) {
+        dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
+        if (body_a == nullptr && body_b == nullptr) return;
+        if (built_ != nullptr && built_->meet(body_a, body_b)) return;
+        std::array<dContact, 8> found{};
+        const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
+        for (int i = 0; i < count; ++i) {
+            dContact& contact = found[std::size_t(i)];
+            contact.surface.mode = dContactApprox1;
+            contact.surface.mu = dReal(friction_);
+            const dJointID joint = dJointCreateContact(id_, contacts_, &contact);
+            dJointAttach(joint, body_a, body_b);
+            world_->add_contact(joint, contact);
+        }
+    }
+    void apply_damping(dBodyID body) {
+        ode::add_force(body, scaled(-damping_ * ode::mass(body), ode::linear_velocity(body)),
+                       scaled(-damping_, times(ode::inertia(body), ode::angular_velocity(body))));
+    }
+    void set_sleep(bool yes) {
+        each([&](dBodyID body) { dBodySetAutoDisableFlag(body, yes ? 1 : 0); });
+    }
+
+    Library library_;
+    Engine engine_;
+    dWorldID id_ = engine_.id;
+    dSpaceID space_ = engine_.space;
+    dJointGroupID contacts_ = engine_.contacts;
+    std::vector<dBodyID> own_;
+    std::vector<std::string> lines_;
+    std::unique_ptr<ode::World> world_;
+    const ode::Structure* built_ = nullptr;
+    double damping_ = 0, friction_ = 0.6;
+    std::size_t events_ = 0;
+};
+
+} // namespace ductile::test

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// Structures in an engine as it comes, at 1/60 s with a default World: the frame of P29 and P30.
+// Compiled for every engine and precision (RIG_HEADER).
+#include RIG_HEADER
+
+#include <catch2/catch.hpp>
+
+#include "adapters/frame.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+constexpr double dt = 1.0 / 60;
+constexpr bool single = StructureRig::single;
+/// Speed that round-off of the engine's own numbers leaves [m/s].
+constexpr double still = single ? 2e-4 : 1e-6;
+constexpr auto start = MemberEnd::start, end = MemberEnd::end;
+
+} // namespace
+
+TEST_CASE("The frame of P29 stands, sags as the elastic frame does, and falls asleep",
+          "[structures]") {
+    FrameSettings settings;
+    SECTION("elastic") {}
+    SECTION("rigid") { settings.elastic = false; }
+    SECTION("members collide") { settings.contacts = true; }
+    Frame frame(settings);
+    const auto& structure = *frame.structure;
+    REQUIRE(structure.plan().joints.size() == 36);
+    REQUIRE(structure.plan().mass() == Approx(41359.8).epsilon(1e-9));
+    frame.rig.run(60, dt);
+    CHECK(structure.absorbed_energy() == 0);
+    CHECK(frame.rig.events() == 0);
+    CHECK(frame.rig.lines().empty());
+    CHECK(frame.utilisation_of("column 00", start) == Approx(0.0379667).epsilon(0.01));
+    CHECK(frame.utilisation_of("column 10", start) == Approx(0.0253290).epsilon(0.01));
+    CHECK(frame.utilisation_of("column 20", start) == Approx(0.0127177).epsilon(0.01));
+    CHECK(frame.utilisation_of("beam 00", start) == Approx(0.0365513).epsilon(0.01));
+    CHECK(frame.utilisation_of("beam 01", end) == Approx(0.0360772).epsilon(0.01));
+    if (settings.elastic) {
+        CHECK(structure.stored_energy() == Approx(9.31068).epsilon(0.01));
+        // float: 1e-6 m
+        const double close = single ? 0.05 : 0.01;
+        CHECK(structure.sag("beam 00") == Approx(0.0406617e-3).epsilon(close));
+        CHECK(structure.sag("beam 11") == Approx(0.0488643e-3).epsilon(close));
+        CHECK(structure.sag("beam 20") == Approx(0.0534951e-3).epsilon(close));
+        CHECK(structure.sag("column 12") == Approx(0.0213822e-3).epsilon(2 * close));
+    }
+    frame.rig.let_sleep();
+    frame.rig.run(3, dt);
+    CHECK(frame.rig.asleep());
+    CHECK(structure.absorbed_energy() == 0);
+    CHECK(frame.rig.lines().empty());
+}
+
+TEST_CASE("A frame that loses a column or a foot comes to rest where P29 says", "[structures]") {
+    FrameSettings settings;
+    double removed = 0.508898, cut = 0.555534;
+    SECTION("elastic") {}
+    SECTION("rigid") {
+        settings.elastic = false;
+        removed = 0.505759;
+        cut = 0.547503;
+    }
+    for (const bool whole_column : {true, false}) {
+        Frame frame(settings);
+        frame.rig.run(1, dt);
+        frame.rig.keep_awake();
+        frame.rig.damp(2);
+        if (whole_column) {
+            frame.structure->remove("column 00");
+        } else {
+            frame.structure->cut("column 00", start);
+        }
+        frame.rig.run(40, dt);
+        CHECK(frame.rig.speed() < still);
+        CHECK(frame.structure->absorbed_energy() == 0);
+        CHECK(frame.rig.lines().empty());
+        CHECK(frame.structure->utilisation() ==
+              Approx(whole_column ? removed : cut).epsilon(0.005));
+        CHECK(frame.structure->most_used() == (whole_column ? "beam 13 start" : "column 03 start"));
+        if (!settings.elastic) CHECK(frame.sway() < (single ? 1e-4 : 1e-6));
+    }
+}
+
+TEST_CASE("The frame without a column stands at 0.999 of P30's collapse load and falls at 1.001",
+          "[structures]") {
+    if (single) return; // the margin is round-off's
+    constexpr double collapse = 2.2772731;
+    for (const double factor : {0.999, 1.001}) {
+        FrameSettings settings;
+        settings.elastic = false;
+        Frame frame(settings);
+        frame.structure->scale_weights(factor * collapse);
+        frame.rig.run(0.5, dt);
+        frame.rig.keep_awake();
+        frame.structure->remove("column 00");
+        frame.rig.run(2, dt);
+        if (factor < 1) {
+            CHECK(frame.rig.speed() < 1e-9);
+            CHECK(frame.structure->absorbed_energy() < 0.1);
+        } else {
+            CHECK(frame.rig.speed() > 0.02);
+            CHECK(frame.utilisation_of("beam 00", end) == Approx(1).epsilon(1e-5));
+        }
+    }
+}
+
+TEST_CASE("The frame stands on loose footings, under another frame and under crates",
+          "[structures]") {
+    FrameSettings settings;
+    double used = 0.0379667;
+    SECTION("loose footings") { settings.loose = true; }
+    SECTION("two frames") {
+        settings.frames = 2;
+        used = 0.0759;
+    }
+    SECTION("two crates of a tonne on every beam") {
+        settings.crates = 2;
+        used = 0.0600;
+    }
+    for (const bool elastic : {true, false}) {
+        settings.elastic = elastic;
+        Frame frame(settings);
+        frame.rig.keep_awake();
+        frame.rig.run(10, dt);
+        const double before = frame.sway();
+        frame.rig.run(10, dt);
+        CHECK(frame.structure->absorbed_energy() == 0);
+        CHECK(frame.rig.events() == 0);
+        CHECK(frame.rig.lines().empty());
+        CHECK(frame.structure->utilisation() == Approx(used).epsilon(0.02));
+        CHECK(std::abs(frame.sway() - before) < (single ? 1e-4 : 1e-7));
+    }
+}
