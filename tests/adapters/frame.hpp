@@ -59,6 +59,9 @@ inline StructureModel frame_model(const FrameSettings& settings, double base) {
                           .collides = settings.contacts,
                           .box_inertia = true});
         }
+    }
+    for (int k = 0; k < storeys; ++k) {
+        const auto& above = at[std::size_t(k) + 1];
         for (std::size_t b = 0; b < 4; ++b) {
             model.member(member_name("beam", k, int(b)), above[b], above[(b + 1) % 4], ipe, steel,
                          {.joint_length = 0.3,
