@@ -24,6 +24,7 @@ struct FrameSettings {
     int crates = 0;        ///< of 1 t on every beam
     int frames = 1;        ///< one on the other, jointed by their columns
     bool contacts = false; ///< members collide
+    double wave_damping = 1e-4, bending_damping = 3e-6; ///< of elastic joints [s]
     engine::WorldParameters world{};
 };
 
@@ -55,6 +56,8 @@ inline StructureModel frame_model(const FrameSettings& settings, double base) {
             model.member(member_name("column", k, int(c)), below[c], above[c], heb, steel,
                          {.joint_length = 0.2,
                           .mass_per_length = 61.3,
+                          .wave_damping = settings.wave_damping,
+                          .bending_damping = settings.bending_damping,
                           .gap = 0.01,
                           .collides = settings.contacts,
                           .box_inertia = true});
@@ -69,6 +72,8 @@ inline StructureModel frame_model(const FrameSettings& settings, double base) {
                           .offset = {0, 0, -0.16},
                           .mass_per_length = 42.2,
                           .carried_mass = 3000,
+                          .wave_damping = settings.wave_damping,
+                          .bending_damping = settings.bending_damping,
                           .gap = 0.01,
                           .collides = settings.contacts || settings.crates > 0,
                           .box_inertia = true});

