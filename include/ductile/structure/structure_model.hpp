@@ -20,10 +20,10 @@
 // beam bends about x under its weight. In a member along the vertical y is the world's y (its z
 // where the vertical is y). `up` of the member chooses another.
 //
-// Who carries a node. Where members meet at a node without a support, the first of them that is not
-// freed there carries it: the node is a part of its last body, without a joint, and the others are
-// jointed to that. So columns are added before beams, from the ground up. Where all are freed the
-// first one carries.
+// Who carries a node. Where members meet at a node without a support, the steepest of them that are
+// not freed there carries it, of equally steep ones the first: the node is a part of its last body,
+// without a joint, and the others are jointed to that. So a column carries the beams, and the column
+// above if it is added before that. Where all are freed the steepest one carries.
 //
 // Setback and offset say where a member is jointed: its axis is that between the nodes moved by
 // `offset`, less `setback` at either end, as a beam ends at the face of a column. What lies between

@@ -124,13 +124,23 @@ class Planner {
                             "0 where the node is the ground or a body of the user's");
             }
             if (held || is_own(n)) continue;
-            const auto not_freed = [this](const EndOfMember& end) {
-                const StructureMember& p = member(end.member).parameters;
-                return (end.start ? p.free_at_start : p.free_at_end).empty();
-            };
-            const auto first = std::find_if(ends_[n].begin(), ends_[n].end(), not_freed);
-            carrier_[n] = first != ends_[n].end() ? *first : ends_[n].front();
+            carrier_[n] = *std::max_element(
+                ends_[n].begin(), ends_[n].end(), [this](const auto& one, const auto& other) {
+                    const double rank = rank_of(one), better = rank_of(other);
+                    constexpr double round_off = 1e-6;
+                    return better > rank + round_off;
+                });
         }
+    }
+
+    /// Who carries a node: of those not freed there the steepest; -1 ... 1.
+    [[nodiscard]] double rank_of(const EndOfMember& end) const {
+        const StructureMember& p = member(end.member).parameters;
+        const auto& nodes = model_.nodes();
+        const V3 way = difference(nodes[member(end.member).end.index].at,
+                                  nodes[member(end.member).start.index].at);
+        const double steep = std::abs(dot(plan_.up, way)) / norm(way);
+        return (end.start ? p.free_at_start : p.free_at_end).empty() ? steep : steep - 2;
     }
 
     /// Columns: x, y of the section, z along the member.

@@ -224,7 +224,7 @@ TEST_CASE("Two pieces are as stiff as the elastic cantilever", "[structure]") {
     CHECK(cantilever(z, {.pieces = 4, .joint_length = 0.2}).joints[2].length == 0.2);
 }
 
-TEST_CASE("The first that is not freed carries a node, the others are jointed to it",
+TEST_CASE("The steepest that is not freed carries a node, the others are jointed to it",
           "[structure]") {
     const StructurePlan plan = make_plan(portal());
     REQUIRE(plan.bodies.size() == 3);
@@ -240,6 +240,20 @@ TEST_CASE("The first that is not freed carries a node, the others are jointed to
     CHECK(start.length == Approx(2.9));
     CHECK(plan.neighbours.empty());
     CHECK(plan.mass() == Approx(7850 * heb.area() * (4 + 4 + 6) + 3000));
+
+    // whatever the order; of equally steep ones the first
+    StructureModel late;
+    const NodeId low = late.node({0, 0, 0}), mid = late.node({0, 0, 3}), top = late.node({0, 0, 6});
+    const NodeId far = late.node({5, 0, 3});
+    late.member("beam", mid, far, heb, steel);
+    late.member("below", low, mid, heb, steel);
+    late.member("above", mid, top, heb, steel);
+    late.support(low);
+    const StructurePlan tower = make_plan(late);
+    for (const char* name : {"beam", "above"}) {
+        CHECK(tower.joints[tower.joint(name, MemberEnd::start)].b ==
+              PlanSeat{PlanSeat::Kind::body, tower.body("below")});
+    }
 
     StructureModel freed;
     const NodeId a = freed.node({0, 0, 0}), b = freed.node({3, 0, 0}), c = freed.node({6, 0, 0});
