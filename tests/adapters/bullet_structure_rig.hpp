@@ -79,7 +79,10 @@ class StructureRig {
         each([](btRigidBody& body) { body.setActivationState(DISABLE_DEACTIVATION); });
     }
     void let_sleep() {
-        each([](btRigidBody& body) { body.forceActivationState(ACTIVE_TAG); });
+        each([](btRigidBody& body) {
+            if (body.getActivationState() != DISABLE_DEACTIVATION) return;
+            body.forceActivationState(ACTIVE_TAG);
+        });
     }
     [[nodiscard]] bool asleep() {
         bool all = true;

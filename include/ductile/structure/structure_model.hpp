@@ -22,8 +22,8 @@
 //
 // Who carries a node. Where members meet at a node without a support, the steepest of them that are
 // not freed there carries it, of equally steep ones the first: the node is a part of its last body,
-// without a joint, and the others are jointed to that. So a column carries the beams, and the column
-// above if it is added before that. Where all are freed the steepest one carries.
+// without a joint, and the others are jointed to that. So a column carries the beams, and the
+// column above if it is added before that. Where all are freed the steepest one carries.
 //
 // Setback and offset say where a member is jointed: its axis is that between the nodes moved by
 // `offset`, less `setback` at either end, as a beam ends at the face of a column. What lies between
@@ -68,7 +68,7 @@ struct StructureParameters {
 };
 
 /// All but nodes, section and material; the defaults are a plain member.
-struct StructureMember {
+struct MemberOptions {
     int pieces = 1; ///< rigid bodies along it, >= 1
     /// Of member that every joint stands for [m], > 0; none: its share of the length, so that the
     /// stiffness is the member's (joint_stations.hpp).
@@ -121,7 +121,7 @@ class StructureModel {
         std::string name;
         NodeId start, end;
         MemberSection section;
-        StructureMember parameters;
+        MemberOptions parameters;
     };
     struct Node {
         Vector3<double> at = Vector3<double>::Zero(); ///< world [m]
@@ -143,7 +143,7 @@ class StructureModel {
     template <FullSection T>
     requires std::same_as<typename T::Scalar, double>
     void member(std::string name, NodeId start, NodeId end, const T& section,
-                const Material<double>& material, StructureMember parameters = {}) {
+                const Material<double>& material, MemberOptions parameters = {}) {
         add(std::move(name), start, end,
             {.area = section.area(),
              .second_moment_x = section.second_moment(SectionAxis::x),
@@ -179,7 +179,7 @@ class StructureModel {
 
   private:
     void add(std::string name, NodeId start, NodeId end, MemberSection section,
-             StructureMember parameters);
+             MemberOptions parameters);
     /// @throws std::invalid_argument where it is not of this model.
     [[nodiscard]] Node& known(const std::string& field, NodeId node);
 

@@ -30,7 +30,7 @@ DUCTILE_INLINE StructureModel::Node& StructureModel::known(const std::string& fi
 }
 
 DUCTILE_INLINE void StructureModel::add(std::string name, NodeId start, NodeId end,
-                                        MemberSection section, StructureMember p) {
+                                        MemberSection section, MemberOptions p) {
     if (name.empty()) name = detail::numbered("member", members_.size());
     const std::string field = "StructureModel.member(" + name + ").";
     for (const Member& other : members_) {

@@ -135,7 +135,7 @@ class Planner {
 
     /// Who carries a node: of those not freed there the steepest; -1 ... 1.
     [[nodiscard]] double rank_of(const EndOfMember& end) const {
-        const StructureMember& p = member(end.member).parameters;
+        const MemberOptions& p = member(end.member).parameters;
         const auto& nodes = model_.nodes();
         const V3 way = difference(nodes[member(end.member).end.index].at,
                                   nodes[member(end.member).start.index].at);
@@ -168,7 +168,7 @@ class Planner {
 
     void add_pieces(std::size_t m) {
         const Member& of = member(m);
-        const StructureMember& p = of.parameters;
+        const MemberOptions& p = of.parameters;
         const MemberSection& s = of.section;
         const M3 axes = axes_of(of);
         const V3 start = plan_.places[of.start.index], end = plan_.places[of.end.index];
@@ -241,7 +241,7 @@ class Planner {
 
     void add_joints(std::size_t m) {
         const Member& of = member(m);
-        const StructureMember& p = of.parameters;
+        const MemberOptions& p = of.parameters;
         PlanMember& found = plan_.members[m];
         found.first_joint = plan_.joints.size();
         const M3 axes = axes_of(of);
@@ -291,7 +291,7 @@ class Planner {
 
     [[nodiscard]] SectionJoint<double> joint_of(const Member& of, double length,
                                                 const std::vector<JointAxis>& freed) const {
-        const StructureMember& p = of.parameters;
+        const MemberOptions& p = of.parameters;
         const auto joint = of.section.joint({.length = length,
                                              .largest_bending = p.largest_bending,
                                              .largest_twist = p.largest_twist,

@@ -26,7 +26,7 @@ const ISection<double> heb(
     {.width = 0.2, .height = 0.2, .web_thickness = 0.009, .flange_thickness = 0.015});
 
 /// A clamped member of 3 m along `way`.
-StructurePlan cantilever(const V3& way, const StructureMember& parameters = {}) {
+StructurePlan cantilever(const V3& way, const MemberOptions& parameters = {}) {
     StructureModel model;
     const NodeId root = model.node({1, 2, 3}), tip = model.node(V3(1, 2, 3) + 3 * way);
     model.member("beam", root, tip, bar, steel, parameters);
@@ -81,7 +81,7 @@ Tip under(const StructurePlan& plan, const V3& tip, const V3& force, const V3& m
 } // namespace
 
 TEST_CASE("A member's axes: z along it, y up, or as it is told", "[structure]") {
-    const auto axes = [](const V3& way, const StructureMember& p = {}) {
+    const auto axes = [](const V3& way, const MemberOptions& p = {}) {
         return cantilever(way, p).joints[0].frame.axes;
     };
     const Matrix3<double> along_x = axes(V3(1, 0, 0));
@@ -293,7 +293,7 @@ TEST_CASE("Where several meet, those that are not jointed do not collide", "[str
 TEST_CASE("What is wrong is named with its value and what it may be", "[structure]") {
     StructureModel model;
     const NodeId a = model.node({0, 0, 0}), b = model.node({0, 0, 4}), c = model.node({0, 0, 4});
-    const auto adding = [&](const StructureMember& p, NodeId from = NodeId{0},
+    const auto adding = [&](const MemberOptions& p, NodeId from = NodeId{0},
                             NodeId to = NodeId{1}) {
         StructureModel copy = model;
         return message_of([&] { copy.member("beam", from, to, bar, steel, p); });
