@@ -4,9 +4,6 @@
 // that does not converge is wrong in kind. Compiled for every engine and precision (RIG_HEADER) and
 // run with every solver: one that is exact must be right, any other must be right or say that it is
 // unreliable.
-//
-// Structures lie in the x-y plane. A hinge holds its bodies in space, so a structure held at both
-// ends is three rows overdetermined out of its plane, as a user's would be.
 #include RIG_HEADER
 
 #include <Eigen/Geometry>
@@ -16,6 +13,7 @@
 #include <vector>
 
 #include "adapters/features.hpp"
+#include "adapters/plane_structure.hpp"
 #include "reference/problems/impact.hpp"
 
 using namespace ductile;
@@ -33,61 +31,12 @@ const V3 z(0, 0, 1);
 
 Joint joint(double strength) { return Joint(Perfect<double>({.strength = strength})); }
 
-/// Rods in a plane, joined by plastic hinges.
-class Structure {
-  public:
-    explicit Structure(const std::string& solver, const V3& gravity = none) : rig(solver, gravity) {
-        rig.soften();
-    }
-
-    /// A uniform rod from one point to another, with a point mass on its far end.
-    Rig::Body rod(double mass, const V3& from, const V3& to, double end_mass = 0) {
-        const double length = (to - from).norm(), all = mass + end_mass;
-        const double shift = end_mass / all * length / 2;
-        const double across = mass * (length * length / 12 + shift * shift) +
-                              end_mass * (length / 2 - shift) * (length / 2 - shift);
-        const V3 along = (to - from) / length;
-        // thin, but not so thin that its spin about itself is ill conditioned
-        const double thin = across / 100;
-        const V3 inertia(along.x() != 0 ? thin : across, along.y() != 0 ? thin : across, across);
-        bodies.push_back(rig.body(all, inertia, (from + to) / 2 + shift * along, none, none));
-        return bodies.back();
-    }
-    Rig::Hinge& hinge(Rig::Body a, Rig::Body b, const V3& at, double moment) {
-        hinges.push_back(&rig.hinge(a, b, at, z, joint(moment)));
-        return *hinges.back();
-    }
-
-    [[nodiscard]] double fastest() const {
-        double most = 0;
-        for (const auto body : bodies) {
-            most = std::max({most, Rig::velocity(body).norm(), Rig::spin(body).norm()});
-        }
-        return most;
-    }
-    [[nodiscard]] bool unreliable() const {
-        for (auto* h : hinges) {
-            if (says_wrong(*h)) return true;
-        }
-        return false;
-    }
-    [[nodiscard]] double absorbed() const {
-        double sum = 0;
-        for (auto* h : hinges) sum += h->absorbed_energy();
-        return sum;
-    }
-
-    Rig rig;
-    std::vector<Rig::Body> bodies;
-    std::vector<Rig::Hinge*> hinges;
-};
-
 /// A beam along x in N equal segments; clamped ends and inner joints are plastic hinges, the right
 /// end slides along the beam in a shoe.
-struct Beam : Structure {
+struct Beam : PlaneStructure {
     Beam(const std::string& solver, double length, double mass, double moment, int segments,
          Support left, Support right, double tip_mass = 0)
-        : Structure(solver) {
+        : PlaneStructure(solver) {
         const double l = length / segments;
         for (int i = 0; i < segments; ++i) {
             rod(mass / segments, V3(i * l, 0, 0), V3((i + 1) * l, 0, 0),
@@ -113,14 +62,6 @@ struct Beam : Structure {
         for (const auto body : bodies) Rig::apply_force(body, V3(0, force_on_each, 0));
     }
 };
-
-/// Speed of a structure at rest, in units of what its `load` [N] gives its `mass` in one step:
-/// round-off times the condition of a chain, N⁴, and what the rig's softness lets the moments and
-/// forces move, some times the load, on arms of metres.
-double at_rest(int segments, double mass, double dt) {
-    const double chain = std::pow(segments, 4);
-    return (Rig::single ? 1e-5 : 1e-12) * chain + 50 * Rig::softness * mass / dt;
-}
 
 // ---- P11 ---------------------------------------------------------------------------------
 
@@ -345,7 +286,7 @@ TEST_CASE("P12 a portal is still just below its collapse factor and sways just a
     INFO(solver << ", portal " << p.name);
     Shown shown(solver, "P12 portals");
     const auto sway = [&](double factor, int steps) {
-        Structure frame(solver);
+        PlaneStructure frame(solver);
         const auto left = frame.rod(300, {0, 0, 0}, {0, h, 0});
         const auto right = frame.rod(300, {span, 0, 0}, {span, h, 0});
         const auto near = frame.rod(300, {0, h, 0}, {span / 2, h, 0});

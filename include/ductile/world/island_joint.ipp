@@ -9,21 +9,24 @@ namespace ductile {
 
 namespace detail {
 
-/// False where the rows have bounds of their own: another surface, other axes than all six, a
-/// spring whose force the step gives.
+/// False where the rows have bounds of their own: another surface, axes that do not follow each
+/// other, a spring whose force the step gives.
 DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& link, int first,
                                   double dt) {
     const Vector6<double> semi_axes = link.ellipsoid();
-    solve::IslandBlock block{.first = first, .count = 6};
-    for (int i = 0; i < 6; ++i) {
-        const RowLimits<double>& limits = link.limits()[std::size_t(i)];
-        if (!(semi_axes[i] > 0) || !(limits.lower < limits.upper)) return false;
-        block.size[std::size_t(i)] = semi_axes[i] * dt;
+    int axis = 0;
+    while (axis < 6 && !(semi_axes[axis] > 0)) ++axis;
+    solve::IslandBlock block{.first = first + axis};
+    for (; axis < 6 && semi_axes[axis] > 0; ++axis) {
+        const RowLimits<double>& limits = link.limits()[std::size_t(axis)];
+        if (!(limits.lower < limits.upper)) return false;
+        block.size[std::size_t(block.count++)] = semi_axes[axis] * dt;
     }
+    if (block.count == 0 || std::size_t(block.count) != link.axes().size()) return false;
     if (link.totals().flowing) {
         block.state = solve::BlockState::surface;
-        for (int i = 0; i < 6; ++i) {
-            island.rows[std::size_t(first + i)].impulse = link.forces()[i] * dt;
+        for (int i = first; i < first + 6; ++i) {
+            island.rows[std::size_t(i)].impulse = link.forces()[i - first] * dt;
         }
     }
     island.blocks.push_back(block);
