@@ -252,24 +252,17 @@ TEST_CASE("a struck chain is right with the engine's default solver where the Wo
     }
 }
 
-TEST_CASE("a chain that ten iterations get wrong is told by name, once per joint", "[world]") {
+TEST_CASE("a chain that ten iterations get wrong is told in few lines, by the worst joint's name",
+          "[world]") {
     if (!WorldRig::may_be_iterative) return; // solved at once
     const Struck struck = strike({}, 10);
     INFO(to_text(struck));
     CHECK(struck.tip_error > 0.5);
     CHECK(struck.most == Effort{});
     CHECK(struck.suspects.size() >= 5);
-    const auto warnings_with = [&struck](const std::string& words) {
-        return std::size_t(std::count_if(
-            struck.warnings.begin(), struck.warnings.end(),
-            [&words](const std::string& line) { return line.find(words) != std::string::npos; }));
-    };
-    CHECK(warnings_with("was left unsolved") == struck.suspects.size());
-    for (const std::string& suspects : struck.suspects) {
-        CHECK(warnings_with("joint \"" + suspects + "\" was left unsolved") == 1);
-    }
     REQUIRE_FALSE(struck.warnings.empty());
     CHECK(struck.warnings[0].find(" s (off by ") != std::string::npos);
+    CHECK(struck.warnings.size() <= 5); // 1, 2, 4 and 8 joints, and the steps
 }
 
 TEST_CASE("effort makes the chain right and is lowered when all is calm", "[world]") {

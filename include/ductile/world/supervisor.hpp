@@ -26,6 +26,7 @@
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/effort.hpp"
 #include "ductile/world/joint_event.hpp"
+#include "ductile/world/joint_warning.hpp"
 #include "ductile/world/watch.hpp"
 
 namespace ductile {
@@ -34,37 +35,6 @@ namespace ductile {
 using Warn = std::function<void(const std::string&)>;
 
 inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
-
-/// What a world says of a joint that is first unreliable.
-[[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
-    std::ostringstream line;
-    line << "ductile: joint \"" << event.name << "\" ";
-    if (!(event.report.residual <= std::numeric_limits<double>::max())) {
-        line << "was shown numbers that are not finite at t = " << event.time
-             << " s, and keeps its state";
-    } else if (event.report.unseen_turn > 0) {
-        line << "turned by " << event.report.unseen_turn
-             << " rad in the step that ended at t = " << event.time
-             << " s, which its engine or its angle cannot follow; take shorter steps";
-    } else if (event.report.gained > 0) {
-        line << "has given its bodies " << event.report.gained
-             << " J more than it took, at t = " << event.time << " s";
-    } else {
-        line << "was left unsolved by the solver at t = " << event.time << " s (off by "
-             << event.report.residual << " m/s or rad/s)";
-    }
-    return line.str();
-}
-
-/// What a world says of a joint that a step was first too long for.
-[[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
-    std::ostringstream line;
-    line << "ductile: joint \"" << event.name
-         << "\" moved too much in the step that ended at t = " << event.time
-         << " s: its plastic travel may be off by " << 100 * event.report.step_error
-         << " %; take shorter steps, or World::advance";
-    return line.str();
-}
 
 /// What a world says of a step in which parts may pass through each other.
 [[nodiscard]] inline std::string missed_contact_warning(const SceneMotion<double>& motion,
@@ -89,8 +59,8 @@ class Supervisor {
     Supervisor(const EffortParameters& effort, Warn warn)
         : effort_(effort), warn_(std::move(warn)) {
         watch_.on_event([this](const Event& event) {
-            if (event.kind == EventKind::unreliable && warn_) warn_(unreliable_warning(event));
-            if (event.kind == EventKind::coarse && warn_) warn_(coarse_warning(event));
+            if (event.kind == EventKind::unreliable) unreliable_.add(event);
+            if (event.kind == EventKind::coarse) coarse_.add(event);
             if (listener_) listener_(event);
         });
     }
@@ -179,8 +149,11 @@ class Supervisor {
     }
 
     /// The effort of the next step, all parts of this one having been looked at.
-    const Effort& close() noexcept {
+    const Effort& close() {
         forget_removed();
+        for (JointWarning* warning : {&unreliable_, &coarse_}) {
+            if (warning->due() && warn_) warn_(warning->line());
+        }
         return effort_.next(std::exchange(reliable_, true));
     }
 
@@ -253,6 +226,8 @@ class Supervisor {
     Watch<double> watch_;
     EffortControl effort_;
     Warn warn_;
+    JointWarning unreliable_{unreliable_warning, unreliable_advice};
+    JointWarning coarse_{coarse_warning, coarse_advice};
     Listener listener_;
     double time_ = 0;
     std::size_t added_ = 0;

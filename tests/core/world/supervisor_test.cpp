@@ -44,7 +44,8 @@ TEST_CASE("a supervisor warns once, by name, and reports who is suspect", "[worl
     CHECK(suspects == std::vector<const void*>{&sign, &sign, &sign});
     CHECK(lines == std::vector<std::string>{
                        "ductile: joint \"joint 1\" was left unsolved by the solver at t = 0.5 s "
-                       "(off by 0.25 m/s or rad/s)"});
+                       "(off by 0.25 m/s or rad/s); take shorter steps, or let the World do so "
+                       "(effort.action)"});
     CHECK(supervisor.watch().unreliable() == 2);
     CHECK(supervisor.time() == 1);
 }
@@ -57,10 +58,46 @@ TEST_CASE("a supervisor says why a joint is unreliable", "[world]") {
     post.says = {.outcome = Outcome::unreliable, .unseen_turn = 6.5};
     supervisor.open();
     supervisor.look(0.5, [](const void*) {});
-    CHECK(lines ==
-          std::vector<std::string>{
-              "ductile: joint \"post\" turned by 6.5 rad in the step that ended at t = 0.5 "
-              "s, which its engine or its angle cannot follow; take shorter steps"});
+    supervisor.close();
+    CHECK(lines == std::vector<std::string>{
+                       "ductile: joint \"post\" turned by 6.5 rad in the step that ended at t = 0.5 "
+                       "s, which its engine or its angle cannot follow; take shorter steps, or let "
+                       "the World do so (effort.action)"});
+}
+
+TEST_CASE("a supervisor has one line for all joints of a step, and another when they have doubled",
+          "[world]") {
+    std::vector<std::string> lines;
+    Supervisor supervisor({}, [&lines](const std::string& line) { lines.push_back(line); });
+    std::vector<Puppet> joints(30);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        supervisor.add(&joints[i], "joint " + std::to_string(i), joints[i].ask());
+    }
+    std::size_t told = 0;
+    supervisor.on_event([&told](const JointEvent<double>&) { ++told; });
+    const auto step = [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            joints[i].says = {.outcome = Outcome::unreliable,
+                              .residual = 0.25 * double(1 + i * 7 % 30)};
+        }
+        supervisor.open();
+        supervisor.look(supervisor.time() + 0.5, [](const void*) {});
+        supervisor.close();
+    };
+    step(0, 10);
+    REQUIRE(lines.size() == 1);
+    CHECK(lines[0] ==
+          "ductile: joint \"joint 4\" was left unsolved by the solver at t = 0.5 s (off by 7.25 m/s "
+          "or rad/s), and 9 others; take shorter steps, or let the World do so (effort.action)");
+    step(10, 15);
+    CHECK(lines.size() == 1);
+    step(15, 20);
+    REQUIRE(lines.size() == 2);
+    CHECK(lines[1].find("joint \"joint 17\"") != std::string::npos);
+    CHECK(lines[1].find(", and 19 others;") != std::string::npos);
+    step(20, 30);
+    CHECK(lines.size() == 2);
+    CHECK(told == 30);
 }
 
 TEST_CASE("a supervisor warns once of steps that are too long", "[world]") {

@@ -60,7 +60,7 @@ struct WorldParameters {
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
     double rest_damping = ductile::rest_damping<double>;
-    Warn warn = warn_on_stderr; ///< once per joint; empty: nothing is said
+    Warn warn = warn_on_stderr; ///< a line of the worst joint; empty: nothing is said
 };
 
 class World final : public SteppedWorld {

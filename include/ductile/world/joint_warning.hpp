@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+//
+// What a world says in one line where joints cannot be relied on: which is the worst, how many
+// others there are, and what to do. It is said at the end of the step in which the first one is
+// met, and again each time that their number has doubled: never a line for every joint.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "ductile/world/joint_event.hpp"
+
+namespace ductile {
+
+[[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
+    std::ostringstream line;
+    if (!(event.report.residual <= std::numeric_limits<double>::max())) {
+        line << "was shown numbers that are not finite at t = " << event.time
+             << " s, and keeps its state";
+    } else if (event.report.unseen_turn > 0) {
+        line << "turned by " << event.report.unseen_turn
+             << " rad in the step that ended at t = " << event.time
+             << " s, which its engine or its angle cannot follow";
+    } else if (event.report.gained > 0) {
+        line << "has given its bodies " << event.report.gained
+             << " J more than it took, at t = " << event.time << " s";
+    } else {
+        line << "was left unsolved by the solver at t = " << event.time << " s (off by "
+             << event.report.residual << " m/s or rad/s)";
+    }
+    return line.str();
+}
+inline constexpr const char* unreliable_advice =
+    "take shorter steps, or let the World do so (effort.action)";
+
+[[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
+    std::ostringstream line;
+    line << "moved too much in the step that ended at t = " << event.time
+         << " s: its plastic travel may be off by " << 100 * event.report.step_error << " %";
+    return line.str();
+}
+inline constexpr const char* coarse_advice = "take shorter steps, or World::advance";
+
+/// Of one kind of event. Not thread-safe.
+class JointWarning {
+  public:
+    using Words = std::string (*)(const JointEvent<double>&);
+
+    JointWarning(Words words, const char* advice) : words_(words), advice_(advice) {}
+
+    /// Each joint once.
+    void add(const JointEvent<double>& event) {
+        if (since_++ == 0 || badness(event) > badness(worst_)) worst_ = event;
+        ++joints_;
+    }
+    /// At the end of a step: whether the line is to be said. Until the next time it is due it
+    /// counts from here.
+    [[nodiscard]] bool due() noexcept {
+        if (since_ == 0 || 2 * since_ < joints_) return false;
+        since_ = 0;
+        return true;
+    }
+    /// Of the worst joint since the line before.
+    [[nodiscard]] std::string line() const {
+        std::string text = "ductile: joint \"" + worst_.name + "\" " + words_(worst_);
+        if (joints_ > 1) {
+            text += ", and " + std::to_string(joints_ - 1) + (joints_ > 2 ? " others" : " other");
+        }
+        return text + "; " + advice_;
+    }
+
+  private:
+    /// NaN is the worst.
+    [[nodiscard]] static double badness(const JointEvent<double>& event) noexcept {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        const JointReport<double>& report = event.report;
+        const double off = event.kind == EventKind::coarse ? report.step_error : report.residual;
+        return off <= infinity ? off : infinity;
+    }
+
+    Words words_;
+    const char* advice_;
+    JointEvent<double> worst_;
+    std::size_t joints_ = 0, since_ = 0; ///< of them all; since the line before
+};
+
+} // namespace ductile
