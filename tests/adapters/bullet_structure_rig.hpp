@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/joint/usual_joints.hpp"
 
 namespace ductile::test {
 
@@ -22,6 +23,7 @@ namespace engine = ductile::bullet;
 class StructureRig {
   public:
     using Body = btRigidBody*;
+    using Joint = bullet::PlasticJoint<UsualSixAxisJoint>;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
     /// How deep into the floor a body is made that is to rest on it [m].
     static constexpr double layer = 0;
@@ -33,6 +35,7 @@ class StructureRig {
         box(0, {50, 50, 1}, {0, 0, -1})->setFriction(1);
     }
     ~StructureRig() {
+        joints_.clear();
         for (const Own& own : own_) engine_.removeRigidBody(own.body.get());
     }
     StructureRig(const StructureRig&) = delete;
@@ -59,6 +62,16 @@ class StructureRig {
         engine_.addRigidBody(own.body.get());
         return own.body.get();
     }
+    /// Between boxes, with the axes of the world.
+    Joint& connect(Body a, Body b, const Vector3<double>& at, const UsualSixAxisJoint& joint) {
+        const btTransform frame(btMatrix3x3::getIdentity(), bullet::to_bullet(at));
+        joints_.push_back(
+            std::make_unique<Joint>(*a, *b, a->getCenterOfMassTransform().inverse() * frame,
+                                    b->getCenterOfMassTransform().inverse() * frame, joint));
+        world_->add(*joints_.back());
+        return *joints_.back();
+    }
+    void set_gravity(const Vector3<double>& g) { engine_.setGravity(bullet::to_bullet(g)); }
     void set_friction(double coefficient) {
         each([&](btRigidBody& body) { body.setFriction(btScalar(coefficient)); });
     }
@@ -100,6 +113,9 @@ class StructureRig {
     [[nodiscard]] static Vector3<double> place(Body body) {
         return bullet::to_core(body->getCenterOfMassPosition());
     }
+    static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
+        body->applyForce(bullet::to_bullet(force), bullet::to_bullet(at - place(body)));
+    }
     static void set_velocity(Body body, const Vector3<double>& velocity) {
         body->setLinearVelocity(bullet::to_bullet(velocity));
     }
@@ -130,6 +146,7 @@ class StructureRig {
     std::vector<Own> own_;
     std::vector<std::string> lines_;
     std::unique_ptr<bullet::World> world_;
+    std::vector<std::unique_ptr<Joint>> joints_;
     std::size_t events_ = 0;
 };
 

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/joint/usual_joints.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace ductile::test {
@@ -22,6 +23,7 @@ namespace engine = ductile::ode;
 class StructureRig {
   public:
     using Body = dBodyID;
+    using Joint = ode::PlasticJoint<UsualSixAxisJoint>;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
     /// How deep into the floor a body is made that is to rest on it: ODE lets contacts overlap [m].
     static constexpr double layer = 1e-3;
@@ -64,6 +66,15 @@ class StructureRig {
         own_.push_back(body);
         return body;
     }
+    /// Between boxes, with the axes of the world.
+    Joint& connect(Body a, Body b, const Vector3<double>& at, const UsualSixAxisJoint& joint) {
+        joints_.push_back(std::make_unique<Joint>(id_, a, b, Joint::Frame{.origin = at}, joint));
+        world_->add(*joints_.back());
+        return *joints_.back();
+    }
+    void set_gravity(const Vector3<double>& g) {
+        dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
+    }
     void set_friction(double coefficient) { friction_ = coefficient; }
 
     void step(double dt) {
@@ -93,6 +104,10 @@ class StructureRig {
     [[nodiscard]] static double mass(Body body) { return ode::mass(body); }
     [[nodiscard]] static Vector3<double> place(Body body) {
         return ode::to_core(dBodyGetPosition(body));
+    }
+    static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
+        dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
+                           dReal(at.x()), dReal(at.y()), dReal(at.z()));
     }
     static void set_velocity(Body body, const Vector3<double>& v) {
         dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
@@ -140,6 +155,7 @@ class StructureRig {
         dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
         if (body_a == nullptr && body_b == nullptr) return;
         if (built_ != nullptr && built_->meet(body_a, body_b)) return;
+        if (body_a != nullptr && body_b != nullptr && dAreConnected(body_a, body_b) != 0) return;
         std::array<dContact, 8> found{};
         const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
         for (int i = 0; i < count; ++i) {
@@ -167,6 +183,7 @@ class StructureRig {
     std::vector<dBodyID> own_;
     std::vector<std::string> lines_;
     std::unique_ptr<ode::World> world_;
+    std::vector<std::unique_ptr<Joint>> joints_;
     const ode::Structure* built_ = nullptr;
     double damping_ = 0, friction_ = 0.6;
     std::size_t events_ = 0;

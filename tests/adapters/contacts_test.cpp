@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+//
+// Structures that lie on a floor: where they slide, where they tip, and that stacks stand. Compiled
+// for every engine and precision (RIG_HEADER); contacts are the engine's own, solved with the
+// joints.
+#include RIG_HEADER
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+using Body = StructureRig::Body;
+using V3 = Vector3<double>;
+
+constexpr double g = 9.81, dt = 1.0 / 60;
+
+UsualSixAxisJoint strong() {
+    return UsualSixAxisJoint(Ellipsoid<double, 6>({.capacity = Vector6<double>::Constant(1e8)}),
+                             Perfect<double>({.strength = 1}));
+}
+
+/// Gravity on a ground that is tilted by `angle` about y: down the slope is along x.
+V3 tilted(double angle) { return V3(g * std::sin(angle), 0, -g * std::cos(angle)); }
+
+/// When all is there.
+void settle(StructureRig& rig, double friction) {
+    rig.set_friction(friction);
+    rig.keep_awake();
+}
+
+/// P38's block of 1 x 1 x 2 m and 1000 kg, in two halves that a plastic joint holds.
+struct Block {
+    Block(const V3& gravity, double friction) {
+        rig.set_gravity(gravity);
+        lower = rig.box(500, V3(0.5, 0.5, 0.5), V3(0, 0, 0.5 - StructureRig::layer));
+        upper = rig.box(500, V3(0.5, 0.5, 0.5), V3(0, 0, 1.5 - StructureRig::layer));
+        rig.connect(upper, lower, V3(0, 0, 1 - StructureRig::layer), strong());
+        settle(rig, friction);
+        rig.run(20 * dt, dt);
+        from = StructureRig::place(lower);
+    }
+    /// Pushed at a height above its centre of mass for a second.
+    void push(double force, double above) {
+        for (int i = 0; i < 60; ++i) {
+            const V3 centre = (StructureRig::place(lower) + StructureRig::place(upper)) / 2;
+            StructureRig::apply_force(upper, V3(force, 0, 0), centre + V3(0, 0, above));
+            rig.step(dt);
+        }
+    }
+    [[nodiscard]] double slid() const { return (StructureRig::place(lower) - from).x(); }
+    [[nodiscard]] double leans() const {
+        return (StructureRig::place(upper) - StructureRig::place(lower)).x();
+    }
+
+    StructureRig rig;
+    Body lower = nullptr, upper = nullptr;
+    V3 from;
+};
+
+/// Of a thing at rest: what round-off and the contacts' compliance let it move.
+constexpr double still = StructureRig::single ? 1e-4 : 1e-6;
+
+} // namespace
+
+TEST_CASE("P38 a block slides and tips by the push that it should", "[contacts]") {
+    // mu m g = 5886 N; at 1.5 m m g b/(2 x 1.5) = 3270 N
+    struct Case {
+        double force, above;
+        bool slides, tips;
+    };
+    const Case c =
+        GENERATE(Case{0.99 * 5886, -0.5, false, false}, Case{1.01 * 5886, -0.5, true, false},
+                 Case{0.99 * 3270, 0.5, false, false}, Case{1.01 * 3270, 0.5, false, true});
+    INFO(c.force << " N at " << 1 + c.above << " m");
+    Block block(V3(0, 0, -g), 0.6);
+    block.push(c.force, c.above);
+    CHECK((std::abs(block.leans()) > 1e-3) == c.tips);
+    if (!c.tips) {
+        const double a = c.force / 1000 - 0.6 * g;
+        // the velocity at the end of a step acts for all of it
+        const double way = c.slides ? a * dt * dt * 60 * 61 / 2 : 0;
+        CHECK(block.slid() == Approx(way).epsilon(0.01).margin(still));
+    }
+    CHECK(block.rig.lines().empty());
+}
+
+TEST_CASE("P38 a block on a tilted ground tips at 26.5651 degrees and slides at 30.9638",
+          "[contacts]") {
+    const double tips = std::atan(0.5);
+    for (const double angle : {0.99 * tips, 1.01 * tips}) {
+        Block block(tilted(angle), 0.6);
+        block.push(0, 0);
+        CHECK((std::abs(block.leans()) > 1e-3) == (angle > tips));
+        if (angle < tips) CHECK(std::abs(block.slid()) < still);
+        CHECK(block.rig.lines().empty());
+    }
+    // lying down it cannot tip
+    for (const double factor : {0.99, 1.01, 1.1}) {
+        const double angle = std::atan(factor * 0.6);
+        StructureRig rig;
+        rig.set_gravity(tilted(angle));
+        const double z = 0.25 - StructureRig::layer;
+        const Body tail = rig.box(500, V3(0.5, 0.5, 0.25), V3(0, 0, z));
+        const Body head = rig.box(500, V3(0.5, 0.5, 0.25), V3(1, 0, z));
+        rig.connect(head, tail, V3(0.5, 0, z), strong());
+        settle(rig, 0.6);
+        constexpr int steps = 120;
+        for (int i = 0; i < steps; ++i) rig.step(dt);
+        const double rate = std::max(0.0, g * (std::sin(angle) - 0.6 * std::cos(angle))) * dt * dt *
+                            steps * (steps + 1) / 2;
+        INFO("slope " << factor << " of the friction angle");
+        CHECK(StructureRig::place(tail).x() == Approx(rate).epsilon(0.01).margin(still));
+        CHECK(rig.lines().empty());
+    }
+}
+
+TEST_CASE("P38 a portal on point feet slides at 10300.5 N at its eave", "[contacts]") {
+    // legs of 250, beam of 3000 kg, h = 4, L = 6 m, mu = 0.3; it would tip at 25751 N
+    constexpr double slides = 10300.5, h = 4, span = 6;
+    for (const double factor : {0.99, 1.01}) {
+        StructureRig rig;
+        const double up = -StructureRig::layer;
+        std::array<Body, 2> leg{};
+        for (const int side : {0, 1}) {
+            leg[std::size_t(side)] =
+                rig.box(250, V3(0.02, 0.02, h / 2), V3(side * span, 0, h / 2 + up));
+        }
+        // the beam is as wide as it takes to stand across the plane
+        const Body beam =
+            rig.box(3000, V3(span / 2 - 0.1, 0.02, 0.05), V3(span / 2, 0, h - 0.1 + up));
+        std::array<StructureRig::Joint*, 2> knee{};
+        for (const int side : {0, 1}) {
+            knee[std::size_t(side)] =
+                &rig.connect(leg[std::size_t(side)], beam, V3(side * span, 0, h + up), strong());
+        }
+        settle(rig, 0.3);
+        for (int i = 0; i < 60; ++i) {
+            StructureRig::apply_force(beam, V3(factor * slides, 0, 0),
+                                      StructureRig::place(beam) + V3(-span / 2, 0, 0.1));
+            rig.step(dt);
+        }
+        const double a = (factor - 1) * slides / 3500;
+        const double way = factor > 1 ? a * dt * dt * 60 * 61 / 2 : 0;
+        CHECK(StructureRig::place(beam).x() - span / 2 ==
+              Approx(way).epsilon(0.02).margin(10 * still));
+        if (factor > 1) { // knees carry mu N h, N of 10300.5 and 24034.5 N at the feet
+            CHECK(std::abs(knee[0]->force(JointAxis::bending_y)) == Approx(12360.6).epsilon(0.02));
+            CHECK(std::abs(knee[1]->force(JointAxis::bending_y)) == Approx(28841.4).epsilon(0.02));
+        }
+        CHECK(rig.lines().empty());
+    }
+}
+
+TEST_CASE("Ten and thirty boxes stand under a heavy one", "[contacts]") {
+    // 1000 kg on boxes of 10 kg; the lowest one is in two halves that a joint holds
+    const int boxes = GENERATE(10, 30);
+    INFO(boxes << " boxes");
+    StructureRig rig;
+    const double edge = 0.5, less = StructureRig::layer;
+    const Body left =
+        rig.box(5, V3(edge / 4, edge / 2, edge / 2), V3(-edge / 4, 0, edge / 2 - less));
+    const Body right =
+        rig.box(5, V3(edge / 4, edge / 2, edge / 2), V3(edge / 4, 0, edge / 2 - less));
+    rig.connect(right, left, V3(0, 0, edge / 2 - less), strong());
+    Body top = nullptr;
+    for (int i = 1; i < boxes; ++i) {
+        top = rig.box(i + 1 == boxes ? 1000 : 10, V3::Constant(edge / 2),
+                      V3(0, 0, edge * (i + 0.5) - less * (i + 1)));
+    }
+    settle(rig, 0.6);
+    rig.run(1, dt);
+    const V3 from = StructureRig::place(top);
+    rig.run(5, dt);
+    const V3 way = StructureRig::place(top) - from;
+    CHECK(way.cwiseAbs().maxCoeff() < (StructureRig::single ? 2e-2 : 5e-5));
+    CHECK(rig.lines().empty());
+}
