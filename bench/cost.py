@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """What joints cost: cost.py --bin FOLDER --build FOLDER --out FOLDER [--quick]
 
-Runs the joint_cost and scaling programs of every engine build, whose tables go to the terminal, and joins
-their rows into joint_cost.csv and scaling.csv in --out.
+Runs the joint_cost, scaling and structures programs of every engine build, whose tables go to the terminal,
+and joins their rows into joint_cost.csv, scaling.csv and structures.csv in --out.
 """
 
 import os
@@ -18,8 +18,9 @@ BUILDS = ("bullet-double", "bullet-float", "ode-double")
 def main():
     options = run_options(__doc__.splitlines()[0])
     extra = ["--quick"] if options.quick else []
-    progress = Progress("cost", 2 * len(BUILDS))
-    for question in ("joint_cost", "scaling"):
+    questions = ("joint_cost", "scaling", "structures")
+    progress = Progress("cost", len(questions) * len(BUILDS))
+    for question in questions:
         joined = []
         for build in BUILDS:
             program = os.path.join(options.bin, f"{question}-{build}")

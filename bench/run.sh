@@ -33,7 +33,7 @@ fi
 cmake/install-packages.sh
 cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
 cmake --build --preset release --target \
-    {pareto,stability,scaling,joint_cost,detail,instructions}-{bullet-double,bullet-float,ode-double}
+    {pareto,stability,scaling,joint_cost,structures,detail,instructions}-{bullet-double,bullet-float,ode-double}
 out=${out:-bench/results/$name}
 mkdir -p "$out"
 # the interpreter for which Debian packages matplotlib
