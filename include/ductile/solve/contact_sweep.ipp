@@ -94,7 +94,7 @@ DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
     const std::size_t first = first_[contact];
     const int count = view.count();
     if (!(view.work[0].own > 0)) return 0;
-    const auto effect = [&own = own_[contact]](int i, int j) { return own(i, j); };
+    const Matrix6<double>& effect = own_[contact];
     Vector6<double> before = Vector6<double>::Zero(), residual = before;
     for (int i = 0; i < count; ++i) {
         before[i] = view.row[i].impulse;
