@@ -160,27 +160,27 @@ int main(int argc, char** argv) try {
                .plan = frame({.layer = layer}),
                .steps = 600,
                .loses_column = true});
-    bench.run({.name = "column lost, crates, contacts",
+    bench.run({.name = "column lost with crates",
                .plan = frame({.crates = 1, .contacts = true, .layer = layer}),
                .before = 0,
                .steps = 600,
                .loses_column = true});
     const int minute = quick ? 600 : 3600;
-    bench.run({.name = "loose footings, 60 s",
+    bench.run({.name = "loose footings for a minute",
                .plan = frame({.loose = true, .layer = layer}),
                .before = minute / 6,
                .steps = minute - minute / 6});
-    bench.run({.name = "two frames, 60 s",
+    bench.run({.name = "two frames for a minute",
                .plan = frame({.frames = 2, .layer = layer}),
                .before = minute / 6,
                .steps = minute - minute / 6});
-    bench.run({.name = "two crates a beam, 60 s",
+    bench.run({.name = "two crates a beam for a minute",
                .plan = frame({.crates = 2, .layer = layer}),
                .before = minute / 6,
                .steps = minute - minute / 6});
     for (const double speed : {0.0, 30.0}) {
         std::vector<std::pair<double, double>> points;
-        const std::string name = speed > 0 ? "chain, struck" : "chain, at rest";
+        const std::string name = speed > 0 ? "chain struck" : "chain at rest";
         for (const int joints :
              quick ? std::vector{10, 50, 100} : std::vector{10, 30, 50, 100, 300, 1000}) {
             const double median = bench.run({.name = name,

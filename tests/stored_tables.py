@@ -190,6 +190,26 @@ def scaling(path):
                   for (method,) in each(rows, "method")])
 
 
+def structures(path):
+    """A step of each scene: median and worst of ours elastic, medians of ours rigid and of fixed joints [ms]."""
+    rows = {(row["engine"], row["solver"], row["scene"], row["joints"], row["method"]): row for row in rows_of(path)}
+
+    def cell(key, column):
+        return f"{float(rows[key][column]) / 1000:.3g}" if key in rows else "-"
+
+    def line(scene, joints):
+        cells = []
+        for engine, solver in (("bullet", "si"), ("ode", "direct")):
+            of = {method: (engine, solver, scene, joints, method) for method in ("elastic", "rigid", "fixed")}
+            cells += [f"{cell(of['elastic'], 'median_us')}, {cell(of['elastic'], 'worst_us')}",
+                      cell(of["rigid"], "median_us"), cell(of["fixed"], "median_us")]
+        return [scene, joints, *cells]
+
+    return table(["scene", "joints", *[f"{engine}: {what}" for engine in ("Bullet", "ODE")
+                                       for what in ("elastic, worst", "rigid", "own fixed")]],
+                 [line(scene, joints) for scene, joints in each(rows.values(), "scene", "joints")])
+
+
 def detail(path):
     """The choices that keep their tolerance, and their cost beside the cheapest model that does."""
     chosen = [row for row in rows_of(path) if row["chosen"] == "1"]
