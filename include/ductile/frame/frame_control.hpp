@@ -73,6 +73,7 @@ class FrameControl {
         double error = 0;
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
+        double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         bool ended = false;   ///< a flow ended in it
         bool moves = false;   ///< something was to be judged

@@ -19,6 +19,7 @@ inline constexpr double contact_share = 0.3;  ///< of the work of contacts that 
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
 inline constexpr int most_tries = 12;         ///< of one part
+inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap
 inline constexpr double nothing_left = 1e-12; ///< of a frame
 
 /// What a part's length is multiplied by; `least` where the error is no number.
@@ -125,9 +126,10 @@ DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
 
 /// Does a part of `h` or less, not past `gap`, of the frame's `left`; returns its length [s].
 DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double gap, double left) {
+    constexpr int tries_at_gaps = 6;
     const double shortest = engine.shortest_part();
     const bool at_gap = gap < h;
-    if (at_gap) h = std::max(gap, shortest);
+    if (at_gap) h = std::max(gap, detail::hair * shortest);
     if (left - h < shortest) h = left;
     engine.save();
     double first_error = 0;
@@ -136,10 +138,11 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     for (int tries = 0;; ++tries) {
         const PartMotion& motion = engine.part(h);
         ++solves_;
-        const Judgement judged = judge(motion, h);
+        Judgement judged = judge(motion, h);
+        if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         if (tries == 0) first_error = judged.error;
-        const bool good = judged.error <= judged.allowed;
+        const bool good = judged.error <= judged.allowed && judged.closed == 0;
         const bool done = jump || spent() || tries > detail::most_tries || h <= shortest;
         if (good || done) {
             stand(engine, motion, judged, h, at_event, jump);
@@ -177,6 +180,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     double ahead = 0, power = 0, largest = 0, unmissed = 0;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
+        unmissed += row.strength * row.least * detail::unmissed;
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = row.strength * off.travel;
@@ -188,28 +192,27 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         }
         ahead += work_ahead(row, h);
         power += row.strength * std::abs(row.start + row.end) / 2;
-        unmissed += row.strength * row.least * detail::unmissed;
     }
     judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
         judged.error +=
             std::abs(motion.rigid_work) + detail::contact_share * std::abs(motion.contact_work);
         if (motion.contact_lost) judged.error += power * h / 2;
-        judged.tolerated =
-            detail::part_share * parameters_.tolerance * (motion.plastic_work + ahead + unmissed);
     }
+    const double share = detail::part_share * parameters_.tolerance;
+    judged.tolerated = share * (motion.plastic_work + ahead + unmissed);
     judged.allowed = judged.tolerated;
+    // a push that came too early took this share of the speed
+    if (2 * (h - motion.closed) > share * h) judged.closed = motion.closed;
     if (used() > 0.5) judged.allowed *= std::pow(10.0, 4 * (used() - 0.5));
     return judged;
 }
 
 DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMotion& motion,
                                           double h, int tries) -> Shorter {
-    constexpr int tries_at_stops = 3, tries_at_gaps = 6;
+    constexpr int tries_at_stops = 3;
     constexpr double past_it = 1 + 1e-9;
-    if (motion.overlap > 0 && motion.overlap < h && tries < tries_at_gaps) {
-        return {motion.overlap, true};
-    }
+    if (judged.closed > 0) return {judged.closed, true};
     if (judged.stop > 0 && !motion.contact_lost && tries < tries_at_stops) {
         return {judged.stop * past_it, true};
     }

@@ -25,7 +25,9 @@ struct PartMotion {
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
     double contact_work = 0;   ///< that contacts took, either sign [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
-    double overlap = 0;        ///< when a gap closed that was not foreseen [s]; 0: none
+    /// When a gap closed that was not foreseen, so that the contact pushed before it touched [s];
+    /// 0: none that matters.
+    double closed = 0;
 };
 
 /// Contacts that close.

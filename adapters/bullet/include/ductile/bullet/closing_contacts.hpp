@@ -13,6 +13,16 @@
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
 // is not asked for. An island is that of Bullet's last tick, and the bodies of the joints.
 //
+// Others know contacts before they touch, and these push so that the gap just closes at the end of
+// a part. Where bodies gain speed on the way, by their weight say, that takes the gain away, and
+// the force came too early: `closed_early` tells when the gap closed by itself, to which the part
+// has to be cut. With the impulse J, of a gap d in the middle of a part of h,
+//
+//   v = 2 d/h at the end;   J K = speed that was taken;   s = h (1 - J K/(2 (v + J K)))
+//
+// K is that of both bodies free: where one is held s is rather too early, and what is left of the
+// gap closes in a part of its own.
+//
 // Not thread-safe.
 #pragma once
 
@@ -36,6 +46,10 @@ class ClosingContactsFinder {
     /// As PartEngine::closing.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
+    /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed before
+    /// [s]; 0 where none did. Those that close with less energy than `apart` [J] do not count.
+    /// Islands are those of the last `find`.
+    [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart) const;
 
   private:
     void find_islands(btDiscreteDynamicsWorld& world);

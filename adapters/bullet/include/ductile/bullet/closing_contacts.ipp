@@ -87,6 +87,42 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     return found;
 }
 
+DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorld& world, double h,
+                                                          double apart) const {
+    constexpr double earliest = 0.5; // of the part
+    double first = h;
+    btDispatcher& dispatcher = *world.getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        double impulse = 0;
+        const btManifoldPoint* nearest = nullptr;
+        for (int k = 0; k < manifold.getNumContacts(); ++k) {
+            const btManifoldPoint& point = manifold.getContactPoint(k);
+            if (!(point.m_appliedImpulse > 0) || !(double(point.getDistance()) > closed_gap)) {
+                continue;
+            }
+            impulse += double(point.m_appliedImpulse);
+            if (nearest == nullptr || point.getDistance() < nearest->getDistance()) {
+                nearest = &point;
+            }
+        }
+        if (nearest == nullptr) continue;
+        const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+        const btRigidBody *of_a = detail::pushed(a), *of_b = detail::pushed(b);
+        const bool plastic = (of_a != nullptr && is_plastic(*of_a)) ||
+                             (of_b != nullptr && is_plastic(*of_b));
+        if (!plastic) continue;
+        const btVector3& normal = nearest->m_normalWorldOnB;
+        const double yields = detail::yield_at(a, nearest->getPositionWorldOnA(), normal) +
+                              detail::yield_at(b, nearest->getPositionWorldOnB(), normal);
+        const double speed = 2 * double(nearest->getDistance()) / h;
+        if (!(speed * speed > 2 * yields * apart)) continue;
+        const double taken = impulse * yields;
+        first = std::min(first, h * std::max(earliest, 1 - taken / (2 * (speed + taken))));
+    }
+    return first < h ? first : 0;
+}
+
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld& world) {
     joined_.clear();
     islands_.clear();

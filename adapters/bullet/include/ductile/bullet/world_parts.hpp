@@ -79,6 +79,7 @@ class WorldParts final : public PartEngine {
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
+    double apart_ = 0; ///< energy with which a gap has to close to count [J]
     PartMotion motion_;
     bool forces_act_ = false; ///< they are applied for the coming tick
     bool pairs_were_sorted_;  ///< the user's setting

@@ -129,12 +129,14 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     motion_.rigid_work = meter_.of_plastic_joints() - rigid;
     motion_.contact_work = meter_.ledger().booked(Account::contact) - contact;
+    motion_.closed = closing_.closed_early(world_, h, apart_);
     return motion_;
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     constexpr double instant = 1e-9;
     tick(instant, false);
+    motion_.closed = 0;
     return tell();
 }
 
@@ -153,6 +155,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
 }
 
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    apart_ = apart;
     return closing_.find(world_, h, touching, apart);
 }
 
