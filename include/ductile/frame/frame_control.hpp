@@ -96,7 +96,7 @@ class FrameControl {
     [[nodiscard]] double first_length(double left) const noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;
     [[nodiscard]] bool at_stake(double h) const noexcept;
-    [[nodiscard]] Judgement judge(const PartMotion& motion, double h) const;
+    [[nodiscard]] Judgement judge(const PartMotion& motion, double h, double shortest) const;
     [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
                                          double h, int tries);
     [[nodiscard]] double strike(PartEngine& engine, double h);

@@ -138,7 +138,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     for (int tries = 0;; ++tries) {
         const PartMotion& motion = engine.part(h);
         ++solves_;
-        Judgement judged = judge(motion, h);
+        Judgement judged = judge(motion, h, shortest);
         if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         if (tries == 0) first_error = judged.error;
@@ -174,8 +174,9 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     return {past_[row].acceleration, before_};
 }
 
-DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion,
-                                                           double h) const {
+/// In a part below the `shortest` contacts are struck, which misplaces nothing.
+DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
+                                                           double shortest) const {
     Judgement judged;
     double ahead = 0, power = 0, largest = 0, unmissed = 0;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
@@ -195,8 +196,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     }
     judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
-        judged.error +=
-            std::abs(motion.rigid_work) + detail::contact_share * std::abs(motion.contact_work);
+        judged.error += std::abs(motion.rigid_work);
+        if (!(h <= shortest)) {
+            judged.error += detail::contact_share * std::abs(motion.contact_work);
+        }
         if (motion.contact_lost) judged.error += power * h / 2;
     }
     const double share = detail::part_share * parameters_.tolerance;
