@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Compares two stored results: compare.py bench/results/A bench/results/B
 
-Every accuracy column of pareto.csv, stability.csv and detail.csv must be the same to the last digit. Costs are
+Every accuracy column of pareto.csv, frames.csv and detail.csv must be the same to the last digit. Costs are
 compared as ratios to the median row of their own scene, engine and precision, and as the ratios ours / other
 of the summary: a machine that is faster as a whole does not count. Exit status 1 where an error differs; the
 spread of the costs is printed.
@@ -19,8 +19,8 @@ from pareto import TARGETS, cheapest
 TABLES = {
     "pareto.csv": (("scene", "engine", "solver", "precision", "method", "dt_s", "iterations", "quantity"),
                    ("error_rel",)),
-    "stability.csv": (("scene", "engine", "solver", "precision", "method", "x_name", "x", "y_name", "y"),
-                      ("class", "error_rel", "energy_gain_rel")),
+    "frames.csv": (("scene", "engine", "precision", "y", "frame_s", "method", "solver", "tolerance", "parts"),
+                   ("error_rel", "energy_error_rel", "believed", "solves")),
     "detail.csv": (("scene", "engine", "precision", "tolerance", "detail", "chosen", "joints"),
                    ("dt_s", "error_rel", "meets", "row_steps", "count_ratio", "unreliable_steps")),
 }

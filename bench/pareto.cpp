@@ -13,8 +13,8 @@
 // Columns: scene,engine,solver,precision,method,dt_s,tolerance,iterations,quantity,error_rel,
 // cpu_s_per_sim_s,yardstick_s,steps,unreliable_steps; before them lines with a point and the number
 // of passes, one for each row and pass. yardstick_s is what a step of the same
-// bodies took at that time (run_scene.hpp). dt_s of an adaptive run is its mean step; tolerance is
-// 0 for fixed steps; iterations of Bullet's mlcp are those of its fallback, 0 where there are none.
+// bodies took at that time (run_scene.hpp). tolerance: of a World whose frames are of dt_s; 0 for
+// fixed steps; iterations of Bullet's mlcp are those of its fallback, 0 where there are none.
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -37,7 +37,7 @@ namespace {
 
 struct Plan {
     std::vector<double> steps;
-    std::vector<double> tolerances;
+    std::vector<double> tolerances, frames; ///< of ours in a World with a tolerance
     std::vector<int> iterations; ///< of iterative solvers
     std::vector<int> fallback;   ///< of direct solvers where they give up
     long longest = 0;            ///< runs of more steps are left out
@@ -47,22 +47,21 @@ struct Plan {
 
 const Plan full{
     {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480, 1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5, 1e-5},
-    {0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005},
+    {0.1, 0.03, 0.01, 0.003, 0.001, 0.0003},
+    {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240},
     {4, 10, 50, 200},
     {10, 200},
     20000,
     4,
     0.004};
 const Plan quick{{1.0 / 60, 1.0 / 240, 1e-3, 5e-4, 2e-4, 1e-4, 2e-5},
-                 {0.05, 0.01, 0.005, 0.002, 0.001},
+                 {0.1, 0.01, 0.001},
+                 {1.0 / 60},
                  {10, 50},
                  {200},
                  8000,
                  3,
                  0.001};
-
-/// Ours with fixed leapfrog steps as well: all but this one, which takes longest.
-constexpr std::string_view never_leapfrogs = "plastic-joint";
 
 std::vector<int> iterations_of(const SolverName& solver, const Plan& plan) {
     switch (solver.iterations) {
@@ -97,17 +96,18 @@ std::vector<Settings> rows(const Scene& scene, const Plan& plan) {
                     row.dt = dt;
                     if (scene.duration / dt <= double(plan.longest)) result.push_back(row);
                 }
-                if (!method.ours) continue;
-                row.leapfrog = true;
-                for (const double dt : plan.steps) {
-                    if (method.name == never_leapfrogs) break;
-                    row.dt = dt;
-                    if (scene.duration / dt <= double(plan.longest)) result.push_back(row);
-                }
-                for (const double tolerance : plan.tolerances) {
-                    row.tolerance = tolerance;
-                    result.push_back(row);
-                }
+            }
+        }
+    }
+    if (!World::has_frames) return result;
+    for (const MethodName& method : method_names) {
+        if (!method.ours || !stands_for(method, scene)) continue;
+        for (const double tolerance : plan.tolerances) {
+            for (const double frame : plan.frames) {
+                result.push_back({.solver = std::string(World::exact_solver),
+                                  .method = std::string(method.name),
+                                  .dt = frame,
+                                  .tolerance = tolerance});
             }
         }
     }
@@ -115,19 +115,14 @@ std::vector<Settings> rows(const Scene& scene, const Plan& plan) {
 }
 
 std::string name(const Settings& row) {
-    if (row.adaptive()) return row.method + std::string(adaptive_suffix);
-    return row.method + (row.leapfrog ? std::string(leapfrog_suffix) : "");
+    return row.method + (row.in_frames() ? std::string(frames_suffix) : "");
 }
 
 /// The run of a row's name; its other fields are set by the caller.
 Settings named(const std::string& method) {
     Settings row;
     row.method = method;
-    for (const std::string_view suffix : {adaptive_suffix, leapfrog_suffix}) {
-        if (!method.ends_with(suffix)) continue;
-        row.method.resize(method.size() - suffix.size());
-        row.leapfrog = true;
-    }
+    if (method.ends_with(frames_suffix)) row.method.resize(method.size() - frames_suffix.size());
     return row;
 }
 
@@ -150,12 +145,11 @@ struct Measured {
 void print(const Scene& scene, const Measured& measured) {
     const auto& [row, result, costs] = measured;
     const Cost cost = measured.cost();
-    const double dt = row.adaptive() ? result.end.time / double(result.steps) : row.dt;
     for (const Quantity& quantity : scene.quantities) {
         const auto error = relative_error(quantity, result);
         if (!error) continue;
         fmt::print("{},{},{},{},{},{:.9e},{},{},{},{:.9e},{:.6e},{:.6e},{},{}\n", scene.name,
-                   World::engine, row.solver, World::precision, name(row), dt, row.tolerance,
+                   World::engine, row.solver, World::precision, name(row), row.dt, row.tolerance,
                    row.iterations, quantity.name, *error, cost.cpu / result.end.time,
                    cost.yardstick, result.steps, result.unreliable_steps);
     }
@@ -221,7 +215,7 @@ int main(int argc, char** argv) try {
         for (const Settings& row : rows(scene, plan)) {
             fmt::print("{},{},{},{:.9e},{},{},{}\n", scene.name, row.solver, name(row), row.dt,
                        row.tolerance, row.iterations,
-                       row.adaptive() ? 1000 : long(scene.duration / row.dt));
+                       long(scene.duration / row.dt));
         }
     }
     if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");

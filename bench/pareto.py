@@ -42,8 +42,10 @@ GAME_STEP = 1 / 60
 
 
 def joint_of(method):
-    """The joint of a method, whatever the steps."""
-    return method.removesuffix("-adaptive").removesuffix("-leapfrog")
+    """The joint of a method, whatever the steps. Stored results still have two kinds that are no more."""
+    for steps in ("-frames", "-adaptive", "-leapfrog"):
+        method = method.removesuffix(steps)
+    return method
 
 
 def is_ours(method):
@@ -161,7 +163,8 @@ def summarise(rows, quantity_of):
     chosen = [row for row in rows if row["quantity"] == quantity_of[row["scene"]]]
     series, energy = defaultdict(list), defaultdict(list)
     for row in chosen:
-        key = tuple(row[c] for c in ("engine", "solver", "precision", "iterations"))
+        frame = row["dt_s"] if number(row, "tolerance") > 0 else None  # then the tolerance is what is refined
+        key = (*(row[c] for c in ("engine", "solver", "precision", "iterations")), frame)
         series[row["scene"], row["method"]].append((key, row))
     for row in rows:
         if row["quantity"] == "absorbed_energy" and abs(number(row, "dt_s") - GAME_STEP) < 1e-8:
@@ -173,7 +176,7 @@ def summarise(rows, quantity_of):
             by_key[key].append(row)
         line = {"scene": scene, "method": method, "quantity": quantity_of[scene]}
         for target in TARGETS:
-            found = [reaches(sorted(s, key=lambda r: -number(r, "dt_s")), target)
+            found = [reaches(sorted(s, key=lambda r: (-number(r, "tolerance"), -number(r, "dt_s"))), target)
                      for s in by_key.values()]
             best = min(filter(None, found), key=lambda r: number(r, "cpu_s_per_sim_s"), default=None)
             line[f"cost_{target:g}"] = number(best, "cpu_s_per_sim_s") if best else None

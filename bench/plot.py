@@ -4,7 +4,8 @@
 
 From pareto.csv one picture per scene, pareto-SCENE.png: error over cost, both logarithmic, with the Pareto
 front drawn and our points filled and large. From detail.csv, where it is there, detail.png: per scene the models
-at each tolerance, the chosen one large. Nothing is run.
+at each tolerance, the chosen one large. From scaling.csv scaling.png, from frames.csv frames.png and
+frames-tolerance.png. Nothing is run.
 """
 
 from collections import defaultdict
@@ -15,12 +16,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
 from common import results_folder, stored_rows  # noqa: E402
+from frames import draw as draw_frames  # noqa: E402
 from pareto import ALL_METHODS, front, is_ours, joint_of, number, primary  # noqa: E402
 
 BEST, WORST = 1e-9, 10.0  # errors beyond are drawn at the rim
 OUR_COLOURS = {"plastic-hinge": "crimson", "elastic-plastic": "darkorange", "plastic-joint": "navy"}
 MARKERS = {("bullet", "double"): "o", ("bullet", "float"): "^", ("ode", "double"): "s"}
-STEPS = {"-adaptive": "D", "-leapfrog": "P"}  # whatever the engine
+STEPS = {"-frames": "D"}  # whatever the engine
 
 
 def shown(row):
@@ -59,7 +61,7 @@ def draw_scene(scene, quantity, rows, path):
     axis.set(xscale="log", yscale="log", ylim=(lowest / 3, 3 * WORST),
              xlabel="CPU seconds per simulated second", ylabel=f"relative error of {quantity}",
              title=f"{scene}: accuracy against cost\n"
-                   "circle Bullet double, triangle Bullet float, square ODE, diamond adaptive, plus leapfrog; "
+                   "circle Bullet double, triangle Bullet float, square ODE, diamond frames with a tolerance; "
                    "large: ours; rims: exact, or worse than 1000 %")
     axis.title.set_fontsize(9)
     axis.grid(alpha=0.25, which="major")
@@ -105,6 +107,33 @@ def draw_detail(rows, path):
     print(path)
 
 
+def draw_scaling(rows, path):
+    builds = list(dict.fromkeys((r["engine"], r["precision"]) for r in rows))
+    figure, axes = plt.subplots(1, len(builds), squeeze=False, sharey=True, figsize=(4.2 * len(builds), 4))
+    styles = {"0": ":", "0.01": "--", "1": "-"}
+    colours = {"bodies-only": "grey", "hinge-motor": "teal", "plastic-hinge": "crimson",
+               "plastic-joint": "navy"}
+    for axis, build in zip(axes[0], builds):
+        series = {}
+        for r in rows:
+            if (r["engine"], r["precision"]) == build:
+                key = (r["method"], r["yielding"], r["split_islands"])
+                series.setdefault(key, []).append((int(r["joints"]), float(r["ns_per_joint_step"])))
+        for (method, yielding, split), points in series.items():
+            axis.plot(*zip(*points), styles[yielding], color=colours[method], linewidth=1.2,
+                      marker="o" if split == "1" else "s", markersize=3,
+                      label=f"{method}, {100 * float(yielding):g} % yield"
+                            + ("" if split == "1" else ", islands not split"))
+        axis.set(xscale="log", yscale="log", xlabel="joints, in pairs of bodies", title=" ".join(build))
+        axis.grid(alpha=0.3)
+        axis.legend(fontsize=5.5)
+    axes[0][0].set_ylabel("ns per joint and step, bodies included")
+    figure.tight_layout()
+    figure.savefig(path, dpi=110)
+    plt.close(figure)
+    print(path)
+
+
 def main():
     folder = results_folder(__doc__)
     rows = stored_rows(folder, "pareto.csv")
@@ -113,6 +142,10 @@ def main():
         draw_scene(scene, quantity, chosen, folder / f"pareto-{scene}.png")
     if detail := stored_rows(folder, "detail.csv"):
         draw_detail(detail, folder / "detail.png")
+    if scaling := stored_rows(folder, "scaling.csv"):
+        draw_scaling(scaling, folder / "scaling.png")
+    if cells := stored_rows(folder, "frames.csv"):
+        draw_frames(folder, cells)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@
 # results with the machine they are of, and draws them.
 #   bench/run.sh [--quick] [--name NAME | --out FOLDER]     results in bench/results/NAME or in FOLDER
 # NAME: default the processor's name, with -quick where quick. --quick takes five minutes on two idle
-# cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME and
-# bench/plot_stability.py bench/results/NAME; both, and bench/compare.py, read tables packed with gzip, too.
+# cores, the full run up to an hour. Redraw stored results with bench/plot.py bench/results/NAME;
+# it and bench/compare.py read tables packed with gzip, too.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 quick=()
@@ -33,13 +33,13 @@ fi
 cmake/install-packages.sh
 cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
 cmake --build --preset release --target \
-    {pareto,stability,scaling,joint_cost,structures,detail,instructions}-{bullet-double,bullet-float,ode-double}
+    {pareto,scaling,joint_cost,structures,detail,instructions}-{bullet-double,bullet-float,ode-double} \
+    frames-{bullet-double,bullet-float}
 out=${out:-bench/results/$name}
 mkdir -p "$out"
 # the interpreter for which Debian packages matplotlib
-for question in detail pareto stability cost instructions; do
+for question in frames detail pareto cost instructions; do
     /usr/bin/python3 bench/$question.py --bin build/release/bin --build build/release --out "$out" \
         ${quick[@]+"${quick[@]}"}
 done
 /usr/bin/python3 bench/plot.py "$out"
-/usr/bin/python3 bench/plot_stability.py "$out"

@@ -8,17 +8,9 @@ measurement a table changes by itself; with other columns or names its rule has 
 import csv
 import gzip
 import re
-from collections import Counter
 
 BLOCK = re.compile(r"```\w*\n(?:.*\n)*?```|.+(?:\n.+)*")
 OURS = ("plastic-", "elastic-plastic")
-GAINED = ("energy-gained", "blown-up")
-GROUPS = {"Bullet, direct (`SoftMlcpSolver`, btMLCPSolver), double": ("mlcp double", "soft-mlcp double"),
-          "the same, float": ("mlcp float", "soft-mlcp float"),
-          "Bullet, sequential impulse and mended NNCG, double and float":
-              ("si double", "si float", "soft-nncg double", "soft-nncg float"),
-          "Bullet's own NNCG, double and float": ("nncg double", "nncg float"),
-          "ODE, dWorldStep and dWorldQuickStep": ("direct double", "quick double")}
 NAMES = {"plastic-hinge": "hinge", "plastic-joint": "six axes"}
 # our joint and the engine's own for the same task
 TASKS = {"bullet": {"plastic-hinge": "hinge-motor", "plastic-joint": "spring2"},
@@ -97,37 +89,12 @@ def at_game_step(path):
     return table(["scene", "ours: motion", "energy", "others: motion", "energy", "cost of 1 %, ours / other"], lines)
 
 
-def counts(path):
-    """Cells by solver, whose and class; those that were not run left out."""
-    return Counter((f"{row['solver']} {row['precision']}", is_ours(row),
-                    "gained" if row["class"] in GAINED else row["class"])
-                   for row in rows_of(path) if row["class"] != "not-finished")
-
-
-def cells(path):
-    found = counts(path)
-
-    def count(group, ours, *classes):
-        return sum(n for (solver, whose, kind), n in found.items()
-                   if solver in group and whose == ours and (kind in classes or not classes))
-
-    return table(["cells", "right", "refused", "wrong", "gained energy or blew up", "others': right",
-                  "others': gained energy or blew up"],
-                 [[name, f"{count(group, True, 'right')} of {count(group, True)}", count(group, True, "refused"),
-                   count(group, True, "off", "drift", "jitter"), count(group, True, "gained"),
-                   f"{count(group, False, 'right')} of {count(group, False)}", count(group, False, "gained")]
-                  for name, group in GROUPS.items()])
-
-
-def totals(path):
-    """Our cells: all, right, refused, with energy gained."""
-    ours = [(kind, n) for (_, whose, kind), n in counts(path).items() if whose]
-    return [sum(n for _, n in ours), *[sum(n for kind, n in ours if kind == wanted)
-                                       for wanted in ("right", "refused", "gained")]]
-
-
-def alarms(path):
-    return [re.search(r"said to be unreliable: (\d+)", text_of(path)).group(1)]
+def frame_cells(path):
+    """Cells of the frame map, and of ours: within 5 and 1 %, wrong and not said, right and said to be wrong."""
+    heads = ("cells", "ours, 5 %", "1 %", "ours wrong, unsaid", "false alarms")
+    rows = [[cell.strip() for cell in line.strip("|").split("|")]
+            for line in section(path, "Cells that are right").splitlines()]
+    return [next(row for row in rows if row[0] == "all")[rows[0].index(head)] for head in heads]
 
 
 def cost_ratios(rows):

@@ -23,6 +23,7 @@ namespace bench {
 /// Frames have their z along the joint's axis, in the bodies' centre-of-mass frames.
 struct BulletSite {
     btDiscreteDynamicsWorld& world;
+    ductile::bullet::World* keeper; ///< of frames with a tolerance; null without one
     btRigidBody& a;
     btRigidBody& b; ///< for the ground Bullet's fixed body
     btTransform in_a, in_b;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// A scene in Bullet. Contact points are handed over as manifolds; split impulse corrects positions
-// apart from velocities at any depth; bodies do not collide otherwise.
+// A scene in Bullet. Contacts are those of the scene alone (charpy/bullet_contacts.hpp); split
+// impulse corrects positions apart from velocities at any depth.
+//
+// With a tolerance the world is a ductile::bullet::World and a step a frame.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
@@ -18,6 +19,7 @@
 #include <string_view>
 #include <vector>
 
+#include "charpy/bullet_contacts.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world.hpp"
 #include "engines/settings.hpp"
@@ -33,6 +35,9 @@ class BulletWorld {
     static constexpr int default_iterations = 10; ///< of btContactSolverInfo
     static constexpr std::string_view exact_solver =
         "si"; ///< of our joints, whose islands a front solves
+    static constexpr bool has_frames = true;
+    static constexpr std::string_view default_solver = "si"; ///< of the engine
+    static constexpr std::array<std::string_view, 2> solvers_of_peers{"si", "mlcp"};
     static constexpr std::array<SolverName, 3> solvers{
         {{"mlcp", Iterations::fallback}, {"si", Iterations::solve}, {"nncg", Iterations::solve}}};
 
@@ -45,37 +50,29 @@ class BulletWorld {
     BulletWorld(const Scene& scene, const Settings& settings) : scene_(scene) {
         make_world(settings);
         for (const BodySpec& body : scene.bodies) add_body(body);
+        world_->addRigidBody(&ground_);
         for (const GuideSpec& guide : scene.guides) add_guide(guide);
         for (const JointSpec& joint : scene.joints) add_joint(joint, settings.method);
-        for (const ContactSpec& contact : scene.contacts) {
-            btRigidBody& a = contact.a == ground ? ground_ : body(contact.a);
-            manifolds_.push_back(dispatcher_.getNewManifold(&a, &body(contact.b)));
-        }
-        made_.resize(manifolds_.size());
-        if (settings.leapfrog) {
-            keeper_ = std::make_unique<ductile::bullet::World>(
-                *world_, ductile::bullet::WorldParameters{
-                             .ledger = false, .leapfrog = true, .warn = nullptr});
-        }
+        for (const ContactSpec& contact : scene_.contacts) add_contact(contact);
     }
     ~BulletWorld() {
-        keeper_.reset();
-        for (btPersistentManifold* manifold : manifolds_) dispatcher_.releaseManifold(manifold);
         holders_.clear();
+        keeper_.reset();
         for (auto& guide : guides_) world_->removeConstraint(guide.get());
+        world_->removeRigidBody(&ground_);
         for (auto& body : bodies_) world_->removeRigidBody(body.get());
     }
     BulletWorld(const BulletWorld&) = delete;
     BulletWorld& operator=(const BulletWorld&) = delete;
 
+    /// With a tolerance a frame.
     void step(double dt) {
-        world_->getSolverInfo().m_erp = btScalar(drift_correction(dt));
+        if (!keeper_) world_->getSolverInfo().m_erp = btScalar(drift_correction(dt));
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
             const Vector& force = scene_.bodies[i].force;
             if (!force.isZero()) bodies_[i]->applyCentralForce(ductile::bullet::to_bullet(force));
         }
         for (auto& holder : holders_) holder->before_step(dt);
-        collide(dt);
         if (keeper_) {
             keeper_->step(dt);
         } else {
@@ -88,8 +85,10 @@ class BulletWorld {
         return index == ground ? BodyState{} : state_of(*bodies_[std::size_t(index)]);
     }
     [[nodiscard]] const std::vector<std::unique_ptr<Holder>>& holders() const { return holders_; }
-    /// True where the contact was made in the last step.
-    [[nodiscard]] bool touching(std::size_t contact) const { return made_[contact]; }
+    /// What frames with a tolerance say of themselves; null without one.
+    [[nodiscard]] const ductile::RunReport* run() const {
+        return keeper_ ? &keeper_->run() : nullptr;
+    }
 
   private:
     void make_world(const Settings& settings) {
@@ -106,20 +105,29 @@ class BulletWorld {
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broadphase_,
                                                            solver_.get(), &configuration_);
-        front_ = std::make_unique<ductile::bullet::FrontHold>(*world_); // islands of our joints
+        if (settings.in_frames()) {
+            keeper_ = std::make_unique<ductile::bullet::World>(
+                *world_, ductile::bullet::WorldParameters{
+                             .ledger = false, .tolerance = settings.tolerance, .warn = nullptr});
+        } else {
+            front_ = std::make_unique<ductile::bullet::FrontHold>(*world_); // islands of our joints
+        }
+        dispatcher_.filter(*broadphase_.getOverlappingPairCache());
+        dispatcher_.make_ahead(settings.in_frames());
+        dispatcher_.make_unlike(scene_.contact_compliance > 0);
         world_->setGravity(ductile::bullet::to_bullet(scene_.gravity));
         btContactSolverInfo& info = world_->getSolverInfo();
         if (settings.iterations > 0) info.m_numIterations = settings.iterations;
         info.m_splitImpulse = true;
         info.m_splitImpulsePenetrationThreshold = btScalar(1e30); // at any depth
         info.m_globalCfm = btScalar(scene_.contact_compliance);
-        // manifolds made by hand do not merge islands: one island for all
-        world_->getSimulationIslandManager()->setSplitIslands(false);
     }
 
     void add_body(const BodySpec& spec) {
         using ductile::bullet::to_bullet;
-        btRigidBody::btRigidBodyConstructionInfo info(btScalar(spec.mass), nullptr, &shape_,
+        btCollisionShape& shape =
+            *shapes_.emplace_back(std::make_unique<btSphereShape>(btScalar(spec.radius)));
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(spec.mass), nullptr, &shape,
                                                       to_bullet(spec.inertia));
         const Rotation& r = spec.start.rotation;
         btMatrix3x3 basis;
@@ -127,7 +135,7 @@ class BulletWorld {
         info.m_startWorldTransform = btTransform(basis, to_bullet(spec.start.position));
         btRigidBody& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
         body.setActivationState(DISABLE_DEACTIVATION);
-        world_->addRigidBody(&body, 0, 0);
+        world_->addRigidBody(&body);
         if (spec.weightless) body.setGravity(btVector3(0, 0, 0));
         body.setLinearVelocity(to_bullet(spec.start.velocity));
         body.setAngularVelocity(to_bullet(spec.start.spin));
@@ -147,10 +155,10 @@ class BulletWorld {
             constraint = std::make_unique<btHingeConstraint>(a, b, in_body(a, frame),
                                                              in_body(b, frame), true);
         } else {
-            // btSliderConstraint's lateral rows are soft and bounce; limits with lower > upper are
-            // free
-            auto slider = std::make_unique<btGeneric6DofConstraint>(a, b, in_body(a, frame),
-                                                                    in_body(b, frame), true);
+            // btSliderConstraint's lateral rows are soft and bounce, and btGeneric6DofConstraint
+            // does not hold a locked axis whose error is exactly zero; lower > upper is free
+            auto slider = std::make_unique<btGeneric6DofSpring2Constraint>(
+                a, b, in_body(a, frame), in_body(b, frame));
             for (int axis = 0; axis < 6; ++axis) slider->setLimit(axis, axis == 2 ? 1 : 0, 0);
             constraint = std::move(slider);
         }
@@ -162,6 +170,7 @@ class BulletWorld {
         const btTransform frame = frame_along(joint.anchor, joint.axis);
         btRigidBody &a = body(joint.a), &b = body(joint.b);
         const BulletSite site{*world_,
+                              keeper_.get(),
                               a,
                               b,
                               in_body(a, frame),
@@ -177,61 +186,36 @@ class BulletWorld {
         throw std::invalid_argument("method = " + std::string(method) + ": not there in Bullet");
     }
 
-    /// Fills the manifolds with this step's contact points; impulses carry over for warm starting.
-    void collide(double dt) {
-        int count = 0;
-        for (std::size_t i = 0; i < manifolds_.size(); ++i) {
-            const ContactSpec& spec = scene_.contacts[i];
-            const BodyState a = state(spec.a), b = state(spec.b);
-            const double closing = spec.approach ? spec.approach(a, b).closing_speed : 0;
-            const charpy::EdgeContact contact =
-                spec.touch(a, b, charpy::reach(made_[i], spec.thickness, closing, dt));
-            made_[i] = contact.count > 0;
-            btPersistentManifold& manifold = *manifolds_[i];
-            std::array<btScalar, 2> impulse{};
-            for (int k = 0; k < std::min(contact.count, manifold.getNumContacts()); ++k) {
-                impulse[std::size_t(k)] = manifold.getContactPoint(k).m_appliedImpulse;
-            }
-            manifold.clearManifold();
-            for (int k = 0; k < contact.count; ++k) {
-                add_point(manifold, contact.points[std::size_t(k)], impulse[std::size_t(k)],
-                          scene_.contact_compliance > 0 ? 1e-6 * (1 + 0.37 * count++) * dt : 0);
-            }
+    void add_contact(const ContactSpec& spec) {
+        const btRigidBody& a = spec.a == ground ? ground_ : body(spec.a);
+        charpy::BulletContact contact{
+            .a = &a, .b = &body(spec.b), .thickness = spec.thickness, .touch = [this, &spec](double margin) {
+                return spec.touch(state(spec.a), state(spec.b), margin);
+            }};
+        if (spec.approach) {
+            contact.closing_speed = [this, &spec] {
+                return spec.approach(state(spec.a), state(spec.b)).closing_speed;
+            };
         }
-    }
-    static void add_point(btPersistentManifold& manifold, const charpy::ContactPoint& point,
-                          btScalar impulse, double unlike) {
-        using ductile::bullet::to_bullet;
-        const btVector3 on_a = to_bullet(point.position);
-        const btVector3 on_b = to_bullet(point.position - point.gap * point.normal);
-        const auto local = [](const btCollisionObject* body, const btVector3& at) {
-            return body->getWorldTransform().invXform(at);
-        };
-        btManifoldPoint entry(local(manifold.getBody0(), on_a), local(manifold.getBody1(), on_b),
-                              to_bullet(point.normal), btScalar(point.gap + unlike));
-        entry.m_positionWorldOnA = on_a;
-        entry.m_positionWorldOnB = on_b;
-        entry.m_appliedImpulse = impulse;
-        manifold.addManifoldPoint(entry);
+        dispatcher_.add(std::move(contact));
     }
 
     Scene scene_;
     btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_{&configuration_};
+    charpy::BulletContacts dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
     std::unique_ptr<btMLCPSolverInterface> dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
     std::unique_ptr<ductile::bullet::FrontHold> front_;
-    btSphereShape shape_{1};
-    /// What touches the ground: Bullet's fixed body has no shape, and manifolds ask for one.
-    btRigidBody ground_{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &shape_)};
+    std::vector<std::unique_ptr<btCollisionShape>> shapes_; ///< for the broadphase
+    btSphereShape ground_shape_{1};                         ///< all contacts are within it
+    /// What touches the ground: Bullet's fixed body is in no world.
+    btRigidBody ground_{btRigidBody::btRigidBodyConstructionInfo(0, nullptr, &ground_shape_)};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> guides_;
     std::vector<std::unique_ptr<Holder>> holders_;
-    std::vector<btPersistentManifold*> manifolds_;
-    std::vector<bool> made_;
-    std::unique_ptr<ductile::bullet::World> keeper_; ///< of a run that leapfrogs
+    std::unique_ptr<ductile::bullet::World> keeper_; ///< of frames with a tolerance
 };
 
 } // namespace bench

@@ -28,6 +28,7 @@ class OdeWorld {
     static constexpr std::string_view exact_solver = "direct"; ///< elastic rows included
     static constexpr std::array<SolverName, 2> solvers{
         {{"direct", Iterations::none}, {"quick", Iterations::solve}}};
+    static constexpr bool has_frames = false;
 
     [[nodiscard]] static bool has(std::string_view method) {
         return std::any_of(ode_methods::all.begin(), ode_methods::all.end(),
@@ -40,8 +41,10 @@ class OdeWorld {
           stepper_(world_, {.solver = settings.solver == "quick" ? ductile::ode::Solver::quick
                                                                 : ductile::ode::Solver::direct,
                             .ledger = false,
-                            .leapfrog = settings.leapfrog,
                             .warn = nullptr}) {
+        if (settings.in_frames()) {
+            throw std::invalid_argument("tolerance: must be 0 in ODE, whose steps are no frames");
+        }
         if (settings.solver != "direct" && settings.solver != "quick") {
             throw std::invalid_argument("solver = " + settings.solver +
                                         ": must be direct or quick");
@@ -78,8 +81,8 @@ class OdeWorld {
         return state_of(index == ground ? nullptr : bodies_[std::size_t(index)]);
     }
     [[nodiscard]] const std::vector<std::unique_ptr<Holder>>& holders() const { return holders_; }
-    /// True where the contact was made in the last step.
-    [[nodiscard]] bool touching(std::size_t contact) const { return made_[contact]; }
+    /// As of a world without a tolerance.
+    [[nodiscard]] const ductile::RunReport* run() const { return nullptr; }
 
   private:
     [[nodiscard]] dBodyID body(int index) const {

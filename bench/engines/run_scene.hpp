@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cpu_time.hpp"
-#include "ductile/fidelity/step_control.hpp"
+#include "ductile/frame/frame_report.hpp"
 #include "engines/settings.hpp"
 #include "methods/holder.hpp"
 #include "methods/names.hpp"
@@ -27,71 +27,29 @@ struct RunResult {
     double energy_start = 0;   ///< kinetic + potential of all bodies [J]
     double energy_highest = 0; ///< [J]
     bool finite = true;        ///< false: stopped where a number was no longer one
+    ductile::RunReport frames; ///< of a world with a tolerance
 };
 
-/// What StepControl wants to know of the scene, from the engine's state.
-template <class World>
-ductile::SceneMotion<double> motion(const Scene& scene, const World& world) {
-    ductile::SceneMotion<double> result;
-    for (std::size_t i = 0; i < scene.joints.size(); ++i) {
-        const JointSpec& joint = scene.joints[i];
-        if (world.holders()[i]->broken()) continue;
-        const double speed = std::abs(row_speed(joint, world.state(joint.a), world.state(joint.b)));
-        double& rate = joint.motion == Motion::turns ? result.plastic_rotation_rate
-                                                     : result.plastic_elongation_rate;
-        rate = std::max(rate, speed);
-        if (std::isfinite(joint.stiffness)) {
-            const double frequency =
-                std::sqrt(joint.stiffness / effective_mass(scene, joint)) / (2 * std::acos(-1.0));
-            result.elastic_frequency = std::max(result.elastic_frequency, frequency);
-        }
-    }
-    for (const ContactSpec& contact : scene.contacts) {
-        if (!contact.approach) continue;
-        const Approach a = contact.approach(world.state(contact.a), world.state(contact.b));
-        if (a.gap <= 0 || a.closing_speed <= result.closing_speed) continue;
-        result.gap = a.gap;
-        result.closing_speed = a.closing_speed;
-        result.thickness = contact.thickness;
-    }
-    return result;
-}
-
-/// The step of every run: fixed, or chosen from the motion.
+/// The step of every run: fixed, but for the first one where that is another; the last frame of a
+/// world with a tolerance ends with the scene.
 class Stepping {
   public:
     Stepping(const Scene& scene, const Settings& settings)
-        : scene_(scene),
-          fixed_(settings.dt),
+        : fixed_(settings.dt),
           first_(settings.first),
-          adaptive_(settings.adaptive()),
-          control_(parameters(settings)) {}
+          left_(settings.in_frames() ? scene.duration : infinity) {}
 
-    template <class World>
-    double next(const World& world) {
-        if (adaptive_) return control_.next(motion(scene_, world));
+    /// True once the scene is over, of frames.
+    [[nodiscard]] bool over() const { return left_ < 1e-9 * fixed_; }
+    double next() {
         const double first = std::exchange(first_, 0);
-        return first > 0 ? first : fixed_;
+        const double dt = std::min(first > 0 ? first : fixed_, left_);
+        left_ -= dt;
+        return dt;
     }
 
   private:
-    /// The defaults of StepControl scaled from their 0.005 to the tolerance; a bar's metre is worth
-    /// a radian.
-    static ductile::StepControlParameters<double> parameters(const Settings& settings) {
-        ductile::StepControlParameters<double> p;
-        if (!settings.adaptive()) return p;
-        const double scale = settings.tolerance / p.plastic_rotation;
-        p.plastic_rotation = settings.tolerance;
-        p.plastic_elongation = settings.tolerance;
-        p.closing_fraction = std::min(scale * p.closing_fraction, 0.5);
-        p.steps_per_period = std::max(p.steps_per_period / std::sqrt(scale), 2.0);
-        return p;
-    }
-
-    const Scene& scene_;
-    double fixed_, first_;
-    bool adaptive_;
-    ductile::StepControl<double> control_;
+    double fixed_, first_, left_;
 };
 
 /// Kinetic and potential energy of all bodies [J].
@@ -121,11 +79,10 @@ RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
     o.bodies.resize(scene.bodies.size());
     r.energy_start = r.energy_highest = energy(scene, world);
     // half a step less: round-off of the sum must not add a step
-    const double end = scene.duration - (settings.adaptive() ? 0 : settings.dt / 2);
+    const double end = scene.duration - (settings.in_frames() ? 0 : settings.dt / 2);
     do {
-        const double dt = stepping.next(world);
-        bool unreliable =
-            is_ours(settings.method) && ductile::may_pass_through(motion(scene, world), dt);
+        const double dt = stepping.next();
+        bool unreliable = false;
         world.step(dt);
         o.time += dt;
         ++r.steps;
@@ -134,6 +91,8 @@ RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
             const JointSpec& joint = scene.joints[i];
             o.travel[i] = travels[i].update(world.state(joint.a), world.state(joint.b));
             o.peak_travel[i] = std::max(o.peak_travel[i], std::abs(o.travel[i]));
+            const auto peak = world.holders()[i]->peak();
+            if (settings.in_frames() && peak) o.peak_travel[i] = *peak;
         }
         const double now = energy(scene, world);
         r.finite = std::isfinite(now);
@@ -147,7 +106,8 @@ RunResult observe(const Scene& scene, const Settings& settings, Watch watch) {
         }
         r.unreliable_steps += unreliable;
         watch(world, o);
-    } while (r.finite && o.time < end);
+    } while (r.finite && o.time < end && !stepping.over());
+    if (const ductile::RunReport* run = world.run()) r.frames = *run;
     return r;
 }
 template <class World>
@@ -168,7 +128,7 @@ RunResult observe(const Scene& scene, const Settings& settings) {
 /// The steps alone, to be counted or timed. Not inlined: instructions are collected by its name.
 template <class World>
 [[gnu::noinline]] void bench_steps(World& world, Stepping& stepping, long steps) {
-    for (long i = 0; i < steps; ++i) world.step(stepping.next(world));
+    for (long i = 0; i < steps; ++i) world.step(stepping.next());
 }
 
 /// The machine's pace: CPU time of a step of five bodies on the engine's own hinge motors, which

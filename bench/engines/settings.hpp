@@ -13,13 +13,11 @@ struct Settings {
     std::string solver;
     int iterations = 10; ///< of an iterative solver or a direct one's fallback; 0: does not apply
     std::string method;
-    double dt = 1.0 / 60; ///< fixed step [s]; not used where `tolerance` is given
+    double dt = 1.0 / 60; ///< fixed step, or frame [s]
     double first = 0;     ///< first step where it is another one [s]; 0: like the others
-    double tolerance =
-        0; ///< > 0: StepControl chooses, with so much plastic travel per step [rad | m]
-    bool leapfrog = false; ///< steps of second order (ductile/world/leapfrog.hpp), of ours only
+    double tolerance = 0; ///< > 0: a step is a frame of a World with this tolerance, of ours only
 
-    [[nodiscard]] bool adaptive() const { return tolerance > 0; }
+    [[nodiscard]] bool in_frames() const { return tolerance > 0; }
 };
 
 /// What a solver's number of iterations is for: nothing, a direct solver's fallback where it gives

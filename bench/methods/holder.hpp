@@ -21,6 +21,9 @@ class Holder {
     virtual void after_step(double /*dt*/) {}
     /// Energy that the method says the joint absorbed [J]; none where it keeps no account.
     [[nodiscard]] virtual std::optional<double> absorbed() { return std::nullopt; }
+    /// Largest travel of a joint that flowed one way, as its account has it [rad | m]; none where
+    /// it keeps no account.
+    [[nodiscard]] virtual std::optional<double> peak() { return std::nullopt; }
     /// True where the method itself says that the last step should not be believed.
     [[nodiscard]] virtual bool unreliable() { return false; }
     [[nodiscard]] virtual bool broken() { return false; }

@@ -33,10 +33,8 @@ inline constexpr std::array<MethodName, 10> method_names{{
     {"plastic-joint", true, "ours, six axes, elastic where the joint has a stiffness"},
 }};
 
-/// Ours in a World that leapfrogs are named with one of these after the method's name: with fixed
-/// steps, and with steps chosen by StepControl.
-inline constexpr std::string_view leapfrog_suffix = "-leapfrog";
-inline constexpr std::string_view adaptive_suffix = "-adaptive";
+/// Ours in a World with a tolerance are named with this after the method's name.
+inline constexpr std::string_view frames_suffix = "-frames";
 
 [[nodiscard]] constexpr bool is_ours(std::string_view method) {
     for (const MethodName& m : method_names) {

@@ -31,7 +31,8 @@ inline void add_specimen(Scene& scene, const charpy::Scenario& s) {
         scene.bodies.push_back({.mass = mass,
                                 .inertia = mass / 12 * (Vector::Constant(square.sum()) - square),
                                 .start = {.position = {s.height / 2, y, z}},
-                                .weightless = true});
+                                .weightless = true,
+                                .radius = std::hypot(s.height, s.width, length) / 2});
         if (i == 0) continue;
         const bool notched = i == s.parts / 2;
         scene.joints.push_back({.a = i,

@@ -78,10 +78,12 @@ struct LampPostParameters {
     scene.bodies = {
         {.mass = p.vehicle,
          .inertia = Vector::Constant(p.vehicle),
-         .start = {.position = {-2 - p.approach, p.bumper, 0}, .velocity = {p.speed, 0, 0}}},
+         .start = {.position = {-2 - p.approach, p.bumper, 0}, .velocity = {p.speed, 0, 0}},
+         .radius = 2},
         {.mass = p.post_mass,
          .inertia = Vector::Constant(about_centre),
-         .start = {.position = {0, p.post_length / 2, 0}}}};
+         .start = {.position = {0, p.post_length / 2, 0}},
+         .radius = p.post_length / 2}};
     scene.guides = {{.body = 0,
                      .motion = Motion::slides,
                      .anchor = {-2 - p.approach, p.bumper, 0},

@@ -2,7 +2,7 @@
 //
 // A scene with a known answer, described without any engine: bodies, the joints under test, what
 // else holds or pushes the bodies, and the quantities to compare. bench/engines builds it in an
-// engine and bench/methods holds its joints; pareto, stability and the tests share the
+// engine and bench/methods holds its joints; pareto, frames and the tests share the
 // descriptions.
 //
 // World axes, SI units. Contact points come from exact geometry, the same for every engine, so that
@@ -47,6 +47,7 @@ struct BodySpec {
     BodyState start = {};
     bool weightless = false;
     Vector force = Vector::Zero(); ///< constant, at the centre of mass [N]
+    double radius = 1; ///< of a sphere about the centre that holds all that may touch [m]
 };
 
 enum class Motion { turns, slides };

@@ -21,13 +21,21 @@ class Plastic final : public Holder {
     template <class... Arguments>
     explicit Plastic(const BulletSite& site, Arguments&&... arguments)
         : world_(site.world),
+          joint_(site.joint),
           constraint_(site.a, site.b, site.in_a, site.in_b, std::forward<Arguments>(arguments)...) {
-        constraint_.add_to(world_);
+        if (site.keeper != nullptr) {
+            site.keeper->add(constraint_);
+        } else {
+            constraint_.add_to(world_);
+        }
     }
     ~Plastic() override { constraint_.remove_from(world_); }
 
     [[nodiscard]] std::optional<double> absorbed() override {
         return constraint_.absorbed_energy();
+    }
+    [[nodiscard]] std::optional<double> peak() override {
+        return joint_.strength / joint_.stiffness + constraint_.joint().state().plastic_travel;
     }
     [[nodiscard]] bool broken() override { return constraint_.broken(); }
     [[nodiscard]] bool unreliable() override {
@@ -37,6 +45,7 @@ class Plastic final : public Holder {
 
   private:
     btDiscreteDynamicsWorld& world_;
+    JointSpec joint_;
     Constraint constraint_;
 };
 
