@@ -168,7 +168,8 @@ class AnyLink {
     /// elastic or rigid; infinite where nobody said [N/m | N m/rad].
     [[nodiscard]] virtual Vector6<S> section_stiffness() const noexcept = 0;
     /// Semi-axes of the ellipsoid that the plastic rows share in the step that `prepare` opened;
-    /// zero: they have their bounds alone [N | N m].
+    /// zero: they have their bounds alone, as another surface has, or a row whose force the step
+    /// gives [N | N m].
     [[nodiscard]] virtual Vector6<S> ellipsoid() const noexcept = 0;
     /// For that step: the solver will meet the ellipsoid itself, and not look at the bounds.
     void meet_surface() noexcept { on_surface_ = true; }

@@ -134,6 +134,15 @@ class CoupledJoint {
     /// Of the step that `prepare` opened: the forces are admissible where the gauge of the surface
     /// is at most this [-].
     [[nodiscard]] Scalar reach() const noexcept { return cap_ < grown_ ? cap_ : grown_ * share_; }
+    /// True where that step leaves every force to the solver: none is that of a spring as the step
+    /// begins.
+    [[nodiscard]] bool asks() const noexcept {
+        bool all = true;
+        for (int i = 0; i < dimension; ++i) {
+            all = all && (rigid(i) || implicit_[i] > 0 || damping(i) > 0);
+        }
+        return all;
+    }
 
     /// Rules the rows for a step of `dt` > 0 [s]; no force once broken, or where `motion` is not
     /// finite.

@@ -111,7 +111,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
     [[nodiscard]] Vector6<S> ellipsoid() const noexcept override {
         if constexpr (requires { joint_.surface().semi_axes(); }) {
-            if (joint_.state().broken) return Vector6<S>::Zero();
+            if (joint_.state().broken || !joint_.asks()) return Vector6<S>::Zero();
             return from_joint(joint_.surface().semi_axes() * joint_.reach());
         }
         return Vector6<S>::Zero();

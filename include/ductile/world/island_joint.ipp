@@ -9,8 +9,7 @@ namespace ductile {
 
 namespace detail {
 
-/// False where the rows have bounds of their own: another surface, axes that do not follow each
-/// other, a spring whose force the step gives.
+/// False where the rows have bounds of their own, or axes that do not follow each other.
 DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& link, int first,
                                   double dt) {
     const Vector6<double> semi_axes = link.ellipsoid();
@@ -18,8 +17,6 @@ DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& 
     while (axis < 6 && !(semi_axes[axis] > 0)) ++axis;
     solve::IslandBlock block{.first = first + axis};
     for (; axis < 6 && semi_axes[axis] > 0; ++axis) {
-        const RowLimits<double>& limits = link.limits()[std::size_t(axis)];
-        if (!(limits.lower < limits.upper)) return false;
         block.size[std::size_t(block.count++)] = semi_axes[axis] * dt;
     }
     if (block.count == 0 || std::size_t(block.count) != link.axes().size()) return false;
