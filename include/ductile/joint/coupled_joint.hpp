@@ -194,6 +194,7 @@ class CoupledJoint {
         // a joint that will hold needs neither a projection nor the matrix for it, only its chords
         if (use > 1 + on_surface<Scalar>) predicted = now.project(predicted, impedance.shape());
         const bool flows = use >= 1 - bound_tolerance;
+        will_flow_ = flows;
         const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
         const Scalar power = std::abs(numeric::dot(predicted, start_));
         const Scalar before = std::abs(numeric::dot(predicted, state_.start_velocity));
@@ -223,8 +224,9 @@ class CoupledJoint {
         if (rigid(i)) {
             limits = rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
         } else {
-            implicit_[i] =
-                ahead_ ? mean_share<Scalar> : implicit_share(parameters_.stiffness[i], mass, dt);
+            implicit_[i] = ahead_       ? mean_share<Scalar>
+                           : will_flow_ ? Scalar(1)
+                                        : implicit_share(parameters_.stiffness[i], mass, dt);
             limits = spring(i, dt).limits(lower_[i], upper_[i], dt);
         }
         limits.bias += drift_[i];
@@ -384,6 +386,7 @@ class CoupledJoint {
            share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
     Scalar cap_ = 0;     ///< γ of a brittle break
     bool ahead_ = false; ///< Motion::ahead
+    bool will_flow_ = false; ///< as predicted
     Scalar turning_ = 0, damping_ = 0; ///< Motion's
     Vector drift_ = Vector::Zero();    ///< Motion's
     Predicted<Vector> predicted_{Vector::Zero()};
