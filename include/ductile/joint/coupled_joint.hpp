@@ -136,13 +136,7 @@ class CoupledJoint {
     [[nodiscard]] Scalar reach() const noexcept { return cap_ < grown_ ? cap_ : grown_ * share_; }
     /// True where that step leaves every force to the solver: none is that of a spring as the step
     /// begins.
-    [[nodiscard]] bool asks() const noexcept {
-        bool all = true;
-        for (int i = 0; i < dimension; ++i) {
-            all = all && (rigid(i) || implicit_[i] > 0 || damping(i) > 0);
-        }
-        return all;
-    }
+    [[nodiscard]] bool asks() const noexcept;
 
     /// Rules the rows for a step of `dt` > 0 [s]; no force once broken, or where `motion` is not
     /// finite.
@@ -219,19 +213,11 @@ class CoupledJoint {
         tolerance_ = bound_tolerance * std::max(numeric::largest(upper_), numeric::largest(lower_));
     }
 
-    [[nodiscard]] RowLimits<Scalar> row(int i, Scalar mass, Scalar dt) noexcept {
-        RowLimits<Scalar> limits;
-        if (rigid(i)) {
-            limits = rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt);
-        } else {
-            implicit_[i] = ahead_       ? mean_share<Scalar>
-                           : will_flow_ ? Scalar(1)
-                                        : implicit_share(parameters_.stiffness[i], mass, dt);
-            limits = spring(i, dt).limits(lower_[i], upper_[i], dt);
-        }
-        limits.bias += drift_[i];
-        return limits;
-    }
+    /// θ of the elastic rows; where the joint will flow that of the stiffest for all, as their flow
+    /// is along the normal for equal ones.
+    void choose_shares(const Matrix& mass, Scalar dt) noexcept;
+
+    [[nodiscard]] RowLimits<Scalar> row(int i, Scalar dt) const noexcept;
 
     /// τ; the springs of steps as they are lose more than steel by themselves.
     [[nodiscard]] Scalar damping(int i) const noexcept {
@@ -333,7 +319,10 @@ class CoupledJoint {
         }
         const Scalar strength = first_strength_ * grown_;
         Scalar travel = work / strength;
-        const Scalar life = lives_.of(step.direction) * share_;
+        // of the travel whose work is booked, which a spring's is but for what it does within a step
+        const Scalar slipped = -numeric::dot(taken.force, step.direction);
+        const Scalar booked = slipped > 0 ? std::min(work / slipped, Scalar(2)) : Scalar(1);
+        const Scalar life = lives_.of(step.direction) * share_ * booked;
         const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
         const bool last = uses_up(travel, left);
         if (last) travel = left;

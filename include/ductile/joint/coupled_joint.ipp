@@ -13,6 +13,42 @@ namespace ductile {
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+bool CoupledJoint<Surface, Law, Criterion>::asks() const noexcept {
+    for (int i = 0; i < dimension; ++i) {
+        if (!rigid(i) && !(implicit_[i] > 0) && !(damping(i) > 0)) return false;
+    }
+    return true;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+void CoupledJoint<Surface, Law, Criterion>::choose_shares(const Matrix& mass, Scalar dt) noexcept {
+    Scalar largest = 0;
+    for (int i = 0; i < dimension; ++i) {
+        if (!rigid(i)) {
+            implicit_[i] = ahead_ ? mean_share<Scalar>
+                                  : implicit_share(parameters_.stiffness[i], mass(i, i), dt);
+        }
+        largest = std::max(largest, implicit_[i]);
+    }
+    for (int i = 0; i < dimension; ++i) {
+        if (will_flow_ && !ahead_) implicit_[i] = largest;
+    }
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::row(int i, Scalar dt) const noexcept
+    -> RowLimits<Scalar> {
+    RowLimits<Scalar> limits =
+        rigid(i) ? rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt)
+                 : spring(i, dt).limits(lower_[i], upper_[i], dt);
+    limits.bias += drift_[i];
+    return limits;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
     -> Rows {
     start_ = motion.velocity;
@@ -28,7 +64,8 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     rows_.fill({.lower = 0, .upper = 0});
     if (state_.broken || !sound_) return rows_;
     bound(motion, dt);
-    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, motion.mass(i, i), dt);
+    choose_shares(motion.mass, dt);
+    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, dt);
     return rows_;
 }
 
