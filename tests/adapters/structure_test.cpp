@@ -180,15 +180,15 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
         CHECK(std::abs(portal->joint("CD", start).force(bending_x)) ==
               Approx(100e3 * 1.2 / 1.25).epsilon(0.002));
     }
-    // pushed slowly, and no springs damped: sway and sink go up by 0.16 and 0.352 a unit of the
+    // pushed slowly, which is no rest: sway and sink go up by 0.16 and 0.352 a unit of the
     // factor from the first hinges to the mechanism, whatever the step
     for (const double h : {1.0 / 60, 1.0 / 240, dt, 1.0 / 3840}) {
         INFO("steps of 1/" << 1 / h);
-        StructureRig rig(0, {.rest_damping = 0});
+        StructureRig rig(0);
         const auto portal = rig.build(portal_of(true));
         rig.keep_awake();
         rig.damp(20);
-        const int ramp = int(5 / h + 0.5);
+        const int ramp = int(10 / h + 0.5);
         double factor = 0;
         const auto go = [&](int steps, double rate) {
             for (int i = 0; i < steps; ++i) {
@@ -197,13 +197,13 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
             }
         };
         go(ramp, 1.49 / ramp);
-        go(ramp / 10, 0);
+        go(ramp / 20, 0);
         CHECK(100 * portal->displacement(b).x() == Approx(0.0784).epsilon(0.005));
         CHECK(100 * portal->sag(c) == Approx(0.12448).epsilon(0.005));
-        go(ramp / 10, 0.02 / (ramp / 10));
+        go(ramp / 20, 0.02 / (ramp / 20));
         const double sway = portal->displacement(b).x(), sink = portal->sag(c);
         const double before = portal->absorbed_energy();
-        go(ramp / 10, 0);
+        go(ramp / 20, 0);
         // the mechanism turns all that the loads do into plastic work
         const double done = 40e3 * factor * (portal->displacement(b).x() - sway) +
                             60e3 * factor * (portal->sag(c) - sink);

@@ -93,11 +93,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     force_ = forces;
     const S travel = totals().plastic_travel;
     commit_joint(end_, a, b, dt);
-    const bool flows = totals().plastic_travel - travel > allowed_.absolute_residual * dt;
     if (all_rigid_) {
-        swing_.step(flows, dt);
-    } else {
-        swing_.step(utilisation(), flows, dt);
+        swing_.step(totals().plastic_travel - travel > allowed_.absolute_residual * dt, dt);
+    } else { // what it holds is its strength at the travel to yield: a rate that is its own
+        const S held = SwingState<S>::band * totals().stored;
+        swing_.step(utilisation(), last().plastic_work * SwingState<S>::waits > held * dt, dt);
     }
     return last();
 }

@@ -4,8 +4,10 @@
 //
 // An elastic joint that keeps energy swings for ever. So a structure in which nothing has flowed
 // for a second, and that was not used more than before either, is damped until it rests
-// (rest_damping): what flows, or will soon, is not touched. A structure that does not come to rest
-// then is driven by something; it is left alone until it rests by itself or flows.
+// (rest_damping): what flows, or will soon, is not touched, be it loaded at once or slowly. Each
+// joint is compared with its own last while, so that a load on what has come to rest stirs it
+// again, wherever it acts. A structure that does not come to rest then is driven by something; it
+// is left alone until it rests by itself or flows.
 //
 // A joint rests once its utilisation has stayed within a band for a second, whatever its speed: an
 // engine's own threshold is met in the middle of a swing.
@@ -20,11 +22,13 @@
 
 namespace ductile {
 
-/// Plain value; part of what a joint remembers. Peak and quiet are those of its structure.
+/// Plain value; part of what a joint remembers. `quiet` is that of its structure.
 template <std::floating_point S>
 struct SwingState {
     S used = 0;          ///< U [-]
-    S peak = 0;          ///< largest U since it last rested, fading while it is damped [-]
+    S peak = 0;          ///< largest U in the last while [-]
+    S highest = 0;       ///< largest U in the present one [-]
+    S lasts = 0;         ///< of that so far [s]
     S quiet = 0;         ///< time since something flowed or U came to a new peak [s]
     S held = 0;          ///< U about which it stays [-]
     S still = 0;         ///< time for which it has [s]
@@ -42,30 +46,37 @@ struct SwingState {
     }
     /// After a step of `dt` [s] that left an elastic joint with `utilisation`.
     void step(S utilisation, bool flowed, S dt) noexcept {
-        constexpr S fades_in = 10; // [s]
         used = utilisation;
         flows = flowed;
         quiet += dt;
         still += dt;
-        if (is_quiet()) peak -= peak * std::min(S(1), dt / fades_in);
+        lasts += dt;
         if (flows || std::abs(used - held) > band) {
             held = used;
             still = 0;
         }
         driven = (driven || quiet > comes_to_rest) && !rests();
     }
-    /// What its structure did.
-    void share(S structure_peak, bool stirred, bool flowed) noexcept {
-        peak = structure_peak;
+    /// What its structure did, of which it is one.
+    void share(bool stirred, bool flowed) noexcept {
         if (stirred) quiet = 0;
+        peak = std::max(peak, stirs() ? used : S(0));
+        highest = std::max(highest, used);
+        if (lasts > a_while) {
+            peak = highest;
+            highest = lasts = 0;
+        }
         driven = driven && !flowed;
     }
+    /// It flows, or is used more than before.
+    [[nodiscard]] bool stirs() const noexcept { return flows || used > S(1.01) * peak + band; }
     /// May be damped until it rests.
     [[nodiscard]] bool is_quiet() const noexcept { return quiet > waits && !driven; }
     [[nodiscard]] bool rests() const noexcept { return still > waits; }
 
     static constexpr S band = S(0.002);    ///< [-]
     static constexpr S waits = 1;          ///< [s]
+    static constexpr S a_while = 10;       ///< [s]
     static constexpr S comes_to_rest = 60; ///< a structure that nothing drives [s]
 };
 

@@ -65,9 +65,8 @@ class Structures {
         for (const Member& member : members_) {
             if (!member.acts) continue;
             const State& state = state_[member.structure];
-            member.joint->swing()->share(std::max(state.peak, state.used), state.stirs(),
-                                         state.flows);
-            const bool calm = state.quiet && !state.stirs();
+            member.joint->swing()->share(state.stirs, state.flows);
+            const bool calm = state.quiet && !state.stirs;
             member.joint->damp(calm ? damping_ * member.joint->swing()->quiet : 0);
             if (!state.rests) member.joint->keep_awake();
         }
@@ -81,19 +80,13 @@ class Structures {
         bool acts; ///< it is awake, and holds
     };
     struct State {
-        double used = 0, peak = 0;
-        bool flows = false, quiet = true, rests = true;
+        bool stirs = false, flows = false, quiet = true, rests = true;
 
         void add(const SwingState<double>& swing) noexcept {
-            used = std::max(used, swing.used);
-            peak = std::max(peak, swing.peak);
+            stirs = stirs || swing.stirs();
             flows = flows || swing.flows;
             quiet = quiet && swing.is_quiet();
             rests = rests && swing.rests();
-        }
-        [[nodiscard]] bool stirs() const noexcept {
-            const double beyond = quiet ? 1.25 : 1.01; // a peak fades between two swings
-            return flows || used > beyond * peak + SwingState<double>::band;
         }
     };
 

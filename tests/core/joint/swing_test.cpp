@@ -72,6 +72,31 @@ TEST_CASE("what flowed or came to a new peak within a second is not damped", "[j
     CHECK(scene.joints[2].damping > 0.05);
 }
 
+TEST_CASE("what is loaded slowly is not damped", "[joint][swing]") {
+    for (const double seconds : {1.0, 10.0, 60.0}) {
+        INFO("in " << seconds << " s");
+        Scene scene;
+        const int steps = int(seconds / dt);
+        for (int i = 0; i < steps; ++i) {
+            scene.step({double(i) / steps, 0.1, 0.2});
+            CHECK(scene.joints[0].damping <= 0);
+        }
+    }
+}
+
+TEST_CASE("what is quiet is stirred by a load that comes over many steps", "[joint][swing]") {
+    for (const double struck_before : {0.3, 0.9}) {
+        Scene scene;
+        scene.step({struck_before, 0, 0});
+        for (int i = 0; i < 2500; ++i) {
+            scene.step({0.3 + 0.02 * std::sin(0.3 * i) * std::exp(-0.01 * i), 0, 0});
+        }
+        REQUIRE(scene.joints[0].damping > 0);
+        for (int i = 1; i <= 30; ++i) scene.step({0.3 + 0.005 * i, 0, 0});
+        CHECK(scene.joints[0].damping == 0);
+    }
+}
+
 TEST_CASE("a structure is kept awake until all of it has rested for a second", "[joint][swing]") {
     Scene scene;
     for (int i = 0; i < 250; ++i) scene.step({0.3, 0.5 * std::sin(0.3 * i), 0.3});
