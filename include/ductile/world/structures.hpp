@@ -40,7 +40,7 @@ class StructureMember {
 class Structures {
   public:
     void add(StructureMember& joint) {
-        members_.push_back({&joint, none, false});
+        members_.push_back({&joint});
         changed_ = true;
     }
     /// The rest of its structure is stirred.
@@ -76,8 +76,9 @@ class Structures {
     static constexpr std::size_t none = std::size_t(-1);
     struct Member {
         StructureMember* joint;
-        std::size_t structure;
-        bool acts; ///< it is awake, and holds
+        std::size_t structure = none;
+        bool acts = false; ///< it is awake, and holds
+        bool seen = false; ///< what it remembered before is its own
     };
     struct State {
         bool stirs = false, flows = false, quiet = true, rests = true;
@@ -101,8 +102,10 @@ class Structures {
         for (Member& member : members_) {
             SwingState<double>* swing = member.joint->swing();
             const bool acts = swing != nullptr && member.joint->is_awake_member();
+            const bool woken = acts && member.seen;
+            member.seen = true;
             if (acts == member.acts) continue;
-            if (acts) swing->stir();
+            if (woken) swing->stir();
             if (swing == nullptr) stir(member.structure);
             member.acts = acts;
             changed_ = true;
