@@ -91,10 +91,13 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
         return last();
     }
     force_ = forces;
-    const S travel = totals().plastic_travel;
     commit_joint(end_, a, b, dt);
     if (all_rigid_) {
-        swing_.step(totals().plastic_travel - travel > allowed_.absolute_residual * dt, dt);
+        S fastest = 0;
+        for (std::size_t i = 0; i < plastic_.size(); ++i) {
+            if (plastic_[i]) fastest = std::max(fastest, std::abs(end_[Eigen::Index(i)]));
+        }
+        swing_.step(last().plastic_work > 0 && fastest > allowed_.absolute_residual, dt);
     } else { // what it holds is its strength at the travel to yield: a rate that is its own
         const S held = SwingState<S>::band * totals().stored;
         swing_.step(utilisation(), last().plastic_work * SwingState<S>::waits > held * dt, dt);
