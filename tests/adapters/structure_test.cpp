@@ -203,8 +203,9 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
         go(ramp / 20, 0.02 / (ramp / 20));
         const double sway = portal->displacement(b).x(), sink = portal->sag(c);
         const double before = portal->absorbed_energy();
-        go(ramp / 20, 0);
-        // the mechanism turns all that the loads do into plastic work
+        rig.damp(0);
+        go(ramp / 40, 0);
+        // the mechanism turns nearly all that the loads do into plastic work
         const double done = 40e3 * factor * (portal->displacement(b).x() - sway) +
                             60e3 * factor * (portal->sag(c) - sink);
         CHECK(done > 1000);

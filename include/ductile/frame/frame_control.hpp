@@ -75,6 +75,7 @@ class FrameControl {
         double tolerated = 0; ///< that does not
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
+        double too_far = 0;   ///< largest PartRow::too_far [rad]
         bool ended = false;   ///< a flow ended in it
         bool moves = false;   ///< something was to be judged
     };

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "ductile/frame/frame_control.hpp"
+#include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile {
@@ -142,7 +143,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         if (tries == 0) first_error = judged.error;
-        const bool good = judged.error <= judged.allowed && judged.closed == 0;
+        const bool good =
+            judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
         const bool done = jump || spent() || tries > detail::most_tries || h <= shortest;
         if (good || done) {
             stand(engine, motion, judged, h, at_event, jump);
@@ -182,6 +184,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         unmissed += row.strength * row.least * detail::unmissed;
+        judged.too_far = std::max(judged.too_far, row.too_far);
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = row.strength * off.travel;
@@ -216,6 +219,11 @@ DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMot
     constexpr int tries_at_stops = 3;
     constexpr double past_it = 1 + 1e-9;
     if (judged.closed > 0) return {judged.closed, true};
+    if (judged.too_far > 0) {
+        // equal parts, as those of other lengths turn otherwise; a body may still become faster
+        constexpr double most = 0.9 * small_turn<double>;
+        return {h / std::max(std::ceil(judged.too_far / most), 2.0), false};
+    }
     if (judged.stop > 0 && !motion.contact_lost && tries < tries_at_stops) {
         return {judged.stop * past_it, true};
     }

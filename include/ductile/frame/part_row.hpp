@@ -44,6 +44,7 @@ struct PartRow {
     double turning = 0;    ///< speed that a row may keep that turns with its bodies and holds
                            ///< [m/s | rad/s]
     double least = 0;      ///< travel that nobody misses [m | rad]
+    double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
     bool elastic = false;  ///< below its strength it is a spring
 
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }

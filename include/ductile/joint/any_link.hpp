@@ -168,11 +168,11 @@ class AnyLink {
     /// elastic or rigid; infinite where nobody said [N/m | N m/rad].
     [[nodiscard]] virtual Vector6<S> section_stiffness() const noexcept = 0;
     /// Semi-axes of the ellipsoid that the plastic rows share in the step that `prepare` opened;
-    /// zero: they have their bounds alone, as another surface has, or a row whose force the step
-    /// gives [N | N m].
+    /// zero: they have their bounds alone [N | N m].
     [[nodiscard]] virtual Vector6<S> ellipsoid() const noexcept = 0;
-    /// For that step: the solver will meet the ellipsoid itself, and not look at the bounds.
-    void meet_surface() noexcept { on_surface_ = true; }
+    /// Rules the rows of that step anew for a solver that meets the ellipsoid itself, and does not
+    /// look at the bounds; same `dt` [s]. False where it cannot, as the step gives a row's force.
+    [[nodiscard]] virtual bool meet_surface(S dt) noexcept = 0;
 
     [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
     [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }
@@ -219,6 +219,10 @@ class AnyLink {
     [[nodiscard]] const Vector6<S>& end_velocities() const noexcept { return end_; }
     /// What may be left of them where the joint holds, as parts of other lengths turn otherwise.
     [[nodiscard]] S turning_speed() const noexcept { return norm(linear(turning_.drift())); }
+    /// Turn of a body in the last part that was too far for its rows, else 0 [rad].
+    [[nodiscard]] S turned_too_far() const noexcept {
+        return turning_.swept > allowed_.absolute_residual ? turning_.turn : S(0);
+    }
     /// Force at which an axis flowed or would have, in the last step [N | N m].
     [[nodiscard]] virtual S strength(JointAxis axis) const noexcept = 0;
     /// Plastic travel that nobody misses [m | rad].

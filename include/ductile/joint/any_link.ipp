@@ -81,7 +81,7 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     end_ = turning_.after(velocity);
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
-    unseen_turn_ = pose_.unseen_turn(a, b, dt / share);
+    unseen_turn_ = std::max(pose_.unseen_turn(a, b, dt / share), turned_too_far());
     pose_.look(a, b);
     if (!broken() && !(sound && pose_.finite())) {
         unseen_turn_ = 0;

@@ -134,13 +134,13 @@ class CoupledJoint {
     /// Of the step that `prepare` opened: the forces are admissible where the gauge of the surface
     /// is at most this [-].
     [[nodiscard]] Scalar reach() const noexcept { return cap_ < grown_ ? cap_ : grown_ * share_; }
-    /// True where that step leaves every force to the solver: none is that of a spring as the step
-    /// begins.
-    [[nodiscard]] bool asks() const noexcept;
-
     /// Rules the rows for a step of `dt` > 0 [s]; no force once broken, or where `motion` is not
     /// finite.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
+
+    /// Rules them anew for a solver that meets the surface itself, not the bounds. Nothing where that
+    /// cannot be, as the step gives the force of a row.
+    [[nodiscard]] std::optional<Rows> meet_surface(Scalar dt) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
     /// (work_share.hpp). Not finite: see Step::residual.
@@ -212,10 +212,6 @@ class CoupledJoint {
         upper_ = box.upper * share_;
         tolerance_ = bound_tolerance * std::max(numeric::largest(upper_), numeric::largest(lower_));
     }
-
-    /// θ of the elastic rows; where the joint will flow that of the stiffest for all, as their flow
-    /// is along the normal for equal ones.
-    void choose_shares(const Matrix& mass, Scalar dt) noexcept;
 
     [[nodiscard]] RowLimits<Scalar> row(int i, Scalar dt) const noexcept;
 

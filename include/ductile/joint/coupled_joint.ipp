@@ -11,29 +11,18 @@
 
 namespace ductile {
 
+// flow is along the normal where θ is the same in all rows, and a given force leaves the others to
+// flow where they are; `bound` predicts with 1
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-bool CoupledJoint<Surface, Law, Criterion>::asks() const noexcept {
+auto CoupledJoint<Surface, Law, Criterion>::meet_surface(Scalar dt) noexcept
+    -> std::optional<Rows> {
     for (int i = 0; i < dimension; ++i) {
-        if (!rigid(i) && !(implicit_[i] > 0) && !(damping(i) > 0)) return false;
+        if (will_flow_ && !ahead_) implicit_[i] = 1;
+        if (!rigid(i) && !(implicit_[i] > 0) && !(damping(i) > 0)) return std::nullopt;
+        rows_[std::size_t(i)] = row(i, dt);
     }
-    return true;
-}
-
-template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
-requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-void CoupledJoint<Surface, Law, Criterion>::choose_shares(const Matrix& mass, Scalar dt) noexcept {
-    Scalar largest = 0;
-    for (int i = 0; i < dimension; ++i) {
-        if (!rigid(i)) {
-            implicit_[i] = ahead_ ? mean_share<Scalar>
-                                  : implicit_share(parameters_.stiffness[i], mass(i, i), dt);
-        }
-        largest = std::max(largest, implicit_[i]);
-    }
-    for (int i = 0; i < dimension; ++i) {
-        if (will_flow_ && !ahead_) implicit_[i] = largest;
-    }
+    return rows_;
 }
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
@@ -64,8 +53,12 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     rows_.fill({.lower = 0, .upper = 0});
     if (state_.broken || !sound_) return rows_;
     bound(motion, dt);
-    choose_shares(motion.mass, dt);
-    for (int i = 0; i < dimension; ++i) rows_[std::size_t(i)] = row(i, dt);
+    for (int i = 0; i < dimension; ++i) {
+        implicit_[i] = rigid(i) ? Scalar(1)
+                       : ahead_ ? mean_share<Scalar>
+                                : implicit_share(parameters_.stiffness[i], motion.mass(i, i), dt);
+        rows_[std::size_t(i)] = row(i, dt);
+    }
     return rows_;
 }
 

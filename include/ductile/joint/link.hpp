@@ -111,12 +111,28 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
     [[nodiscard]] Vector6<S> ellipsoid() const noexcept override {
         if constexpr (requires { joint_.surface().semi_axes(); }) {
-            if (joint_.state().broken || !joint_.asks()) return Vector6<S>::Zero();
+            if (joint_.state().broken) return Vector6<S>::Zero();
             return from_joint(joint_.surface().semi_axes() * joint_.reach());
         }
         return Vector6<S>::Zero();
     }
 
+    bool meet_surface(S dt) noexcept override {
+        if constexpr (!one_axis) {
+            if (joint_.state().broken) return false;
+            const auto rows = joint_.meet_surface(dt);
+            if (!rows) return false;
+            for (std::size_t k = 0; k < rows->size(); ++k) {
+                RowLimits<S>& limits = limits_[index(axes_[k])];
+                limits = (*rows)[k];
+                limits.bias += back_[Eigen::Index(k)];
+            }
+            this->on_surface_ = true;
+            return true;
+        } else {
+            return false;
+        }
+    }
     [[nodiscard]] S strength(JointAxis axis) const noexcept override {
         const auto i = Eigen::Index(index(axis));
         if (joint_.state().broken) return 0;
@@ -243,6 +259,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     Axes axes_;
     JointMatrix mass_ = JointMatrix::Zero();   ///< M, where it is read
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
+    JointVector back_ = JointVector::Zero();   ///< of the bias: the rows' turning before the solve
     BookedStep<Joint> booked_;
     std::optional<KeptJoint> kept_joint_;
 };
@@ -253,8 +270,8 @@ void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bo
     offset_ = joint_offset();
     const RowTurning<S>& turning = rows.turning;
     const JointVector position = from_rest(rows.strain), before = from_rest(rows.before),
-                      velocity = to_joint(rows.velocity), drift = to_joint(turning.drift()),
-                      back = to_joint(turning.before(Vector6<S>::Zero()));
+                      velocity = to_joint(rows.velocity), drift = to_joint(turning.drift());
+    back_ = to_joint(turning.before(Vector6<S>::Zero()));
     const S speed = this->turning_speed(), damping = this->damping_;
     if constexpr (one_axis) {
         RowLimits<S>& limits = limits_[index(axes_[0])];
@@ -268,7 +285,7 @@ void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bo
                                  .drift = drift[0],
                                  .damping = damping},
                                 dt);
-        limits.bias += back[0];
+        limits.bias += back_[0];
     } else {
         const auto limits = joint_.prepare({.position = position,
                                             .velocity = velocity,
@@ -282,7 +299,7 @@ void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bo
                                            dt);
         for (std::size_t k = 0; k < limits.size(); ++k) {
             limits_[index(axes_[k])] = limits[k];
-            limits_[index(axes_[k])].bias += back[Eigen::Index(k)];
+            limits_[index(axes_[k])].bias += back_[Eigen::Index(k)];
         }
     }
 }

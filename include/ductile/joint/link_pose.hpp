@@ -199,11 +199,12 @@ class LinkPose {
 template <std::floating_point S>
 RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
                                    const Vector3<S>& rest, S dt, bool slides) const noexcept {
-    // [rad]: below, nothing is noticed; beyond twice, a part is no picture of the motion any more,
-    // and the whole of it would make rows swing
-    constexpr S least = S(1e-5), largest = S(0.25);
+    // [rad]: below, nothing is noticed; beyond, a part is no picture of the motion any more, and
+    // the whole of it would make rows swing
+    constexpr S least = S(1e-5), largest = small_turn<S> / 2;
     const S turn_a = dot(a.spin, a.spin) * dt * dt, turn_b = dot(b.spin, b.spin) * dt * dt;
     if (!(turn_a + turn_b > least * least) || !std::isfinite(turn_a + turn_b)) return {};
+    RowTurning<S> result;
     Vector3<S> across = Vector3<S>::Zero(), along = across;
     // on a circle of radius r the way through its middle is a tangent at both ends of a part:
     // w = 2 r (1/cos φ - cos φ)/dt, o = 2 r (sin φ - φ/cos φ)/dt, φ half the turn
@@ -212,6 +213,11 @@ RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
         const S half = std::sqrt(turn) / 2, bounded = std::min(half, largest);
         const S sine = std::sin(bounded), cosine = std::cos(bounded);
         const Vector3<S> swept = cross(spin, arm);
+        constexpr S beyond = S(1.01); // not by round-off
+        if (half > beyond * largest) {
+            result.turn = std::max(result.turn, 2 * half);
+            result.swept = std::max(result.swept, norm(swept));
+        }
         across =
             sum(across, scaled(sign * sine * sine / cosine * 2 * dt / turn, cross(spin, swept)));
         along = difference(along, scaled(sign * (sine - bounded / cosine) / half, swept));
@@ -225,8 +231,10 @@ RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
         across = difference(across, scaled(dt, cross(b.spin, way)));
         turned = scaled(-dt / 2, cross(b.spin, a.spin));
     }
-    return {twist_of(transposed_times(axes_, across), transposed_times(moment_axes(), turned)),
-            twist_of(transposed_times(axes_, along), Vector3<S>(Vector3<S>::Zero()))};
+    result.across =
+        twist_of(transposed_times(axes_, across), transposed_times(moment_axes(), turned));
+    result.along = twist_of(transposed_times(axes_, along), Vector3<S>(Vector3<S>::Zero()));
+    return result;
 }
 
 template <std::floating_point S>

@@ -51,7 +51,7 @@ struct SwingState {
         quiet += dt;
         still += dt;
         lasts += dt;
-        if (flows || std::abs(used - held) > band) {
+        if (flows || std::abs(used - held) > band / 2) {
             held = used;
             still = 0;
         }

@@ -9,9 +9,8 @@ namespace ductile {
 
 namespace detail {
 
-/// False where the rows have bounds of their own, or axes that do not follow each other.
-DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& link, int first,
-                                  double dt) {
+/// Of the rows, where all of them share one and follow each other, else of no row.
+DUCTILE_INLINE solve::IslandBlock ellipsoid_of(const AnyLink<double>& link, int first, double dt) {
     const Vector6<double> semi_axes = link.ellipsoid();
     int axis = 0;
     while (axis < 6 && !(semi_axes[axis] > 0)) ++axis;
@@ -19,7 +18,12 @@ DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& 
     for (; axis < 6 && semi_axes[axis] > 0; ++axis) {
         block.size[std::size_t(block.count++)] = semi_axes[axis] * dt;
     }
-    if (block.count == 0 || std::size_t(block.count) != link.axes().size()) return false;
+    if (std::size_t(block.count) != link.axes().size()) block.count = 0;
+    return block;
+}
+
+DUCTILE_INLINE void add_ellipsoid(solve::Island& island, const AnyLink<double>& link,
+                                  solve::IslandBlock block, int first, double dt) {
     if (link.totals().flowing) {
         block.state = solve::BlockState::surface;
         for (int i = first; i < first + 6; ++i) {
@@ -27,7 +31,6 @@ DUCTILE_INLINE bool add_ellipsoid(solve::Island& island, const AnyLink<double>& 
         }
     }
     island.blocks.push_back(block);
-    return true;
 }
 
 /// Rows that flowed in the last step.
@@ -66,6 +69,8 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
     const LinkPose<double>& pose = link.pose();
     const Vector3<double> none = Vector3<double>::Zero();
     const Vector6<double> stiffness = link.section_stiffness();
+    const solve::IslandBlock block = detail::ellipsoid_of(link, first, dt);
+    const bool on_surface = block.count > 0 && link.meet_surface(dt);
     for (const JointAxis axis : all_joint_axes) {
         const auto i = Eigen::Index(index(axis));
         const RowLimits<double>& limits = link.limits()[index(axis)];
@@ -80,8 +85,8 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
         row.lower = limits.lower * dt;
         row.upper = limits.upper * dt;
     }
-    if (detail::add_ellipsoid(island, link, first, dt)) {
-        link.meet_surface();
+    if (on_surface) {
+        detail::add_ellipsoid(island, link, block, first, dt);
     } else if (link.totals().flowing) {
         detail::begin_at_bounds(island, link, first);
     }

@@ -220,6 +220,7 @@ DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,
         row.noise = resting_share * link_.absolute_residual();
         row.turning = link_.turning_speed();
         row.least = link_.least_travel();
+        row.too_far = link_.turned_too_far();
         row.elastic = !link_.all_rigid();
         if (!is_awake()) continue;
         row.start = link_.start_velocities()[i];

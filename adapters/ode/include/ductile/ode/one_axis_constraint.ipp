@@ -209,7 +209,6 @@ DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits
     row_.set(dParamVel, row.velocity);
     row_.set(dParamFMax, strength_);
     if (dJointGetFeedback(id()) == nullptr) dJointSetFeedback(id(), &feedback_);
-    feedback_ = {}; // ODE leaves it alone where the joint has no row in this step
     if (centre_ != 0) apply_centre();
 }
 
