@@ -173,6 +173,20 @@ TEST_CASE("A bar that spins keeps its length, and carries its force, at any fram
     }
 }
 
+TEST_CASE("A bar that turns by more than half a radian in a frame goes on in more parts",
+          "[bullet][rest]") {
+    for (const double frame : {1.0 / 45, 1.0 / 30, 1.0 / 20}) {
+        CAPTURE(frame);
+        for (const Bar& bar : {Bar(frame, 0.01, hinge_bar()), Bar(frame, 0.01, slider_bar()),
+                               Bar(frame, 0.01, six_axis_bar())}) {
+            CHECK(bar.shortest == Approx(Bar::length).epsilon(0.01));
+            CHECK(bar.longest == Approx(Bar::length).epsilon(0.01));
+            CHECK(bar.solves > 1);
+            CHECK(bar.solves < 40);
+        }
+    }
+}
+
 TEST_CASE("P29 without a column yields as it should, in frames of a sixtieth too",
           "[bullet][rest]") {
     for (const double frames : {60.0, 240.0}) {

@@ -23,8 +23,6 @@ TEST_CASE("a six-axis joint does what the same link does in an exact solver", "[
     const double rate = GENERATE(30.0, 120.0, 480.0);
     const double speed = GENERATE(1.0, 6.0);
     INFO(solver << ", dt = 1/" << rate << ", speed " << speed);
-    // the reference has a box around a predicted force: apart from the surface in steps that long
-    if (Rig::meets_surfaces && rate == 30 && speed == 6) return;
     const double dt = 1 / rate;
     const V3 at_a(0.4, 0, 0.5), at_b(0, -0.2, -0.6), v = speed * V3(1, -2, 1),
                                                      w = speed * V3(2, -3, 1);
@@ -47,6 +45,8 @@ TEST_CASE("a six-axis joint does what the same link does in an exact solver", "[
     reference::PairWorld world(first, body(3, 0.5, at_b),
                                Link(law, all_joint_axes, Frame{V3(-at_a), M3::Identity()},
                                     Frame{V3(-at_b), M3::Identity()}));
+
+    if (Rig::meets_surfaces) world.meet_surfaces();
 
     Shown shown(solver, "six axes: as an exact solver");
     const bool coupled = Rig::can(solver, Capability::coupled);

@@ -5,7 +5,8 @@
 //
 //   v' = v + M⁻¹ (load dt + Jᵀ λ),  x' = x + v' dt,  Q' = exp(ω' dt) Q        (symplectic Euler)
 //
-// without gyroscopic torque: inertias are meant to be spherical, or motions short. Loads act on
+// by the rows' bounds, or on the ellipsoid of six rows: (A + μ P⁻²) λ = -w, |P⁻¹ λ| = 1, by
+// bisection of μ >= 0; without gyroscopic torque: inertias are meant to be spherical, or motions short. Loads act on
 // body A at its centre of mass.
 #pragma once
 
@@ -26,6 +27,8 @@ class BodyPair {
   public:
     [[nodiscard]] BodyState<S>& a() { return a_; }
     [[nodiscard]] BodyState<S>& b() { return b_; }
+    /// From now on the surface of six plastic rows that share an ellipsoid is met itself.
+    void meet_surfaces() { on_surface_ = true; }
     [[nodiscard]] S supplied() const { return supplied_; } ///< work of the loads [J]
     [[nodiscard]] S kinetic_energy() const { return energy(a_) + energy(b_); }
 
@@ -52,8 +55,27 @@ class BodyPair {
                body.spin.dot(numeric::inverse(body.inverse_inertia) * body.spin) / 2;
     }
 
+    /// Impulse on the ellipsoid of the semi-axes `size`, or inside it.
+    static Vector<S> on_ellipsoid(const Matrix<S>& a, const Vector<S>& w, const Vector<S>& size) {
+        const auto at = [&](S multiplier) -> Vector<S> {
+            Matrix<S> left = a;
+            left.diagonal() += multiplier * size.cwiseAbs2().cwiseInverse();
+            return left.llt().solve(-w);
+        };
+        const auto gauge = [&](S multiplier) { return at(multiplier).cwiseQuotient(size).norm(); };
+        if (gauge(0) <= 1) return at(0);
+        S low = 0, high = 1;
+        while (gauge(high) > 1) high *= 2;
+        for (int i = 0; i < 200; ++i) {
+            const S middle = (low + high) / 2;
+            (gauge(middle) > 1 ? low : high) = middle;
+        }
+        return at(high);
+    }
+
     BodyState<S> a_, b_;
     BoxedLcp<S> lcp_;
+    bool on_surface_ = false;
     S supplied_ = 0;
 };
 
@@ -64,6 +86,8 @@ void BodyPair<S>::step(AnyLink<S>& link, S dt, const Vector3<S>& force, const Ve
     link.prepare(a_, b_, dt, rate);
     a_.velocity += dt * a_.inverse_mass * force;
     a_.spin += dt * a_.inverse_inertia * torque;
+    const Vector6<S> semi_axes = link.ellipsoid();
+    const bool on_surface = on_surface_ && semi_axes.minCoeff() > 0 && link.meet_surface(dt);
     const Vector3<S> at = link.point();
     Eigen::Matrix<S, 6, 12> jacobian, mobile;
     Vector<S> bias(6), lower(6), upper(6);
@@ -86,8 +110,10 @@ void BodyPair<S>::step(AnyLink<S>& link, S dt, const Vector3<S>& force, const Ve
         jacobian.template middleCols<3>(9) * b_.inverse_inertia;
     Eigen::Matrix<S, 12, 1> velocity;
     velocity << a_.velocity, a_.spin, b_.velocity, b_.spin;
-    const Vector<S> impulse = lcp_.solve(mobile * jacobian.transpose() + compliance,
-                                         jacobian * velocity - bias, lower, upper);
+    const Matrix<S> a = mobile * jacobian.transpose() + compliance;
+    const Vector<S> left = jacobian * velocity - bias;
+    const Vector<S> impulse =
+        on_surface ? on_ellipsoid(a, left, semi_axes * dt) : lcp_.solve(a, left, lower, upper);
     velocity += mobile.transpose() * impulse;
     a_.velocity = velocity.template segment<3>(0);
     a_.spin = velocity.template segment<3>(3);
