@@ -205,11 +205,12 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
         const double before = portal->absorbed_energy();
         rig.damp(0);
         go(ramp / 40, 0);
-        // the mechanism turns nearly all that the loads do into plastic work
+        // the mechanism turns nearly all that the loads do into plastic work; it gets faster in a
+        // quarter of a second, and steps move with the speed at their end
         const double done = 40e3 * factor * (portal->displacement(b).x() - sway) +
                             60e3 * factor * (portal->sag(c) - sink);
         CHECK(done > 1000);
-        CHECK(portal->absorbed_energy() - before == Approx(done).epsilon(0.03));
+        CHECK(portal->absorbed_energy() - before == Approx(done).epsilon(0.03 + 4 * h));
     }
     for (const double factor : {1.4985, 1.5015}) {
         StructureRig rig(0);

@@ -315,9 +315,10 @@ class CoupledJoint {
         }
         const Scalar strength = first_strength_ * grown_;
         Scalar travel = work / strength;
-        // of the travel whose work is booked, which a spring's is but for what it does within a step
+        // of the travel whose work is booked: a spring's is where the step ends
         const Scalar slipped = -numeric::dot(taken.force, step.direction);
-        const Scalar booked = slipped > 0 ? std::min(work / slipped, Scalar(2)) : Scalar(1);
+        const bool differs = reaction.on_surface && slipped > 0;
+        const Scalar booked = differs ? std::min(work / slipped, Scalar(2)) : Scalar(1);
         const Scalar life = lives_.of(step.direction) * share_ * booked;
         const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
         const bool last = uses_up(travel, left);
