@@ -6,7 +6,8 @@
 //   round   joints solved to the end with the contacts' impulses held (active_set.hpp), convex
 //           G = J_c K⁻¹ J_cᵀ + C_c: what contacts do to each other through bodies and through the
 //           joints as they flow now
-//           sweeps: each contact solved alone, the others held, until none moves any more
+//           sweeps: each contact solved alone, the others held, until none moves any more; each
+//           from where the last ones point (numeric/anderson.hpp)
 //
 // A round in which no joint changed sides is the last. Nothing is assumed of the sides of contacts,
 // and no slip has to settle: it finds answers where the fixed point of contact_form.hpp wanders.
@@ -20,6 +21,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "ductile/numeric/anderson.hpp"
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/island_system.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -43,6 +45,9 @@ class ContactSweep {
 
     void condense();
     void sweep_contacts(double& effort);
+    void go_ahead();
+    void tell_impulses(std::vector<double>& to) const;
+    void feel(std::size_t row, double by);
     [[nodiscard]] double solve_contact(std::size_t contact);
     void tell_states();
 
@@ -54,6 +59,8 @@ class ContactSweep {
     std::vector<std::size_t> column_;   ///< where each begins; rows_.size() + 1
     std::vector<Matrix6<double>> own_;  ///< G of each contact on itself
     std::vector<double> residual_;      ///< b - J v - C x
+    numeric::Anderson ahead_;
+    std::vector<double> from_, to_; ///< impulses before a sweep and after it
     int sweeps_ = 0;
 };
 

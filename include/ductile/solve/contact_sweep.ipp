@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ductile/solve/block_form.hpp"
 #include "ductile/solve/certificate.hpp"
@@ -74,22 +75,54 @@ DUCTILE_INLINE void ContactSweep::condense() {
 }
 
 DUCTILE_INLINE void ContactSweep::sweep_contacts(double& effort) {
-    constexpr int most = 60;
+    constexpr int most = 30;
     const double enough = 1e-7 * system_->scale();
+    double least = std::numeric_limits<double>::infinity();
+    ahead_.restart();
+    tell_impulses(from_);
     for (int sweep = 0; sweep < most; ++sweep) {
         ++sweeps_;
         double moved = 0;
         for (std::size_t c = 0; c < contacts_.size(); ++c) {
             moved = std::max(moved, solve_contact(c));
         }
-        effort -= double(entries_.size());
-        if (!(moved > enough) || !(effort > 0)) return;
+        effort -= 2 * double(entries_.size());
+        if (!(moved > enough) || !(effort > 0) || sweep + 1 == most) return;
+        if (moved > 2 * least) ahead_.restart(); // it went astray
+        least = std::min(least, moved);
+        go_ahead();
     }
 }
 
-/// How far it moved, as a velocity.
+/// From what the last sweep made of `from_` to where the next one starts.
+DUCTILE_INLINE void ContactSweep::go_ahead() {
+    std::vector<IslandRow>& rows = system_->island().rows;
+    tell_impulses(to_);
+    ahead_.advance(from_, to_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) rows[rows_[i]].impulse = from_[i];
+    for (const std::size_t contact : contacts_) ContactForm::project(view_of(*system_, contact));
+    tell_impulses(from_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) feel(i, from_[i] - to_[i]);
+}
+
+DUCTILE_INLINE void ContactSweep::tell_impulses(std::vector<double>& to) const {
+    to.resize(rows_.size());
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        to[i] = system_->island().rows[rows_[i]].impulse;
+    }
+}
+
+/// A change of an impulse, by all contacts.
+DUCTILE_INLINE void ContactSweep::feel(std::size_t row, double by) {
+    if (by == 0) return;
+    for (std::size_t k = column_[row]; k < column_[row + 1]; ++k) {
+        residual_[entries_[k].row] -= entries_[k].effect * by;
+    }
+}
+
+/// How far it moved, as a velocity. Not to the end: the next sweep comes by again.
 DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
-    constexpr int most = 20;
+    constexpr int most = 2;
     const BlockView view = view_of(*system_, contacts_[contact]);
     const std::size_t first = first_[contact];
     const int count = view.count();
@@ -132,12 +165,8 @@ DUCTILE_INLINE double ContactSweep::solve_contact(std::size_t contact) {
     double moved = 0;
     for (int i = 0; i < count; ++i) {
         const double by = view.row[i].impulse - before[i];
-        if (by == 0) continue;
         moved = std::max(moved, std::abs(by) * effect(i, i));
-        const std::size_t column = first + std::size_t(i);
-        for (std::size_t k = column_[column]; k < column_[column + 1]; ++k) {
-            residual_[entries_[k].row] -= entries_[k].effect * by;
-        }
+        feel(first + std::size_t(i), by);
     }
     return moved;
 }

@@ -68,7 +68,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
 /// the other (contact_sweep.hpp), and the active set again; each pass goes on from the best so far.
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     constexpr int most = 4;
-    double effort = 5e7; // some 50 ms
+    double effort = 2e7; // some 20 ms
     const auto polished = [&] {
         const bool settled = active_set_.solve(system_, {});
         report.rounds += active_set_.rounds();
