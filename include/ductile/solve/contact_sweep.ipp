@@ -14,7 +14,8 @@
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints, double& effort) {
+DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints, InteriorPoint& safe,
+                                        double& effort) {
     constexpr int most = 20;
     constexpr double enough = solved_residual / 10;
     system_ = &system;
@@ -32,12 +33,15 @@ DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints,
     for (IslandSystem::Row& row : system.rows()) row.shift = 0;
     double off = 0;
     for (int round = 0; round < most; ++round) {
-        static_cast<void>(joints.solve(system, {.contacts_held = true}));
+        const bool settled = joints.solve(system, {.contacts_held = true});
+        const bool unsafe = !settled && !contacts_.empty(); // without contacts it was asked before
+        if (unsafe) safe.solve(system, true);
         const double before = off;
         off = certificate(system) / system.scale();
-        const bool stalled = round > 0 && off <= solved_residual && off > before / 2;
+        const bool stalled = round > 0 && ((off <= solved_residual && off > before / 2) ||
+                                           (unsafe && off > 0.99 * before));
         if (off <= enough || stalled || !(effort > 0)) break;
-        if (round == 0 || joints.rounds() > 1) { // else what contacts do to each other is as it was
+        if (round == 0 || unsafe || joints.rounds() > 1) { // else what contacts do to each other is as it was
             if (!joints.linearise(system)) break;
             condense();
             effort -=

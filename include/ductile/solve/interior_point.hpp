@@ -31,7 +31,8 @@ class InteriorPoint {
   public:
     /// Leaves impulses, sides and multipliers of the answer in the island. Its accuracy is some
     /// 1e-8 of the velocities: for the last digits the active set starts from there.
-    void solve(IslandSystem& system);
+    /// `contacts_held`: they keep their impulses.
+    void solve(IslandSystem& system, bool contacts_held = false);
 
     [[nodiscard]] int iterations() const noexcept { return iterations_; } ///< of the last solve
 
@@ -58,6 +59,9 @@ class InteriorPoint {
     };
 
     void start();
+    [[nodiscard]] bool held(const IslandBlock& block) const noexcept {
+        return contacts_held_ && block.kind == BlockKind::contact;
+    }
     [[nodiscard]] Left look();
     void set_weights();
     /// Changes towards products of `target` c; `second`: with what the predictor left out. The
@@ -75,6 +79,7 @@ class InteriorPoint {
     std::vector<Block> blocks_;
     std::vector<double> best_;
     int iterations_ = 0;
+    bool contacts_held_ = false;
 };
 
 } // namespace ductile::solve

@@ -12,11 +12,13 @@
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void InteriorPoint::solve(IslandSystem& system) {
+DUCTILE_INLINE void InteriorPoint::solve(IslandSystem& system, bool contacts_held) {
     constexpr int most = 60;
-    constexpr double enough = 1e-10;      // of residual and gap
+    // of residual and gap; where no active set polishes it, as far as it goes
+    const double enough = contacts_held ? 1e-12 : 1e-10;
     constexpr double least_share = 1e-10; // of a step: no more is to be had
     system_ = &system;
+    contacts_held_ = contacts_held;
     iterations_ = 0;
     start();
     std::vector<IslandRow>& given = system.island().rows;
@@ -90,6 +92,7 @@ DUCTILE_INLINE void InteriorPoint::start() {
     }
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         const BlockView view = view_of(*system_, k);
+        if (held(view.block)) continue;
         Block& block = blocks_[k];
         block.multiplier = with_form(view, [&](auto form) { return form.open(view, scale); });
         block.open = block.multiplier > 0;
@@ -347,6 +350,7 @@ DUCTILE_INLINE void InteriorPoint::tell_sides() {
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         const Block& block = blocks_[k];
         const BlockView view = view_of(*system_, k);
+        if (held(view.block)) continue;
         with_form(view,
                   [&](auto form) { form.tell(view, block.open, block.multiplier, block.slack); });
     }

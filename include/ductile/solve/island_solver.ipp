@@ -91,13 +91,15 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     for (IslandSystem::Row& row : system_.rows()) row.shift = 0;
     put(start_);
     for (int pass = 0; pass < most; ++pass) {
+        const double before = least;
         interior_point_.solve(system_);
         ++report.interior_points;
         static_cast<void>(keep());
         if (polished() || keep() <= well) return;
-        contact_sweep_.solve(system_, active_set_, effort);
+        contact_sweep_.solve(system_, active_set_, interior_point_, effort);
         report.sweeps += contact_sweep_.sweeps();
         if (keep() <= well || polished() || keep() <= solved || !(effort > 0)) return;
+        if (pass > 0 && !(least < 0.9 * before)) return;
     }
 }
 
