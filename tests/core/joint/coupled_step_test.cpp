@@ -18,6 +18,7 @@
 #include "ductile/law/linear.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/surface/ellipsoid.hpp"
+#include "reference/pair_world.hpp"
 
 using namespace ductile;
 
@@ -177,4 +178,32 @@ TEST_CASE("a link that the engine left out of a step knows of no motion before i
     CHECK_FALSE(link.joint().state().flowing);
     CHECK(link.last().plastic_work == 0);
     CHECK(link.totals().plastic_work == work);
+}
+
+TEST_CASE("a spring met on its surface breaks with the work of its largest travel at any step",
+          "[coupled][break]") {
+    // 320 kg m² from 8 rad/s, M_p = 19.64 kN m, resolved springs: 0.3 rad are 5892 J
+    using Six = CoupledJoint<Ellipsoid<double, 6>, Perfect<double>>;
+    using V6 = Six::Vector;
+    constexpr double strength = 19'640, largest = 0.3, inertia = 320, speed = 8;
+    constexpr double stiffness = 2.5e6; // yields at 7.9 mrad, which is 1 to 8 of these steps
+    CoupledParameters<double, 6> parameters;
+    parameters.stiffness = V6::Constant(stiffness);
+    parameters.largest_travel[3] = largest;
+    for (const double dt : {4e-3, 2e-3, 1.3e-3, 1.2e-3, 1.1e-3, 1e-3, 9e-4, 5e-4, 2e-4}) {
+        BodyState<double> rotor{.inverse_mass = 1.0 / 60,
+                                .inverse_inertia = Matrix3<double>::Identity() / inertia};
+        rotor.spin = {speed, 0, 0};
+        reference::PairWorld world(
+            rotor, BodyState<double>{},
+            Link(Six(Ellipsoid<double, 6>({.capacity = V6::Constant(strength)}),
+                     Perfect<double>({.strength = 1}), TravelLimit<double>(), parameters),
+                 all_joint_axes, JointFrame<double>{}, JointFrame<double>{}));
+        world.meet_surfaces();
+        for (int i = 0; i * dt < 0.1; ++i) world.step(dt);
+        INFO("dt " << dt);
+        const auto& state = world.link().joint().state();
+        CHECK(state.broken);
+        CHECK(state.plastic_work == Approx(strength * largest).epsilon(3e-4));
+    }
 }
