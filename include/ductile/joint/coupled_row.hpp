@@ -111,15 +111,14 @@ struct OpenRow {
             return booked;
         }
         const S trial = reaction.position - offset;
-        // bounds that are lowered before a break stand for less time, not for less strain
-        booked.travel = flows ? spring.flow(f / share, reaction.velocity - drift) : S(0);
+        booked.travel = flows ? spring.flow(f, reaction.velocity - drift) : S(0);
         const S strained = trial - booked.travel;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
         booked.damped = spring.damped(reaction.velocity - drift, booked.travel, strained, dt);
         const S rest = work - booked.elastic - booked.damped;
         const S slipped = -f * booked.travel;
         const S by_work = ahead ? S(0) : implicit;
-        // an implicit spring that is strained further takes this beside what it stores
+        // an implicit spring whose strain changes takes this beside what it stores
         const S strain = strained - elastic, lost = stiffness * strain * strain / 2;
         if (flows) booked.flow = (1 - by_work) * slipped + by_work * (rest - lost);
         booked.other = rest - booked.flow;

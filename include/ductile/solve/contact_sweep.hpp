@@ -33,9 +33,9 @@ namespace ductile::solve {
 class ContactSweep {
   public:
     /// From the impulses in the island; leaves impulses and states of its answer there. `joints`:
-    /// what solves them, and `safe` where that does not; `effort`: products that it may still cost,
-    /// less what it took.
-    void solve(IslandSystem& system, ActiveSet& joints, InteriorPoint& safe, double& effort);
+    /// what solves them, and `safe` (null: nothing) where that does not; `effort`: products that it
+    /// may still cost, less what it took.
+    void solve(IslandSystem& system, ActiveSet& joints, InteriorPoint* safe, double& effort);
 
     [[nodiscard]] int sweeps() const noexcept { return sweeps_; } ///< of the last solve
 

@@ -14,7 +14,7 @@
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints, InteriorPoint& safe,
+DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints, InteriorPoint* safe,
                                         double& effort) {
     constexpr int most = 20;
     constexpr double enough = solved_residual / 10;
@@ -34,14 +34,16 @@ DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints,
     double off = 0;
     for (int round = 0; round < most; ++round) {
         const bool settled = joints.solve(system, {.contacts_held = true});
-        const bool unsafe = !settled && !contacts_.empty(); // without contacts it was asked before
-        if (unsafe) safe.solve(system, true);
+        // without contacts it was asked before
+        const bool unsettled = !settled && !contacts_.empty();
+        const bool asked = unsettled && safe != nullptr;
+        if (asked) safe->solve(system, true);
         const double before = off;
         off = certificate(system) / system.scale();
         const bool stalled = round > 0 && ((off <= solved_residual && off > before / 2) ||
-                                           (unsafe && off > 0.99 * before));
+                                           (asked && off > 0.99 * before));
         if (off <= enough || stalled || !(effort > 0)) break;
-        if (round == 0 || unsafe || joints.rounds() > 1) { // else what contacts do to each other is as it was
+        if (round == 0 || unsettled || joints.rounds() > 1) { // else what contacts do to each other is as it was
             if (!joints.linearise(system)) break;
             condense();
             effort -=
