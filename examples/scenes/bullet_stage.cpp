@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// Bullet's default solver, ten iterations, a default World.
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+
+#include "ductile/bullet/bullet.hpp"
+#include "of_bullet.hpp"
+#include "stage.hpp"
+
+namespace ductile::scenes {
+
+namespace {
+
+class BulletStage final : public Stage {
+  public:
+    explicit BulletStage(const StageParameters& parameters) {
+        engine_.setGravity(btVector3(0, 0, -parameters.gravity));
+        bullet::WorldParameters of_world;
+        of_world.tolerance = parameters.tolerance;
+        world_ = std::make_unique<bullet::World>(engine_, of_world);
+        keeps_tolerance_ = parameters.tolerance > 0;
+        if (parameters.floor) {
+            shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0));
+            own(0, "floor", btVector3(0, 0, 0)).setFriction(1);
+        }
+    }
+    ~BulletStage() override {
+        joints_.clear();
+        structure_.reset();
+        for (const auto& body : bodies_) engine_.removeRigidBody(body.get());
+    }
+
+    [[nodiscard]] const char* engine() const override { return "bullet"; }
+    [[nodiscard]] bool keeps_tolerance() const override { return keeps_tolerance_; }
+
+    BodyNumber add(const BoxBody& box) override {
+        shapes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(box.half)));
+        btRigidBody& body = own(box.mass, box.name, bullet::to_bullet(box.at), box.collides);
+        body.setFriction(box.friction);
+        body.setLinearVelocity(bullet::to_bullet(box.velocity));
+        return int(bodies_.size()) - 1;
+    }
+    BuiltStructure& build(const StructureModel& model) override {
+        structure_.reset();
+        structure_ = std::make_unique<bullet::Structure>(*world_, model);
+        return *structure_;
+    }
+    LinkQueries& connect(const std::string& name, BodyNumber a, BodyNumber b,
+                         const Vector3<double>& at, const Matrix3<double>& axes,
+                         const UsualSixAxisJoint& joint) override {
+        return make<bullet::PlasticJoint<UsualSixAxisJoint>>(
+            name, a, b, bullet::to_bullet(JointFrame<double>{at, axes}), joint);
+    }
+    JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                        const Vector3<double>& at, const Vector3<double>& axis,
+                        const UsualAxisJoint& joint) override {
+        const btQuaternion turn = shortestArcQuat(btVector3(0, 0, 1), bullet::to_bullet(axis));
+        return make<bullet::PlasticHinge<UsualAxisJoint>>(
+            name, a, b, btTransform(turn, bullet::to_bullet(at)), joint);
+    }
+
+    [[nodiscard]] Vector3<double> place(BodyNumber body) const override {
+        return bullet::to_core(bodies_[std::size_t(body)]->getCenterOfMassPosition());
+    }
+    [[nodiscard]] Vector3<double> velocity(BodyNumber body) const override {
+        return bullet::to_core(bodies_[std::size_t(body)]->getLinearVelocity());
+    }
+    [[nodiscard]] Matrix3<double> axes(BodyNumber body) const override {
+        return bullet::to_core(bodies_[std::size_t(body)]->getCenterOfMassTransform().getBasis());
+    }
+    [[nodiscard]] double speed() const override {
+        double most = 0;
+        each([&most](btRigidBody& body) {
+            most = std::max(most, body.getLinearVelocity().length());
+        });
+        return most;
+    }
+    void set_velocity(BodyNumber body, const Vector3<double>& velocity) override {
+        bodies_[std::size_t(body)]->setLinearVelocity(bullet::to_bullet(velocity));
+        bodies_[std::size_t(body)]->activate(true);
+    }
+    void set_gravity(double gravity) override {
+        engine_.setGravity(btVector3(0, 0, -gravity));
+        each([](btRigidBody& body) { body.activate(true); });
+    }
+    void keep_awake() override {
+        each([](btRigidBody& body) { body.setActivationState(DISABLE_DEACTIVATION); });
+    }
+
+    void step(double frame) override {
+        world_->step(frame);
+        if (recorder_ != nullptr) recorder_->look(*world_);
+    }
+    [[nodiscard]] const SteppedWorld& world() const override { return *world_; }
+
+    void record(replay::Recorder& recorder) override {
+        recorder_ = &recorder;
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            replay::add_body(recorder, *bodies_[i], names_[i]);
+        }
+        if (structure_) {
+            const StructurePlan& plan = structure_->plan();
+            for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+                if (!structure_->has_body(i)) continue;
+                replay::add_body(recorder, *structure_->body(i), plan.bodies[i].name);
+            }
+            for (std::size_t i = 0; i < plan.joints.size(); ++i) {
+                if (!structure_->has_joint(i)) continue;
+                replay::add_joint(recorder, *structure_->joint(i), plan.joints[i].name);
+            }
+        }
+        for (std::size_t i = 0; i < joints_.size(); ++i) {
+            replay::add_joint(recorder, *joints_[i], joint_names_[i]);
+        }
+    }
+
+  private:
+    [[nodiscard]] BuiltStructure& structure() override { return *structure_; }
+    [[nodiscard]] const void* body_of_structure(std::size_t number) const override {
+        return structure_->body(number);
+    }
+    [[nodiscard]] const JointQueries& joint_of_structure(std::size_t number) const override {
+        return *structure_->joint(number);
+    }
+    /// `at`: in the world.
+    template <class Made, class Joint>
+    Made& make(const std::string& name, BodyNumber a, BodyNumber b, const btTransform& at,
+               const Joint& joint) {
+        btRigidBody& on_a = body_of(a);
+        btRigidBody& on_b = body_of(b);
+        auto made =
+            std::make_unique<Made>(on_a, on_b, on_a.getCenterOfMassTransform().inverse() * at,
+                                   on_b.getCenterOfMassTransform().inverse() * at, joint);
+        Made& result = *made;
+        world_->add(result, name);
+        joints_.push_back(std::move(made));
+        joint_names_.push_back(name);
+        return result;
+    }
+    btRigidBody& own(double mass, std::string name, const btVector3& at, bool collides = true) {
+        btVector3 inertia(0, 0, 0);
+        btCollisionShape* shape = shapes_.back().get();
+        if (mass > 0) shape->calculateLocalInertia(mass, inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, shape, inertia);
+        info.m_startWorldTransform.setOrigin(at);
+        bodies_.push_back(std::make_unique<btRigidBody>(info));
+        names_.push_back(std::move(name));
+        if (collides) {
+            engine_.addRigidBody(bodies_.back().get());
+        } else {
+            engine_.addRigidBody(bodies_.back().get(), btBroadphaseProxy::StaticFilter, 0);
+        }
+        return *bodies_.back();
+    }
+    [[nodiscard]] btRigidBody& body_of(BodyNumber body) const {
+        return body == ground ? btTypedConstraint::getFixedBody() : *bodies_[std::size_t(body)];
+    }
+    /// All that move.
+    template <class Visit>
+    void each(const Visit& visit) const {
+        const btCollisionObjectArray& objects = engine_.getCollisionObjectArray();
+        for (int i = 0; i < objects.size(); ++i) {
+            btRigidBody* body = btRigidBody::upcast(objects[i]);
+            if (!body->isStaticOrKinematicObject()) visit(*body);
+        }
+    }
+
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btSequentialImpulseConstraintSolver solver_;
+    btDiscreteDynamicsWorld engine_{&dispatcher_, &broadphase_, &solver_, &configuration_};
+    std::vector<std::unique_ptr<btCollisionShape>> shapes_;
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<std::string> names_, joint_names_;
+    bool keeps_tolerance_ = false;
+    std::unique_ptr<bullet::World> world_;
+    std::unique_ptr<bullet::Structure> structure_;
+    std::vector<std::unique_ptr<bullet::PlasticConstraint>> joints_;
+};
+
+} // namespace
+
+std::unique_ptr<Stage> bullet_stage(const StageParameters& parameters) {
+    return std::make_unique<BulletStage>(parameters);
+}
+
+} // namespace ductile::scenes

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+//
+// ODE's direct solver, a default World, contacts named to it.
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+
+#include "ductile/ode/ode.hpp"
+#include "of_ode.hpp"
+#include "stage.hpp"
+
+namespace ductile::scenes {
+
+namespace {
+
+class OdeStage final : public Stage {
+  public:
+    explicit OdeStage(const StageParameters& parameters) {
+        set_gravity(parameters.gravity);
+        dWorldSetAutoDisableFlag(engine_.id, 1);
+        ode::WorldParameters of_world;
+        world_ = std::make_unique<ode::World>(engine_.id, of_world);
+        if (parameters.floor) floor_ = dCreatePlane(engine_.space, 0, 0, 1, 0);
+    }
+
+    [[nodiscard]] const char* engine() const override { return "ode"; }
+    [[nodiscard]] bool keeps_tolerance() const override { return false; }
+
+    BodyNumber add(const BoxBody& box) override {
+        Own& own = own_.emplace_back(Own{box.name});
+        own.friction = box.friction;
+        if (box.collides || box.mass == 0) {
+            own.geom =
+                dCreateBox(engine_.space, 2 * box.half.x(), 2 * box.half.y(), 2 * box.half.z());
+        }
+        if (box.mass > 0) {
+            own.body = dBodyCreate(engine_.id);
+            dMass mass;
+            dMassSetBoxTotal(&mass, box.mass, 2 * box.half.x(), 2 * box.half.y(), 2 * box.half.z());
+            dBodySetMass(own.body, &mass);
+            dBodySetFiniteRotationMode(own.body, 1);
+            dBodySetPosition(own.body, box.at.x(), box.at.y(), box.at.z());
+            dBodySetLinearVel(own.body, box.velocity.x(), box.velocity.y(), box.velocity.z());
+            if (own.geom != nullptr) dGeomSetBody(own.geom, own.body);
+            world_->add(own.body);
+        } else {
+            dGeomSetPosition(own.geom, box.at.x(), box.at.y(), box.at.z());
+        }
+        return int(own_.size()) - 1;
+    }
+    BuiltStructure& build(const StructureModel& model) override {
+        structure_.reset();
+        structure_ = std::make_unique<ode::Structure>(*world_, engine_.space, model);
+        return *structure_;
+    }
+    LinkQueries& connect(const std::string& name, BodyNumber a, BodyNumber b,
+                         const Vector3<double>& at, const Matrix3<double>& axes,
+                         const UsualSixAxisJoint& joint) override {
+        using Made = ode::PlasticJoint<UsualSixAxisJoint>;
+        Made::Frame frame;
+        frame.origin = at;
+        frame.axes = axes;
+        return make<Made>(name, a, b, at, frame, joint);
+    }
+    JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                        const Vector3<double>& at, const Vector3<double>& axis,
+                        const UsualAxisJoint& joint) override {
+        ode::HingeFrame frame;
+        frame.anchor = at;
+        frame.axis = axis;
+        return make<ode::PlasticHinge<UsualAxisJoint>>(name, a, b, at, frame, joint);
+    }
+
+    [[nodiscard]] Vector3<double> place(BodyNumber body) const override {
+        return ode::to_core(dBodyGetPosition(own_[std::size_t(body)].body));
+    }
+    [[nodiscard]] Vector3<double> velocity(BodyNumber body) const override {
+        return ode::linear_velocity(own_[std::size_t(body)].body);
+    }
+    [[nodiscard]] Matrix3<double> axes(BodyNumber body) const override {
+        const dReal* r = dBodyGetRotation(own_[std::size_t(body)].body);
+        Matrix3<double> turn;
+        turn << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+        return turn;
+    }
+    [[nodiscard]] double speed() const override {
+        double most = 0;
+        each([&most](dBodyID body) { most = std::max(most, norm(ode::linear_velocity(body))); });
+        return most;
+    }
+    void set_velocity(BodyNumber body, const Vector3<double>& velocity) override {
+        dBodyID id = own_[std::size_t(body)].body;
+        dBodySetLinearVel(id, velocity.x(), velocity.y(), velocity.z());
+        dBodyEnable(id);
+    }
+    void set_gravity(double gravity) override {
+        dWorldSetGravity(engine_.id, 0, 0, -gravity);
+        each([](dBodyID body) { dBodyEnable(body); });
+    }
+    void keep_awake() override {
+        each([](dBodyID body) { dBodySetAutoDisableFlag(body, 0); });
+    }
+
+    void step(double frame) override {
+        dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {
+            static_cast<OdeStage*>(stage)->touch(a, b);
+        });
+        world_->step(frame);
+        dJointGroupEmpty(engine_.contacts);
+        if (recorder_ != nullptr) recorder_->look(*world_);
+    }
+    [[nodiscard]] const SteppedWorld& world() const override { return *world_; }
+
+    void record(replay::Recorder& recorder) override {
+        recorder_ = &recorder;
+        if (floor_ != nullptr) replay::add_ground(recorder, floor_, "floor");
+        for (const Own& own : own_) {
+            if (own.body != nullptr) {
+                replay::add_body(recorder, own.body, own.name);
+            } else {
+                replay::add_ground(recorder, own.geom, own.name);
+            }
+        }
+        if (structure_) {
+            const StructurePlan& plan = structure_->plan();
+            for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+                if (!structure_->has_body(i)) continue;
+                replay::add_body(recorder, structure_->body(i), plan.bodies[i].name);
+            }
+            for (std::size_t i = 0; i < plan.joints.size(); ++i) {
+                if (!structure_->has_joint(i)) continue;
+                const Vector3<double>& at = plan.joints[i].frame.origin;
+                replay::add_joint(recorder, *structure_->joint(i), plan.joints[i].name,
+                                  {at.x(), at.y(), at.z()});
+            }
+        }
+        for (const OwnJoint& own : joints_) {
+            replay::add_joint(recorder, *own.joint, own.name, {own.at.x(), own.at.y(), own.at.z()});
+        }
+    }
+
+  private:
+    [[nodiscard]] BuiltStructure& structure() override { return *structure_; }
+    [[nodiscard]] const void* body_of_structure(std::size_t number) const override {
+        return structure_->body(number);
+    }
+    [[nodiscard]] const JointQueries& joint_of_structure(std::size_t number) const override {
+        return *structure_->joint(number);
+    }
+    struct Own {
+        std::string name;
+        dBodyID body = nullptr;
+        dGeomID geom = nullptr;
+        double friction = 0;
+    };
+    struct OwnJoint {
+        std::string name;
+        Vector3<double> at;
+        std::unique_ptr<ode::PlasticConstraint> joint;
+    };
+    /// First made, last destroyed.
+    struct Engine {
+        Engine() {
+            dInitODE2(0);
+            id = dWorldCreate();
+            space = dHashSpaceCreate(nullptr);
+            contacts = dJointGroupCreate(0);
+        }
+        ~Engine() {
+            dJointGroupDestroy(contacts);
+            dSpaceDestroy(space);
+            dWorldDestroy(id);
+            dCloseODE();
+        }
+        Engine(const Engine&) = delete;
+        Engine& operator=(const Engine&) = delete;
+        dWorldID id = nullptr;
+        dSpaceID space = nullptr;
+        dJointGroupID contacts = nullptr;
+    };
+
+    template <class Made, class Frame, class Joint>
+    Made& make(const std::string& name, BodyNumber a, BodyNumber b, const Vector3<double>& at,
+               const Frame& frame, const Joint& joint) {
+        auto made = std::make_unique<Made>(engine_.id, body_of(a), body_of(b), frame, joint);
+        Made& result = *made;
+        world_->add(result, name);
+        joints_.push_back({name, at, std::move(made)});
+        return result;
+    }
+    void touch(dGeomID a, dGeomID b) {
+        dBodyID on_a = dGeomGetBody(a), on_b = dGeomGetBody(b);
+        if (on_a == nullptr && on_b == nullptr) return;
+        if (structure_ && structure_->meet(on_a, on_b)) return;
+        if (on_a != nullptr && on_b != nullptr && dAreConnected(on_a, on_b) != 0) return;
+        std::array<dContact, 8> found{};
+        const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
+        for (int i = 0; i < count; ++i) {
+            dContact& contact = found[std::size_t(i)];
+            contact.surface.mode = dContactApprox1;
+            contact.surface.mu = friction(a) * friction(b);
+            const dJointID joint = dJointCreateContact(engine_.id, engine_.contacts, &contact);
+            dJointAttach(joint, on_a, on_b);
+            world_->add_contact(joint, contact);
+        }
+    }
+    /// 1 of what is not the user's own.
+    [[nodiscard]] double friction(dGeomID geom) const {
+        const auto own = std::find_if(own_.begin(), own_.end(),
+                                      [geom](const Own& one) { return one.geom == geom; });
+        return own == own_.end() ? 1 : own->friction;
+    }
+    [[nodiscard]] dBodyID body_of(BodyNumber body) const {
+        return body == ground ? nullptr : own_[std::size_t(body)].body;
+    }
+    template <class Visit>
+    void each(const Visit& visit) const {
+        for (const Own& own : own_) {
+            if (own.body != nullptr) visit(own.body);
+        }
+        if (!structure_) return;
+        for (std::size_t i = 0; i < structure_->plan().bodies.size(); ++i) {
+            if (structure_->has_body(i)) visit(structure_->body(i));
+        }
+    }
+
+    Engine engine_;
+    dGeomID floor_ = nullptr;
+    std::vector<Own> own_;
+    std::unique_ptr<ode::World> world_;
+    std::unique_ptr<ode::Structure> structure_;
+    std::vector<OwnJoint> joints_;
+};
+
+} // namespace
+
+std::unique_ptr<Stage> ode_stage(const StageParameters& parameters) {
+    return std::make_unique<OdeStage>(parameters);
+}
+
+} // namespace ductile::scenes

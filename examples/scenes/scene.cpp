@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+#include <utility>
+
+#include "write_html.hpp"
+
+namespace ductile::scenes {
+
+bool Finding::right() const {
+    if (!expected) return true;
+    const double scale = *expected == 0 ? 1 : std::abs(*expected);
+    return std::abs(came_out - *expected) <= within * scale; // false for NaN
+}
+
+void Stage::remove(std::string_view member) {
+    const StructurePlan& plan = structure().plan();
+    const PlanMember& of = plan.members[plan.member(member)];
+    const auto goes = [&of](std::size_t body) {
+        return body >= of.first_body && body < of.first_body + of.bodies;
+    };
+    for (std::size_t i = 0; recorder_ != nullptr && i < plan.joints.size(); ++i) {
+        const PlanSeat& b = plan.joints[i].b;
+        const bool on_it = b.kind == PlanSeat::Kind::body && goes(b.index);
+        if (structure().has_joint(i) && (on_it || goes(plan.joints[i].a))) {
+            recorder_->remove(joint_of_structure(i));
+        }
+    }
+    for (std::size_t i = 0; recorder_ != nullptr && i < plan.bodies.size(); ++i) {
+        if (goes(i) && structure().has_body(i)) recorder_->remove(body_of_structure(i));
+    }
+    structure().remove(member);
+}
+
+Take::Take(Run& run, std::string name, std::string about, StageParameters parameters)
+    : run_(run), name_(std::move(name)), about_(std::move(about)) {
+    parameters.tolerance = parameters.plain ? 0 : run.options().tolerance;
+    const std::string& engine = run.options().engine;
+    if (engine != "bullet" && engine != "ode") {
+        throw std::invalid_argument("engine = " + engine + ": must be bullet or ode");
+    }
+    stage_ = engine == "bullet" ? bullet_stage(parameters) : ode_stage(parameters);
+}
+
+double Take::frame() const { return run_.options().frame; }
+
+void Take::action(double samples_a_second) {
+    if (run_.options().out.empty()) return;
+    recorder_ = std::make_unique<replay::Recorder>(
+        replay::RecorderParameters{.name = run_.scene() + ": " + name_,
+                                   .about = about_,
+                                   .engine = stage_->engine(),
+                                   .rate = samples_a_second});
+    stage_->record(*recorder_);
+}
+
+void Take::step() {
+    const std::clock_t start = std::clock();
+    stage_->step(frame());
+    run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
+}
+
+void Take::run(double time) {
+    const int steps = int(std::lround(time / frame()));
+    for (int i = 0; i < steps; ++i) step();
+}
+
+bool Take::settle(double speed, double time) {
+    double calm = 0;
+    for (double t = 0; t < time && calm < 1; t += frame()) {
+        step();
+        calm = stage_->speed() < speed ? calm + frame() : 0;
+    }
+    return calm >= 1;
+}
+
+void Take::cut() {
+    if (!recorder_) return;
+    std::string file = run_.scene() + "-" + name_ + "-" + stage_->engine() + ".html";
+    for (char& c : file) {
+        if (c == ' ') c = '-';
+    }
+    std::filesystem::create_directories(run_.options().out);
+    replay::write_html(recorder_->finish(), run_.options().out / file);
+    run_.replays_.push_back(file);
+}
+
+Run::Run(std::string scene, RunOptions options)
+    : scene_(std::move(scene)), options_(std::move(options)) {}
+
+Take Run::take(std::string name, std::string about, StageParameters parameters) {
+    return {*this, std::move(name), std::move(about), parameters};
+}
+
+void Run::expect(std::string what, double came_out, double expected, double within,
+                 std::string unit) {
+    findings_.push_back({std::move(what), std::move(unit), came_out, expected, within});
+}
+
+bool Run::right() const {
+    return std::all_of(findings_.begin(), findings_.end(),
+                       [](const Finding& finding) { return finding.right(); });
+}
+
+void Run::tell(std::string what, double came_out, std::string unit) {
+    findings_.push_back({std::move(what), std::move(unit), came_out, std::nullopt, 0});
+}
+
+} // namespace ductile::scenes

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+//
+// What every scene is made of: options, takes, and a table of what must come out beside what came
+// out.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "recorder.hpp"
+#include "stage.hpp"
+
+namespace ductile::scenes {
+
+/// What must come out, and what came out.
+struct Finding {
+    std::string what, unit;
+    double came_out = 0;
+    std::optional<double> expected; ///< none: it is only told
+    double within = 0;              ///< of the expected value, or absolute where that is 0
+    [[nodiscard]] bool right() const;
+};
+
+struct RunOptions {
+    std::string engine = "bullet";
+    double frame = 1.0 / 60;   ///< [s]
+    double tolerance = 0.01;   ///< of frames, where the engine's World takes one
+    std::filesystem::path out; ///< folder of the replays; empty: none are written
+};
+
+class Run;
+
+/// One start-to-end of a scene in an engine: a stage, and its replay.
+class Take {
+  public:
+    Take(Run& run, std::string name, std::string about, StageParameters parameters);
+
+    [[nodiscard]] Stage& stage() { return *stage_; }
+    [[nodiscard]] double frame() const;
+    /// All bodies and joints are there: what follows is seen.
+    void action(double samples_a_second = 30);
+    void step();
+    void run(double time);
+    /// Until nothing is faster than `speed` [m/s] for a second, at most `time` [s]; false where it
+    /// never was.
+    bool settle(double speed, double time);
+    /// Writes the replay.
+    void cut();
+
+  private:
+    Run& run_;
+    std::string name_, about_;
+    std::unique_ptr<Stage> stage_;
+    std::unique_ptr<replay::Recorder> recorder_;
+};
+
+class Run {
+  public:
+    Run(std::string scene, RunOptions options);
+
+    [[nodiscard]] const RunOptions& options() const { return options_; }
+    [[nodiscard]] const std::string& scene() const { return scene_; }
+    [[nodiscard]] Take take(std::string name, std::string about, StageParameters parameters = {});
+    void expect(std::string what, double came_out, double expected, double within,
+                std::string unit = "");
+    void tell(std::string what, double came_out, std::string unit = "");
+    [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
+    [[nodiscard]] const std::vector<std::string>& replays() const { return replays_; }
+
+    /// CPU time of a frame [s].
+    void spent(double seconds) { times_.push_back(seconds); }
+    [[nodiscard]] const std::vector<double>& times() const { return times_; }
+    [[nodiscard]] bool right() const;
+
+  private:
+    friend class Take;
+    std::string scene_;
+    RunOptions options_;
+    std::vector<Finding> findings_;
+    std::vector<std::string> replays_; ///< files in the folder
+    std::vector<double> times_;
+};
+
+/// A scene: its problem, its options, its course.
+class Scene {
+  public:
+    virtual ~Scene() = default;
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+    [[nodiscard]] virtual std::string name() const = 0;
+    [[nodiscard]] virtual std::string about() const = 0;
+    virtual void add_options(CLI::App&) {}
+    virtual void play(Run& run) = 0;
+
+  protected:
+    Scene() = default;
+};
+
+[[nodiscard]] std::unique_ptr<Scene> frame_scene();
+[[nodiscard]] std::unique_ptr<Scene> tension_scene();
+[[nodiscard]] std::unique_ptr<Scene> tipping_car_scene();
+[[nodiscard]] std::unique_ptr<Scene> gate_scene();
+[[nodiscard]] std::unique_ptr<Scene> fence_scene();
+
+} // namespace ductile::scenes

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+//
+// Scenes to look at: each prints what must come out beside what came out, and leaves its replay.
+//
+//   scenes --out FOLDER          all of them, in both engines
+//   scenes frame --engine ode --frame 0.0041667
+//
+// Exit status 1 where something did not come out as it must.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene.hpp"
+#include "write_index.hpp"
+
+using namespace ductile::scenes;
+
+namespace {
+
+void print(const Run& run) {
+    for (const Finding& f : run.findings()) {
+        const std::string unit = f.unit.empty() ? "" : " " + f.unit;
+        if (f.expected) {
+            fmt::print("  {} {:<44} {:>12.6g}{}, must be {:.6g} within {:g}{}\n",
+                       f.right() ? "ok   " : "WRONG", f.what, f.came_out, unit, *f.expected,
+                       *f.expected == 0 ? f.within : 100 * f.within,
+                       *f.expected == 0 ? unit : " %");
+        } else {
+            fmt::print("        {:<44} {:>12.6g}{}\n", f.what, f.came_out, unit);
+        }
+    }
+    std::vector<double> times = run.times();
+    std::sort(times.begin(), times.end());
+    if (times.empty()) return;
+    fmt::print("        a frame of {:.2f} ms took {:.3f} ms at the median, {:.2f} ms at most\n",
+               1e3 * run.options().frame, 1e3 * times[times.size() / 2], 1e3 * times.back());
+}
+
+} // namespace
+
+int main(int argc, char** argv) try {
+    std::vector<std::unique_ptr<Scene>> scenes;
+    scenes.push_back(frame_scene());
+    scenes.push_back(tension_scene());
+    scenes.push_back(tipping_car_scene());
+    scenes.push_back(gate_scene());
+    scenes.push_back(fence_scene());
+
+    CLI::App app("Scenes to look at, with what must come out");
+    RunOptions options;
+    std::string engine = "both";
+    app.add_option("--engine", engine)
+        ->check(CLI::IsMember({"bullet", "ode", "both"}))
+        ->capture_default_str();
+    app.add_option("--frame", options.frame, "[s]")
+        ->check(CLI::Range(1e-5, 0.1))
+        ->capture_default_str();
+    app.add_option("--tolerance", options.tolerance, "of frames, 0: steps as they are [-]")
+        ->check(CLI::Range(0.0, 0.5))
+        ->capture_default_str();
+    app.add_option("--out", options.out, "folder of the replays and index.html; none: no replays");
+    app.require_subcommand(0, int(scenes.size()));
+    app.fallthrough();
+    for (const auto& scene : scenes) {
+        scene->add_options(*app.add_subcommand(scene->name(), scene->about()));
+    }
+    CLI11_PARSE(app, argc, argv);
+
+    bool right = true;
+    std::vector<Shown> shown;
+    const bool all = app.get_subcommands().empty();
+    for (const auto& scene : scenes) {
+        if (!all && !app.got_subcommand(scene->name())) continue;
+        for (const char* of : {"bullet", "ode"}) {
+            if (engine != "both" && engine != of) continue;
+            fmt::print("{} ({}): {}\n", scene->name(), of, scene->about());
+            std::fflush(stdout);
+            options.engine = of;
+            Run run(scene->name(), options);
+            scene->play(run);
+            print(run);
+            std::fflush(stdout);
+            right = right && run.right();
+            shown.push_back({scene->about(), of, std::move(run)});
+        }
+    }
+    if (!options.out.empty()) {
+        write_index(shown, options.out);
+        fmt::print("open {}\n", (options.out / "index.html").string());
+    }
+    return right ? 0 : 1;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// What a scene needs of an engine: bodies, a structure, joints, steps, and where things are. One
+// body of code per scene, whatever the engine; bullet_stage.cpp and ode_stage.cpp are the engines.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "ductile/joint/usual_joints.hpp"
+#include "ductile/structure/built_structure.hpp"
+#include "ductile/structure/structure_model.hpp"
+#include "ductile/world/link_queries.hpp"
+#include "ductile/world/stepped_world.hpp"
+#include "recorder.hpp"
+
+namespace ductile::scenes {
+
+/// A box with its axes along the world's.
+struct BoxBody {
+    std::string name;
+    double mass = 0; ///< [kg]; 0: it does not move
+    Vector3<double> half = Vector3<double>::Zero(), at = Vector3<double>::Zero(); ///< [m]
+    Vector3<double> velocity = Vector3<double>::Zero();                           ///< [m/s]
+    double friction = 0; ///< that of a pair is the product
+    bool collides = true;
+};
+
+struct StageParameters {
+    double gravity = 9.81; ///< downwards, along -z [m/s²]
+    /// Of frames, where the engine's World takes one; 0: steps as they are.
+    double tolerance = 0;
+    bool plain = false; ///< steps as they are, whatever the options say
+    bool floor = true;  ///< at z = 0
+};
+
+class Stage {
+  public:
+    using BodyNumber = int;
+    static constexpr BodyNumber ground = -1;
+
+    virtual ~Stage() = default;
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    [[nodiscard]] virtual const char* engine() const = 0;
+    /// False: frames are steps, whatever their length.
+    [[nodiscard]] virtual bool keeps_tolerance() const = 0;
+
+    virtual BodyNumber add(const BoxBody& box) = 0;
+    /// One at a time.
+    virtual BuiltStructure& build(const StructureModel& model) = 0;
+    /// Takes a member of it away, with its joints; the replay shows it where it was.
+    void remove(std::string_view member);
+    /// A plastic joint of six axes at `at`; the columns of `axes` are its x, y and z [m].
+    virtual LinkQueries& connect(const std::string& name, BodyNumber a, BodyNumber b,
+                                 const Vector3<double>& at, const Matrix3<double>& axes,
+                                 const UsualSixAxisJoint& joint) = 0;
+
+    /// A hinge about the unit vector `axis`; in all else the bodies are one [m].
+    virtual JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                                const Vector3<double>& at, const Vector3<double>& axis,
+                                const UsualAxisJoint& joint) = 0;
+
+    [[nodiscard]] virtual Vector3<double> place(BodyNumber body) const = 0;
+    [[nodiscard]] virtual Vector3<double> velocity(BodyNumber body) const = 0;
+    /// Columns: the body's axes, which were the world's [-].
+    [[nodiscard]] virtual Matrix3<double> axes(BodyNumber body) const = 0;
+    /// Fastest of all bodies [m/s].
+    [[nodiscard]] virtual double speed() const = 0;
+    virtual void set_velocity(BodyNumber body, const Vector3<double>& velocity) = 0;
+    virtual void set_gravity(double gravity) = 0;
+    virtual void keep_awake() = 0;
+
+    /// A frame; the contacts are the stage's. What is recorded is sampled.
+    virtual void step(double frame) = 0;
+    [[nodiscard]] virtual const SteppedWorld& world() const = 0;
+
+    /// From now on, all that was made so far.
+    virtual void record(replay::Recorder& recorder) = 0;
+
+  protected:
+    Stage() = default;
+    replay::Recorder* recorder_ = nullptr; ///< null: none
+
+  private:
+    [[nodiscard]] virtual BuiltStructure& structure() = 0;
+    [[nodiscard]] virtual const void* body_of_structure(std::size_t number) const = 0;
+    [[nodiscard]] virtual const JointQueries& joint_of_structure(std::size_t number) const = 0;
+};
+
+[[nodiscard]] std::unique_ptr<Stage> bullet_stage(const StageParameters& parameters);
+[[nodiscard]] std::unique_ptr<Stage> ode_stage(const StageParameters& parameters);
+
+} // namespace ductile::scenes
