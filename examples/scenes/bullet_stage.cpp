@@ -36,10 +36,19 @@ class BulletStage final : public Stage {
     [[nodiscard]] bool keeps_tolerance() const override { return keeps_tolerance_; }
 
     BodyNumber add(const BoxBody& box) override {
-        shapes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(box.half)));
+        if (box.ball) {
+            shapes_.push_back(std::make_unique<btSphereShape>(box.half.x()));
+        } else {
+            shapes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(box.half)));
+        }
         btRigidBody& body = own(box.mass, box.name, bullet::to_bullet(box.at), box.collides);
         body.setFriction(box.friction);
         body.setLinearVelocity(bullet::to_bullet(box.velocity));
+        if (box.driven) {
+            body.setCollisionFlags(body.getCollisionFlags() |
+                                   btCollisionObject::CF_KINEMATIC_OBJECT);
+            body.setActivationState(DISABLE_DEACTIVATION);
+        }
         return int(bodies_.size()) - 1;
     }
     BuiltStructure& build(const StructureModel& model) override {
@@ -56,9 +65,17 @@ class BulletStage final : public Stage {
     JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
                         const Vector3<double>& at, const Vector3<double>& axis,
                         const UsualAxisJoint& joint) override {
-        const btQuaternion turn = shortestArcQuat(btVector3(0, 0, 1), bullet::to_bullet(axis));
-        return make<bullet::PlasticHinge<UsualAxisJoint>>(
-            name, a, b, btTransform(turn, bullet::to_bullet(at)), joint);
+        return make<bullet::PlasticHinge<UsualAxisJoint>>(name, a, b, along(axis, at), joint);
+    }
+    JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                        const Vector3<double>& at, const Vector3<double>& axis,
+                        const FatigueAxisJoint& joint) override {
+        return make<bullet::PlasticHinge<FatigueAxisJoint>>(name, a, b, along(axis, at), joint);
+    }
+    JointQueries& slider(const std::string& name, BodyNumber a, BodyNumber b,
+                         const Vector3<double>& at, const Vector3<double>& axis,
+                         const UsualAxisJoint& joint) override {
+        return make<bullet::PlasticSlider<UsualAxisJoint>>(name, a, b, along(axis, at), joint);
     }
 
     [[nodiscard]] Vector3<double> place(BodyNumber body) const override {
@@ -80,6 +97,19 @@ class BulletStage final : public Stage {
     void set_velocity(BodyNumber body, const Vector3<double>& velocity) override {
         bodies_[std::size_t(body)]->setLinearVelocity(bullet::to_bullet(velocity));
         bodies_[std::size_t(body)]->activate(true);
+    }
+    void turn(BodyNumber body, double /*from*/, double to, double /*frame*/) override {
+        bodies_[std::size_t(body)]->getWorldTransform().setRotation(
+            btQuaternion(btVector3(0, 0, 1), to));
+    }
+    void push(BodyNumber body, const Vector3<double>& force) override {
+        bodies_[std::size_t(body)]->applyCentralForce(bullet::to_bullet(force));
+    }
+    void halt() override {
+        each([](btRigidBody& body) {
+            body.setLinearVelocity(btVector3(0, 0, 0));
+            body.setAngularVelocity(btVector3(0, 0, 0));
+        });
     }
     void set_gravity(double gravity) override {
         engine_.setGravity(btVector3(0, 0, -gravity));
@@ -123,6 +153,11 @@ class BulletStage final : public Stage {
     }
     [[nodiscard]] const JointQueries& joint_of_structure(std::size_t number) const override {
         return *structure_->joint(number);
+    }
+    /// z of the frame is `axis`.
+    [[nodiscard]] static btTransform along(const Vector3<double>& axis, const Vector3<double>& at) {
+        return btTransform(shortestArcQuat(btVector3(0, 0, 1), bullet::to_bullet(axis)),
+                           bullet::to_bullet(at));
     }
     /// `at`: in the world.
     template <class Made, class Joint>

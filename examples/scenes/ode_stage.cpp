@@ -7,6 +7,7 @@
 #include <array>
 
 #include "ductile/ode/ode.hpp"
+#include "ode_engine.hpp"
 #include "of_ode.hpp"
 #include "stage.hpp"
 
@@ -19,8 +20,7 @@ class OdeStage final : public Stage {
     explicit OdeStage(const StageParameters& parameters) {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
-        ode::WorldParameters of_world;
-        world_ = std::make_unique<ode::World>(engine_.id, of_world);
+        world_ = std::make_unique<ode::World>(engine_.id);
         if (parameters.floor) floor_ = dCreatePlane(engine_.space, 0, 0, 1, 0);
     }
 
@@ -31,14 +31,21 @@ class OdeStage final : public Stage {
         Own& own = own_.emplace_back(Own{box.name});
         own.friction = box.friction;
         if (box.collides || box.mass == 0) {
-            own.geom =
-                dCreateBox(engine_.space, 2 * box.half.x(), 2 * box.half.y(), 2 * box.half.z());
+            own.geom = box.ball ? dCreateSphere(engine_.space, box.half.x())
+                                : dCreateBox(engine_.space, 2 * box.half.x(), 2 * box.half.y(),
+                                             2 * box.half.z());
         }
-        if (box.mass > 0) {
+        if (box.mass > 0 || box.driven) {
             own.body = dBodyCreate(engine_.id);
             dMass mass;
-            dMassSetBoxTotal(&mass, box.mass, 2 * box.half.x(), 2 * box.half.y(), 2 * box.half.z());
+            const double kg = box.driven ? 1 : box.mass; // of what is driven it does not matter
+            if (box.ball) {
+                dMassSetSphereTotal(&mass, kg, box.half.x());
+            } else {
+                dMassSetBoxTotal(&mass, kg, 2 * box.half.x(), 2 * box.half.y(), 2 * box.half.z());
+            }
             dBodySetMass(own.body, &mass);
+            if (box.driven) dBodySetKinematic(own.body);
             dBodySetFiniteRotationMode(own.body, 1);
             dBodySetPosition(own.body, box.at.x(), box.at.y(), box.at.z());
             dBodySetLinearVel(own.body, box.velocity.x(), box.velocity.y(), box.velocity.z());
@@ -58,18 +65,22 @@ class OdeStage final : public Stage {
                          const Vector3<double>& at, const Matrix3<double>& axes,
                          const UsualSixAxisJoint& joint) override {
         using Made = ode::PlasticJoint<UsualSixAxisJoint>;
-        Made::Frame frame;
-        frame.origin = at;
-        frame.axes = axes;
-        return make<Made>(name, a, b, at, frame, joint);
+        return make<Made>(name, a, b, at, Made::Frame{.origin = at, .axes = axes}, joint);
     }
     JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
                         const Vector3<double>& at, const Vector3<double>& axis,
                         const UsualAxisJoint& joint) override {
-        ode::HingeFrame frame;
-        frame.anchor = at;
-        frame.axis = axis;
-        return make<ode::PlasticHinge<UsualAxisJoint>>(name, a, b, at, frame, joint);
+        return turning(name, a, b, at, axis, joint);
+    }
+    JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                        const Vector3<double>& at, const Vector3<double>& axis,
+                        const FatigueAxisJoint& joint) override {
+        return turning(name, a, b, at, axis, joint);
+    }
+    JointQueries& slider(const std::string& name, BodyNumber a, BodyNumber b,
+                         const Vector3<double>& at, const Vector3<double>& axis,
+                         const UsualAxisJoint& joint) override {
+        return make<ode::PlasticSlider<UsualAxisJoint>>(name, a, b, at, axis, joint);
     }
 
     [[nodiscard]] Vector3<double> place(BodyNumber body) const override {
@@ -79,10 +90,8 @@ class OdeStage final : public Stage {
         return ode::linear_velocity(own_[std::size_t(body)].body);
     }
     [[nodiscard]] Matrix3<double> axes(BodyNumber body) const override {
-        const dReal* r = dBodyGetRotation(own_[std::size_t(body)].body);
-        Matrix3<double> turn;
-        turn << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-        return turn;
+        using Rows = Eigen::Matrix<dReal, 3, 4, Eigen::RowMajor>;
+        return Rows::Map(dBodyGetRotation(own_[std::size_t(body)].body)).leftCols<3>();
     }
     [[nodiscard]] double speed() const override {
         double most = 0;
@@ -93,6 +102,18 @@ class OdeStage final : public Stage {
         dBodyID id = own_[std::size_t(body)].body;
         dBodySetLinearVel(id, velocity.x(), velocity.y(), velocity.z());
         dBodyEnable(id);
+    }
+    void turn(BodyNumber body, double from, double to, double frame) override {
+        dBodySetAngularVel(own_[std::size_t(body)].body, 0, 0, (to - from) / frame);
+    }
+    void push(BodyNumber body, const Vector3<double>& force) override {
+        dBodyAddForce(own_[std::size_t(body)].body, force.x(), force.y(), force.z());
+    }
+    void halt() override {
+        each([](dBodyID body) {
+            dBodySetLinearVel(body, 0, 0, 0);
+            dBodySetAngularVel(body, 0, 0, 0);
+        });
     }
     void set_gravity(double gravity) override {
         dWorldSetGravity(engine_.id, 0, 0, -gravity);
@@ -159,27 +180,13 @@ class OdeStage final : public Stage {
         Vector3<double> at;
         std::unique_ptr<ode::PlasticConstraint> joint;
     };
-    /// First made, last destroyed.
-    struct Engine {
-        Engine() {
-            dInitODE2(0);
-            id = dWorldCreate();
-            space = dHashSpaceCreate(nullptr);
-            contacts = dJointGroupCreate(0);
-        }
-        ~Engine() {
-            dJointGroupDestroy(contacts);
-            dSpaceDestroy(space);
-            dWorldDestroy(id);
-            dCloseODE();
-        }
-        Engine(const Engine&) = delete;
-        Engine& operator=(const Engine&) = delete;
-        dWorldID id = nullptr;
-        dSpaceID space = nullptr;
-        dJointGroupID contacts = nullptr;
-    };
-
+    template <class Joint>
+    JointQueries& turning(const std::string& name, BodyNumber a, BodyNumber b,
+                          const Vector3<double>& at, const Vector3<double>& axis,
+                          const Joint& joint) {
+        const ode::HingeFrame frame{.anchor = at, .axis = axis};
+        return make<ode::PlasticHinge<Joint>>(name, a, b, at, frame, joint);
+    }
     template <class Made, class Frame, class Joint>
     Made& make(const std::string& name, BodyNumber a, BodyNumber b, const Vector3<double>& at,
                const Frame& frame, const Joint& joint) {
@@ -225,7 +232,7 @@ class OdeStage final : public Stage {
         }
     }
 
-    Engine engine_;
+    OdeEngine engine_; ///< first made, last destroyed
     dGeomID floor_ = nullptr;
     std::vector<Own> own_;
     std::unique_ptr<ode::World> world_;

@@ -58,9 +58,9 @@ void Take::action(double samples_a_second) {
     stage_->record(*recorder_);
 }
 
-void Take::step() {
+void Take::step(double frame) {
     const std::clock_t start = std::clock();
-    stage_->step(frame());
+    stage_->step(frame);
     run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
 }
 

@@ -43,7 +43,9 @@ class Take {
     [[nodiscard]] double frame() const;
     /// All bodies and joints are there: what follows is seen.
     void action(double samples_a_second = 30);
-    void step();
+    void step() { step(frame()); }
+    /// A frame of another length than the run's [s], as where something is to be read in between.
+    void step(double frame);
     void run(double time);
     /// Until nothing is faster than `speed` [m/s] for a second, at most `time` [s]; false where it
     /// never was.
@@ -105,5 +107,7 @@ class Scene {
 [[nodiscard]] std::unique_ptr<Scene> tipping_car_scene();
 [[nodiscard]] std::unique_ptr<Scene> gate_scene();
 [[nodiscard]] std::unique_ptr<Scene> fence_scene();
+[[nodiscard]] std::unique_ptr<Scene> lamp_post_scene();
+[[nodiscard]] std::unique_ptr<Scene> paperclip_scene();
 
 } // namespace ductile::scenes

@@ -51,6 +51,8 @@ int main(int argc, char** argv) try {
     scenes.push_back(tipping_car_scene());
     scenes.push_back(gate_scene());
     scenes.push_back(fence_scene());
+    scenes.push_back(lamp_post_scene());
+    scenes.push_back(paperclip_scene());
 
     CLI::App app("Scenes to look at, with what must come out");
     RunOptions options;

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "ductile/fracture/coffin_manson.hpp"
+#include "ductile/fracture/low_cycle_fatigue.hpp"
 #include "ductile/joint/usual_joints.hpp"
 #include "ductile/structure/built_structure.hpp"
 #include "ductile/structure/structure_model.hpp"
@@ -17,6 +19,9 @@
 
 namespace ductile::scenes {
 
+/// A hinge whose life ends by strain to and fro.
+using FatigueAxisJoint = OneAxisJoint<Perfect<double>, LowCycleFatigue<CoffinManson<double>>>;
+
 /// A box with its axes along the world's.
 struct BoxBody {
     std::string name;
@@ -25,6 +30,8 @@ struct BoxBody {
     Vector3<double> velocity = Vector3<double>::Zero();                           ///< [m/s]
     double friction = 0; ///< that of a pair is the product
     bool collides = true;
+    bool ball = false;   ///< of radius half.x
+    bool driven = false; ///< moves as Stage::turn says, whatever acts on it
 };
 
 struct StageParameters {
@@ -62,6 +69,13 @@ class Stage {
     virtual JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
                                 const Vector3<double>& at, const Vector3<double>& axis,
                                 const UsualAxisJoint& joint) = 0;
+    virtual JointQueries& hinge(const std::string& name, BodyNumber a, BodyNumber b,
+                                const Vector3<double>& at, const Vector3<double>& axis,
+                                const FatigueAxisJoint& joint) = 0;
+    /// Slides along the unit vector `axis`, held by `joint`; in all else the bodies are one [m].
+    virtual JointQueries& slider(const std::string& name, BodyNumber a, BodyNumber b,
+                                 const Vector3<double>& at, const Vector3<double>& axis,
+                                 const UsualAxisJoint& joint) = 0;
 
     [[nodiscard]] virtual Vector3<double> place(BodyNumber body) const = 0;
     [[nodiscard]] virtual Vector3<double> velocity(BodyNumber body) const = 0;
@@ -70,6 +84,12 @@ class Stage {
     /// Fastest of all bodies [m/s].
     [[nodiscard]] virtual double speed() const = 0;
     virtual void set_velocity(BodyNumber body, const Vector3<double>& velocity) = 0;
+    /// Turns a driven body in the coming step of `frame` [s], about z from `from` to `to` [rad].
+    virtual void turn(BodyNumber body, double from, double to, double frame) = 0;
+    /// At its centre of mass, for the coming step [N].
+    virtual void push(BodyNumber body, const Vector3<double>& force) = 0;
+    /// All bodies at rest.
+    virtual void halt() = 0;
     virtual void set_gravity(double gravity) = 0;
     virtual void keep_awake() = 0;
 
