@@ -20,7 +20,7 @@ class OdeStage final : public Stage {
     explicit OdeStage(const StageParameters& parameters) {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
-        world_ = std::make_unique<ode::World>(engine_.id);
+        world_ = std::make_unique<ode::World>(engine_.id, ode::WorldParameters{});
         if (parameters.floor) floor_ = dCreatePlane(engine_.space, 0, 0, 1, 0);
     }
 

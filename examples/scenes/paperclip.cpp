@@ -12,6 +12,7 @@
 //   1 mm   0.59   -0.58  45°    3    1.29287                   3.6490648      0.215903
 //
 // and the first bent one way: 12 rad. The hand turns the end as A sin ωt, a half cycle in a second.
+// Steps as they are turn a corner of that by their own mean speed: 0.3 % of the travel at 1/60 s.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -53,23 +54,25 @@ class Paperclip final : public Scene {
     }
 
   private:
-    /// The wire's half that a hand turns about z, from the origin along x, and the one that is held.
+    /// The wire's half that a hand turns about z, and the one that a vice holds.
     static JointQueries& build(Stage& stage, const Wire& wire, Stage::BodyNumber& hand) {
-        const auto held = stage.add({.name = "held",
-                                     .half = {0.01, diameter / 2, diameter / 2},
+        const auto vice = stage.add({.name = "vice",
+                                     .mass = 1e6, // and what the vice is bolted to
+                                     .half = {0.01, 0.01, 0.01},
                                      .at = {-0.01, 0, 0},
                                      .collides = false});
         hand = stage.add({.name = "hand",
-                          .half = {diameter, diameter, diameter},
+                          .half = {0.01, diameter / 2, diameter / 2},
                           .collides = false,
                           .driven = true});
+        stage.keep_awake();
         const LowCycleFatigue<CoffinManson<double>> life(
             CoffinManson<double>({.ductility_coefficient = wire.ductility,
                                   .ductility_exponent = wire.exponent}),
             {.strain_per_travel = hinge_strain<double>(
                  {.height = diameter, .hinge_length = wire.hinge_length})});
         const FatigueAxisJoint bend(Perfect<double>({.strength = moment}), life);
-        return stage.hinge("bend", hand, held, {0, 0, 0}, {0, 0, 1}, bend);
+        return stage.hinge("bend", hand, vice, {0, 0, 0}, {0, 0, 1}, bend);
     }
     void to_and_fro(Run& run, std::size_t number) const {
         const Wire& wire = wires[number];
@@ -93,10 +96,10 @@ class Paperclip final : public Scene {
         const double before = wire.amplitude * (2 * wire.leg - 3); // of the leg
         run.expect(of + "breaks in leg", 1 + std::ceil((bend.plastic_travel() - wire.amplitude) / (2 * wire.amplitude)),
                    wire.leg, 0);
-        run.expect(of + "after turning in it", bend.plastic_travel() - before, wire.turned, 0.01,
-                   "rad");
-        run.expect(of + "travel in all", bend.plastic_travel(), wire.travel, 1e-3, "rad");
-        run.expect(of + "work", bend.absorbed_energy(), wire.work, 1e-3, "J");
+        run.expect(of + "after turning in it", bend.plastic_travel() - before, wire.turned,
+                   0.02 / wire.turned, "rad");
+        run.expect(of + "travel in all", bend.plastic_travel(), wire.travel, 0.003, "rad");
+        run.expect(of + "work", bend.absorbed_energy(), wire.work, 0.003, "J");
         take.cut();
     }
     static void one_way(Run& run) {
