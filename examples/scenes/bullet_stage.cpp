@@ -169,6 +169,7 @@ class BulletStage final : public Stage {
             std::make_unique<Made>(on_a, on_b, on_a.getCenterOfMassTransform().inverse() * at,
                                    on_b.getCenterOfMassTransform().inverse() * at, joint);
         Made& result = *made;
+        result.add_to(engine_, true); // joined bodies do not collide
         world_->add(result, name);
         joints_.push_back(std::move(made));
         joint_names_.push_back(name);

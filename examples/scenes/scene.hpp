@@ -109,5 +109,6 @@ class Scene {
 [[nodiscard]] std::unique_ptr<Scene> fence_scene();
 [[nodiscard]] std::unique_ptr<Scene> lamp_post_scene();
 [[nodiscard]] std::unique_ptr<Scene> paperclip_scene();
+[[nodiscard]] std::unique_ptr<Scene> bridge_scene();
 
 } // namespace ductile::scenes
