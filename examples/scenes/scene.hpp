@@ -110,5 +110,6 @@ class Scene {
 [[nodiscard]] std::unique_ptr<Scene> lamp_post_scene();
 [[nodiscard]] std::unique_ptr<Scene> paperclip_scene();
 [[nodiscard]] std::unique_ptr<Scene> bridge_scene();
+[[nodiscard]] std::unique_ptr<Scene> plate_scene();
 
 } // namespace ductile::scenes

@@ -54,6 +54,7 @@ int main(int argc, char** argv) try {
     scenes.push_back(lamp_post_scene());
     scenes.push_back(paperclip_scene());
     scenes.push_back(bridge_scene());
+    scenes.push_back(plate_scene());
 
     CLI::App app("Scenes to look at, with what must come out");
     RunOptions options;
