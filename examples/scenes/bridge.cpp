@@ -204,7 +204,8 @@ class Bridge final : public Scene {
         const std::string what = name_of(steel, mass) + ": ";
         std::string file = name_of(steel, mass);
         file.replace(file.find(" %,"), 3, " percent");
-        Take take = run.take(file, "A vehicle crosses a deck at 36 km/h.", {.gravity = 0});
+        Take take = run.take(file, "A vehicle crosses a deck at 36 km/h.",
+                             {.gravity = 0, .budget = 96});
         Stage& stage = take.stage();
         const Cast cast = build(stage, steel, mass, waits);
         take.action(30);

@@ -17,7 +17,9 @@
 // stop it half a millimetre below: flat parts joined at their middle plane cannot sink without
 // stretching, which the calculation leaves out. Then 5 t (5.527 m_p) put on slowly, which the ring
 // carries without a trace of flow, own weight and all, and the same dropped from 1 m: the ledger says
-// where 49 kJ, and what the block sinks, went.
+// where 49 kJ, and what the block sinks, went. There membrane and shear are as strong as the section,
+// f_y a t = 3.55 MN: the block sinks 0.047 m (0.55 m, were there no membrane). ODE's steps of 1/60 s
+// put 14 kJ into the joints, which the ledger shows.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -87,7 +89,7 @@ class Plate final : public Scene {
         }
     };
 
-    static Cast build(Stage& stage, const Case& of) {
+    static Cast build(Stage& stage, const Case& of, double rest = very_strong) {
         Cast cast;
         const int n = of.parts;
         const double a = side / n, gap = 5e-4;
@@ -97,7 +99,7 @@ class Plate final : public Scene {
                                                           : yield / std::sqrt(3.0) * thick * thick *
                                                               (3 * a - thick) / 6;
         Vector6<double> capacity; // x along the edge, y up, z across it
-        capacity << very_strong, very_strong, very_strong, bending, very_strong, twist;
+        capacity << rest, rest, rest, bending, rest, twist;
         const auto centre = [&](int i) { return (i + 0.5) * a - side / 2; };
         for (int row = 0; row < n; ++row) {
             for (int column = 0; column < n; ++column) {
@@ -221,9 +223,9 @@ class Plate final : public Scene {
         run.expect("5 t put on slowly: absorbed", cast.absorbed(), 0, 0.1, "J");
     }
     void drop(Run& run) const {
-        Take take = run.take("5 t dropped", "5 t fall on a plate from 1 m.");
+        Take take = run.take("5 t dropped", "5 t fall on a plate from 1 m.", {.budget = 36});
         Stage& stage = take.stage();
-        const Cast cast = build(stage, cases[4]);
+        const Cast cast = build(stage, cases[4], yield * side / 3 * thick);
         const auto block = stage.add({.name = "block",
                                       .mass = mass_,
                                       .half = {0.4, 0.4, 0.4},
@@ -236,7 +238,7 @@ class Plate final : public Scene {
         run.tell("5 t dropped: the block sinks", level + thick + 0.4 - stage.place(block).z(), "m");
         run.tell("5 t dropped: absorbed of 49 kJ", cast.absorbed(), "J");
         run.tell("5 t dropped: contact", ledger.booked(Account::contact), "J");
-        run.tell("5 t dropped: friction", ledger.booked(Account::friction), "J");
+        run.tell("5 t dropped: joints", ledger.booked(Account::joints), "J");
         run.expect("5 t dropped: unexplained of 49 kJ", ledger.unexplained() / from, 0, 0.01);
         take.cut();
     }
