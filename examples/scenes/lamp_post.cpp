@@ -157,7 +157,7 @@ class LampPost final : public Scene {
     }
     static void bend(Run& run, const Row& row) {
         const std::string of = name_of(row);
-        Take take = run.take(std::to_string(row.rods) + " rods", "A car bends a lamp-post.",
+        Take take = run.take(std::to_string(row.rods) + (row.rods == 1 ? " rod" : " rods"), "A car bends a lamp-post.",
                              {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
         const Cast cast =

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+//
+// Takes the pictures of the gallery from the replays, in headless Chromium, drawn by software:
+//
+//   build/release/bin/scenes --out examples/scenes/out
+//   cd build/release/examples/replay/page        (where playwright-core is installed)
+//   node SOURCE/examples/scenes/gallery.mjs SOURCE/examples/scenes/out SOURCE/examples/scenes/gallery
+import { mkdir, stat } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { join, resolve } from "node:path";
+
+const { chromium } = createRequire(join(process.cwd(), "package.json"))("playwright-core");
+const [from, to] = process.argv.slice(2).map((path) => resolve(path));
+const largest = 60e3; // bytes
+/** Of each scene: the replay, and the share of its time at which it is seen. */
+const shots = [
+    ["frame", "frame-ball-bullet", 0.25],
+    ["tension", "tension-held-bullet", 1],
+    ["tipping-car", "tipping-car-foot-breaks-bullet", 0.25],
+    ["gate", "gate-hit-bullet", 0.9],
+    ["fence", "fence-4-rods-a-half-bullet", 0.5],
+    ["lamp-post", "lamp-post-4-rods-bullet", 1],
+    ["paperclip", "paperclip-wire-1-bullet", 0.97],
+    ["bridge", "bridge-10-percent-80-t-bullet", 0.72],
+    ["plate", "plate-5-t-dropped-bullet", 1],
+    ["roll-cage", "roll-cage-level-bullet", 1],
+];
+
+await mkdir(to, { recursive: true });
+const browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+});
+try {
+    for (const [scene, replay, share] of shots) {
+        const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
+        await page.goto(`file://${join(from, replay)}.html`);
+        await page.waitForFunction(() => window.replay);
+        const colours = await page.evaluate((share) => {
+            const { start, end } = { start: replay.recording.times[0], end: replay.end };
+            replay.setTime(start + share * (end - start));
+            replay.scene.stale = true;
+            replay.scene.render();
+            const canvas = replay.scene.renderer.domElement;
+            const copy = document.createElement("canvas");
+            [copy.width, copy.height] = [canvas.width, canvas.height];
+            const context = copy.getContext("2d", { willReadFrequently: true });
+            context.drawImage(canvas, 0, 0);
+            const { data } = context.getImageData(0, 0, copy.width, copy.height);
+            const seen = new Set();
+            for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+            return seen.size;
+        }, share);
+        if (colours < 20) throw new Error(`${replay}: nothing is drawn`);
+        const picture = join(to, `${scene}.jpg`);
+        await page.screenshot({ path: picture, type: "jpeg", quality: 70 });
+        const { size } = await stat(picture);
+        if (size > largest) throw new Error(`${picture}: ${size} bytes, at most ${largest}`);
+        console.log(`${scene}.jpg ${size} bytes`);
+        await page.close();
+    }
+} finally {
+    await browser.close();
+}
