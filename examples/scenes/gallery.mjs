@@ -17,13 +17,13 @@ const shots = [
     ["frame", "frame-ball-bullet", 0.25],
     ["tension", "tension-held-bullet", 1],
     ["tipping-car", "tipping-car-foot-breaks-bullet", 0.25],
-    ["gate", "gate-hit-bullet", 0.9],
+    ["gate", "gate-hit-bullet", 0.73],
     ["fence", "fence-4-rods-a-half-bullet", 0.5],
     ["lamp-post", "lamp-post-4-rods-bullet", 1],
     ["paperclip", "paperclip-wire-1-bullet", 0.97],
     ["bridge", "bridge-10-percent-80-t-bullet", 0.72],
     ["plate", "plate-5-t-dropped-bullet", 1],
-    ["roll-cage", "roll-cage-level-bullet", 1],
+    ["roll-cage", "roll-cage-level-bullet", 0.7],
 ];
 
 await mkdir(to, { recursive: true });

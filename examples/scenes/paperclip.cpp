@@ -58,7 +58,7 @@ class Paperclip final : public Scene {
     static JointQueries& build(Stage& stage, const Wire& wire, Stage::BodyNumber& hand) {
         const auto vice = stage.add({.name = "vice",
                                      .mass = 1e6, // and what the vice is bolted to
-                                     .half = {0.01, 0.01, 0.01},
+                                     .half = {0.01, 0.003, 0.003},
                                      .at = {-0.01, 0, 0},
                                      .collides = false});
         hand = stage.add({.name = "hand",
