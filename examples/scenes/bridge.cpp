@@ -2,10 +2,11 @@
 //
 // A bridge of reinforced concrete bends under its own weight, and vehicles cross it.
 //
-// Reference problem P42: a deck of 25 × 9 m, 0.4375 m thick, in four parts that three joints hold together, on
-// supports whose inner edges are 11.575 m from the middle. Concrete of 2000 kg/m³ with a share s of
-// steel by area (7800 kg/m³, 200 MPa, 200 GPa): M_p = 200 MPa s b h²/4, EI = 200 GPa s b h³/12. Moment
-// of the middle over M_p at g = 9.81 m/s², own weight q, a vehicle P on axles 2.2 m before and behind:
+// Reference problem P42: a deck of 25 × 9 m, 0.4375 m thick, in four parts that three joints hold
+// together, on supports whose inner edges are 11.575 m from the middle. Concrete of 2000 kg/m³ with
+// a share s of steel by area (7800 kg/m³, 200 MPa, 200 GPa): M_p = 200 MPa s b h²/4, EI = 200 GPa s
+// b h³/12. Moment of the middle over M_p at g = 9.81 m/s², own weight q, a vehicle P on axles 2.2 m
+// before and behind:
 //
 //   M = q (12.5 × 11.575 - 12.5²/2) + Σ P/4 (11.575 - |x_axle|)
 //
@@ -14,14 +15,15 @@
 //         with 50 t 1.037080: it crosses and leaves a sag; 80 t 1.197243: the bridge falls
 //   12 %  0.670640; 50 t 0.893089: crosses
 //
-// On the way a vehicle flies off the deck's kinks and lands, and the deck swings at about 1 Hz: joints
-// that are below yield with it at rest flow a little, by what is told, and the sag that 50 t leave is
-// not that of statics: in frames of 1/60, 1/240, 1/1000 s 0.894, 0.896, 0.906 m in Bullet and
-// 0.914, 0.971, 0.975 m in ODE (the author's 0.34 m: where parts of the deck collide with their
-// neighbours 2 cm away, as in Bullet unless told otherwise, their top edges carry it and it is 0.324).
+// On the way a vehicle flies off the deck's kinks and lands, and the deck swings at about 1 Hz:
+// joints that are below yield with it at rest flow a little, by what is told, and the sag that 50 t
+// leave is not that of statics: in frames of 1/60, 1/240, 1/1000 s 0.894, 0.896, 0.906 m in Bullet
+// and 0.914, 0.971, 0.975 m in ODE (the author's 0.34 m: where parts of the deck collide with their
+// neighbours 2 cm away, as in Bullet unless told otherwise, their top edges carry it and it is
+// 0.324).
 //
-// g grows over 4 s, without a jump of its rate, and the deck comes to rest. The vehicle waits at the
-// end of the deck with its axles 11.3 and 6.9 m from the middle, then goes, without friction.
+// g grows over 4 s, without a jump of its rate, and the deck comes to rest. The vehicle waits at
+// the end of the deck with its axles 11.3 and 6.9 m from the middle, then goes, without friction.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +40,7 @@ namespace ductile::scenes {
 namespace {
 
 constexpr double thick = 0.4375, wide = 9, part = 6.25, edge = 11.575, axle = 2.2, gravity = 9.81;
-constexpr double top = 4; ///< of the deck [m]
+constexpr double top = 4;      ///< of the deck [m]
 constexpr double waits = -9.1; ///< where the middle of the vehicle does [m]
 
 struct Cast {
@@ -104,10 +106,10 @@ class Bridge final : public Scene {
                                        .at = {at, 0, level},
                                        .friction = 0.3});
             if (i == 0) continue;
-            cast.joints[i - 1] = &stage.connect(
-                "joint " + std::to_string(i), cast.parts[i], cast.parts[i - 1],
-                {at - part / 2, 0, level}, axes,
-                section_joint(section, concrete, {.length = part, .elastic = true}));
+            cast.joints[i - 1] =
+                &stage.connect("joint " + std::to_string(i), cast.parts[i], cast.parts[i - 1],
+                               {at - part / 2, 0, level}, axes,
+                               section_joint(section, concrete, {.length = part, .elastic = true}));
         }
         for (const double side : {-1.0, 1.0}) {
             stage.add({.name = side < 0 ? "left support" : "right support",
@@ -133,8 +135,7 @@ class Bridge final : public Scene {
                                                   .half = {0.5, 0.5, 0.5},
                                                   .at = at,
                                                   .ball = true});
-                    const Ellipsoid<double, 6> rigid(
-                        {.capacity = Vector6<double>::Constant(1e7)});
+                    const Ellipsoid<double, 6> rigid({.capacity = Vector6<double>::Constant(1e7)});
                     stage.connect("axle of " + std::to_string(number - 1), wheel, cast.vehicle, at,
                                   Matrix3<double>::Identity(),
                                   UsualSixAxisJoint(rigid, Perfect<double>({.strength = 1e7}),
@@ -204,8 +205,8 @@ class Bridge final : public Scene {
         const std::string what = name_of(steel, mass) + ": ";
         std::string file = name_of(steel, mass);
         file.replace(file.find(" %,"), 3, " percent");
-        Take take = run.take(file, "A vehicle crosses a deck at 36 km/h.",
-                             {.gravity = 0, .budget = 96});
+        Take take =
+            run.take(file, "A vehicle crosses a deck at 36 km/h.", {.gravity = 0, .budget = 96});
         Stage& stage = take.stage();
         const Cast cast = build(stage, steel, mass, waits);
         take.action(30);
@@ -235,8 +236,6 @@ class Bridge final : public Scene {
 
 } // namespace
 
-std::unique_ptr<Scene> bridge_scene() {
-    return std::make_unique<Bridge>();
-}
+std::unique_ptr<Scene> bridge_scene() { return std::make_unique<Bridge>(); }
 
 } // namespace ductile::scenes

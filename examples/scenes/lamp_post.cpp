@@ -2,23 +2,24 @@
 //
 // A car runs into a lamp-post that does not break off.
 //
-// Reference problem P34: a post of 8 m, 100 × 100 × 4 mm, S355 (12.0576 kg/m, M_p = 19641.44 N m), in 1, 2 or 4 rigid
-// rods, its foot fixed; a car of 1200 kg at 50 km/h (115.7 kJ) that slides along x pushes with an
-// sharp edge at 0.5 m, without friction. The blow leaves V1 = M V0/(M + m_eff), m_eff = 1/(r M⁻¹ r) of the
-// rods; then the hinges work. Two or four rods cannot stop the car: the table has its speed and
-// what the hinges took when it has gone 0.25 and 0.5 m. One rod is so heavy that it can: all of the
-// 14726.6 J that the blow left, M_p acting over 0.7497 rad, 0.465554 m of travel.
+// Reference problem P34: a post of 8 m, 100 × 100 × 4 mm, S355 (12.0576 kg/m, M_p = 19641.44 N m),
+// in 1, 2 or 4 rigid rods, its foot fixed; a car of 1200 kg at 50 km/h (115.7 kJ) that slides along
+// x pushes with an sharp edge at 0.5 m, without friction. The blow leaves V1 = M V0/(M + m_eff),
+// m_eff = 1/(r M⁻¹ r) of the rods; then the hinges work. Two or four rods cannot stop the car: the
+// table has its speed and what the hinges took when it has gone 0.25 and 0.5 m. One rod is so heavy
+// that it can: all of the 14726.6 J that the blow left, M_p acting over 0.7497 rad, 0.465554 m of
+// travel.
 //
 // Slip base: the foot of one rod lets go at 0.1 rad. With x = h tan θ,
 // ½ (M + I cos⁴θ/h²) V² = ½ (M + I/h²) V1² - M_p θ.
 //
-// The blow and what follows fall into one frame. Where frames have a tolerance they are told apart, and
-// it is the work that it is of: a contact that is carried along opens and closes within a frame of
-// 1/60 s, so that the speed of a moment is off by up to 6 %; it is held to 1 % at 1/240 s. In ODE's
-// steps a contact is closed to the end of the step and every hinge acts for all of it: with two rods
-// the car stops, with four the hinges take 218 kJ at 1/240 s, as what pushes contacts and joints apart
-// brings in 102 kJ; the World says whose rows were left unsolved. So of ODE all but the blow, 0.1 %, and
-// the work of the slip base is only told.
+// The blow and what follows fall into one frame. Where frames have a tolerance they are told apart,
+// and it is the work that it is of: a contact that is carried along opens and closes within a frame
+// of 1/60 s, so that the speed of a moment is off by up to 6 %; it is held to 1 % at 1/240 s. In
+// ODE's steps a contact is closed to the end of the step and every hinge acts for all of it: with
+// two rods the car stops, with four the hinges take 218 kJ at 1/240 s, as what pushes contacts and
+// joints apart brings in 102 kJ; the World says whose rows were left unsolved. So of ODE all but
+// the blow, 0.1 %, and the work of the slip base is only told.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +39,7 @@ constexpr double nose = 3e-3; ///< radius of the edge: all but sharp
 
 struct Row { // of P34
     int rods;
-    double felt;                            ///< m_eff [kg]
+    double felt;                             ///< m_eff [kg]
     std::array<double, 2> speed, work, foot; ///< at 0.25 and 0.5 m [m/s], [J]
 };
 constexpr std::array<Row, 3> rows{{
@@ -77,8 +78,7 @@ class LampPost final : public Scene {
     static Cast build(Stage& stage, int rods, double deep, double strength, double fast,
                       double largest) {
         Cast cast;
-        const UsualAxisJoint hinge(Perfect<double>({.strength = strength}),
-                                   TravelLimit<double>());
+        const UsualAxisJoint hinge(Perfect<double>({.strength = strength}), TravelLimit<double>());
         const UsualAxisJoint foot(Perfect<double>({.strength = strength}),
                                   TravelLimit<double>({.limit = largest}));
         const double length = height / rods;
@@ -157,11 +157,10 @@ class LampPost final : public Scene {
     }
     static void bend(Run& run, const Row& row) {
         const std::string of = name_of(row);
-        Take take = run.take(std::to_string(row.rods) + (row.rods == 1 ? " rod" : " rods"), "A car bends a lamp-post.",
-                             {.gravity = 0, .floor = false});
+        Take take = run.take(std::to_string(row.rods) + (row.rods == 1 ? " rod" : " rods"),
+                             "A car bends a lamp-post.", {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
-        const Cast cast =
-            build(stage, row.rods, 0.04, moment, speed, never);
+        const Cast cast = build(stage, row.rods, 0.04, moment, speed, never);
         take.action(1000);
         for (std::size_t i = 0; i < 2; ++i) {
             const bool there = go(take, cast, i == 0 ? 0.25 : 0.5);
@@ -185,8 +184,8 @@ class LampPost final : public Scene {
         take.cut();
     }
     void slip(Run& run) const {
-        Take take = run.take("slip base", "The foot of the post lets go.",
-                             {.gravity = 0, .floor = false});
+        Take take =
+            run.take("slip base", "The foot of the post lets go.", {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
         const Cast cast = build(stage, 1, 0.04, moment, speed_, slip_);
         take.action(240);
@@ -198,9 +197,8 @@ class LampPost final : public Scene {
         const double turned = felt * std::pow(std::cos(slip_), 4);
         run.expect("slip base: absorbed", cast.hinges[0]->absorbed_energy(), moment * slip_, 1e-3,
                    "J");
-        compare(run, stage, "slip base: speed of the car after it",
-                stage.velocity(cast.car).x(), std::sqrt(2 * left / (car_mass + turned)), 0.01,
-                "m/s");
+        compare(run, stage, "slip base: speed of the car after it", stage.velocity(cast.car).x(),
+                std::sqrt(2 * left / (car_mass + turned)), 0.01, "m/s");
         take.run(0.5);
         run.tell("slip base: half a second later", stage.velocity(cast.car).x(), "m/s");
         take.cut();
@@ -211,8 +209,6 @@ class LampPost final : public Scene {
 
 } // namespace
 
-std::unique_ptr<Scene> lamp_post_scene() {
-    return std::make_unique<LampPost>();
-}
+std::unique_ptr<Scene> lamp_post_scene() { return std::make_unique<LampPost>(); }
 
 } // namespace ductile::scenes

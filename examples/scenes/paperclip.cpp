@@ -2,9 +2,10 @@
 //
 // A wire is bent to and fro by hand until it breaks.
 //
-// Reference problem P36: d = 1 mm, S355, M_p = f_y d³/6 = 0.0591667 N m, rigid below yield. Every half cycle
-// uses 1/2N_f of its life (Miner), 2N_f = (ε/ε_f')^(1/c) at the strain amplitude ε = (d/2)/L_p × range/2, the one that runs
-// too. Three wires, bent to A, -A, A, ... from straight (leg 1 is 0 to A):
+// Reference problem P36: d = 1 mm, S355, M_p = f_y d³/6 = 0.0591667 N m, rigid below yield. Every
+// half cycle uses 1/2N_f of its life (Miner), 2N_f = (ε/ε_f')^(1/c) at the strain amplitude ε =
+// (d/2)/L_p × range/2, the one that runs too. Three wires, bent to A, -A, A, ... from straight (leg
+// 1 is 0 to A):
 //
 //   L_p    ε_f'   c      A      breaks in leg, after turning   total travel, work
 //   3 mm   1      -0.6   90°    11   0.288447 rad              30.133577 rad  1.782903 J
@@ -25,7 +26,7 @@ namespace ductile::scenes {
 
 namespace {
 
-struct Wire { // of P36
+struct Wire {                                            // of P36
     double hinge_length, ductility, exponent, amplitude; ///< [m], [-], [-], [rad]
     int leg;
     double turned, travel, work; ///< in that leg [rad], in all [rad], [J]
@@ -42,7 +43,8 @@ class Paperclip final : public Scene {
   public:
     [[nodiscard]] std::string name() const override { return "paperclip"; }
     [[nodiscard]] std::string about() const override {
-        return "a wire of 1 mm is bent to and fro until it breaks in the leg that Coffin-Manson says";
+        return "a wire of 1 mm is bent to and fro until it breaks in the leg that Coffin-Manson "
+               "says";
     }
     void add_options(CLI::App& app) override {
         app.add_option("--half-cycle", half_cycle_, "time from one side to the other [s]")
@@ -67,10 +69,10 @@ class Paperclip final : public Scene {
                           .driven = true});
         stage.keep_awake();
         const LowCycleFatigue<CoffinManson<double>> life(
-            CoffinManson<double>({.ductility_coefficient = wire.ductility,
-                                  .ductility_exponent = wire.exponent}),
-            {.strain_per_travel = hinge_strain<double>(
-                 {.height = diameter, .hinge_length = wire.hinge_length})});
+            CoffinManson<double>(
+                {.ductility_coefficient = wire.ductility, .ductility_exponent = wire.exponent}),
+            {.strain_per_travel =
+                 hinge_strain<double>({.height = diameter, .hinge_length = wire.hinge_length})});
         const FatigueAxisJoint bend(Perfect<double>({.strength = moment}), life);
         return stage.hinge("bend", hand, vice, {0, 0, 0}, {0, 0, 1}, bend);
     }
@@ -94,7 +96,8 @@ class Paperclip final : public Scene {
             t = next;
         }
         const double before = wire.amplitude * (2 * wire.leg - 3); // of the leg
-        run.expect(of + "breaks in leg", 1 + std::ceil((bend.plastic_travel() - wire.amplitude) / (2 * wire.amplitude)),
+        run.expect(of + "breaks in leg",
+                   1 + std::ceil((bend.plastic_travel() - wire.amplitude) / (2 * wire.amplitude)),
                    wire.leg, 0);
         run.expect(of + "after turning in it", bend.plastic_travel() - before, wire.turned,
                    0.02 / wire.turned, "rad");
@@ -120,8 +123,6 @@ class Paperclip final : public Scene {
 
 } // namespace
 
-std::unique_ptr<Scene> paperclip_scene() {
-    return std::make_unique<Paperclip>();
-}
+std::unique_ptr<Scene> paperclip_scene() { return std::make_unique<Paperclip>(); }
 
 } // namespace ductile::scenes

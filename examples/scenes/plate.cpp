@@ -2,25 +2,25 @@
 //
 // A plate of steel in rigid parts carries a load in its middle until it gives way.
 //
-// Reference problem P35: 3 × 3 m, 10 mm, f_y = 355 MPa, m_p = f_y t²/4 = 8875 N, in 3 × 3 or 6 × 6 parts of side a joined at
-// the middles of their edges: bending m_p a about the edge, twist about its normal
-// T_p = τ_y t² (3 a - t)/6, or none, or rigid, on an ellipse; shear and membrane rigid. Supports at
-// the middles of the outer edges, held or loose (they only push), or a ring 0.2 m wide under the rim.
-// The load at which it gives way, by linear programming, without its own weight:
+// Reference problem P35: 3 × 3 m, 10 mm, f_y = 355 MPa, m_p = f_y t²/4 = 8875 N, in 3 × 3 or 6 × 6
+// parts of side a joined at the middles of their edges: bending m_p a about the edge, twist about
+// its normal T_p = τ_y t² (3 a - t)/6, or none, or rigid, on an ellipse; shear and membrane rigid.
+// Supports at the middles of the outer edges, held or loose (they only push), or a ring 0.2 m wide
+// under the rim. The load at which it gives way, by linear programming, without its own weight:
 //
 //   3 × 3   loose     without twist 8 m_p, ellipse 10.0388, rigid twist 12
 //           held      ellipse 10.0985
 //           ring      ellipse 14.3805
 //   6 × 6   loose     ellipse 9.59952        (yield lines of the continuous plate: 8 m_p = 71 kN)
 //
-// So it stands at 0.995 of each and moves at 1.005, the load growing in a second, until membrane forces
-// stop it half a millimetre below: flat parts joined at their middle plane cannot sink without
-// stretching, which the calculation leaves out. Then 5 t (5.527 m_p) put on slowly, which the ring
-// carries without a trace of flow, own weight and all, and the same dropped from 1 m: the ledger says
-// where 49 kJ, and what the block sinks, went. There membrane and shear are as strong as the section,
-// f_y a t = 3.55 MN: the block sinks 0.047 m where frames are resolved (0.55 m, were there no membrane),
-// 0.053 m with the 20 solves a frame that one core has the time for. ODE's steps of 1/60 s put 14 kJ
-// into the joints, which the ledger shows.
+// So it stands at 0.995 of each and moves at 1.005, the load growing in a second, until membrane
+// forces stop it half a millimetre below: flat parts joined at their middle plane cannot sink
+// without stretching, which the calculation leaves out. Then 5 t (5.527 m_p) put on slowly, which
+// the ring carries without a trace of flow, own weight and all, and the same dropped from 1 m: the
+// ledger says where 49 kJ, and what the block sinks, went. There membrane and shear are as strong
+// as the section, f_y a t = 3.55 MN: the block sinks 0.047 m where frames are resolved (0.55 m,
+// were there no membrane), 0.053 m with the 20 solves a frame that one core has the time for. ODE's
+// steps of 1/60 s put 14 kJ into the joints, which the ledger shows.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -33,14 +33,14 @@ namespace ductile::scenes {
 namespace {
 
 constexpr double side = 3, thick = 0.01, yield = 355e6, per_length = yield * thick * thick / 4;
-constexpr double level = 1;    ///< of the plate's underside [m]
-constexpr double very_strong = 1e8;  ///< a strength that nothing here reaches [N | N m]
-constexpr double weak = 1e-3;  ///< a support's where it leaves free [N | N m]
+constexpr double level = 1;         ///< of the plate's underside [m]
+constexpr double very_strong = 1e8; ///< a strength that nothing here reaches [N | N m]
+constexpr double weak = 1e-3;       ///< a support's where it leaves free [N | N m]
 
 enum class Support { loose, held, ring };
 enum class Twist { none, carried, rigid };
 
-struct Case { // of P35
+struct Case {  // of P35
     int parts; ///< along a side
     Support support;
     Twist twist;
@@ -65,7 +65,8 @@ class Plate final : public Scene {
   public:
     [[nodiscard]] std::string name() const override { return "plate"; }
     [[nodiscard]] std::string about() const override {
-        return "a plate of 3 × 3 m in rigid parts gives way at the load of P35; 5 t are put on and dropped";
+        return "a plate of 3 × 3 m in rigid parts gives way at the load of P35; 5 t are put on and "
+               "dropped";
     }
     void add_options(CLI::App& app) override {
         app.add_option("--mass", mass_, "of what is dropped [kg]")->capture_default_str();
@@ -95,20 +96,20 @@ class Plate final : public Scene {
         const int n = of.parts;
         const double a = side / n, gap = 5e-4;
         const double bending = per_length * a;
-        const double twist = of.twist == Twist::none      ? 1.0 // a ten thousandth
-                             : of.twist == Twist::rigid   ? very_strong
-                                                          : yield / std::sqrt(3.0) * thick * thick *
-                                                              (3 * a - thick) / 6;
+        const double twist = of.twist == Twist::none ? 1.0 // a ten thousandth
+                             : of.twist == Twist::rigid
+                                 ? very_strong
+                                 : yield / std::sqrt(3.0) * thick * thick * (3 * a - thick) / 6;
         Vector6<double> capacity; // x along the edge, y up, z across it
         capacity << rest, rest, rest, bending, rest, twist;
         const auto centre = [&](int i) { return (i + 0.5) * a - side / 2; };
         for (int row = 0; row < n; ++row) {
             for (int column = 0; column < n; ++column) {
-                cast.parts.push_back(stage.add(
-                    {.name = "part " + std::to_string(row) + std::to_string(column),
-                     .mass = 7850 * a * a * thick,
-                     .half = {a / 2 - gap, a / 2 - gap, thick / 2},
-                     .at = {centre(column), centre(row), level + thick / 2}}));
+                cast.parts.push_back(
+                    stage.add({.name = "part " + std::to_string(row) + std::to_string(column),
+                               .mass = 7850 * a * a * thick,
+                               .half = {a / 2 - gap, a / 2 - gap, thick / 2},
+                               .at = {centre(column), centre(row), level + thick / 2}}));
             }
         }
         const auto join = [&](int one, int other, const Vector3<double>& at, bool along_x) {
@@ -116,10 +117,9 @@ class Plate final : public Scene {
             axes.col(2) = along_x ? Vector3<double>(1, 0, 0) : Vector3<double>(0, 1, 0);
             axes.col(1) = Vector3<double>(0, 0, 1);
             axes.col(0) = along_x ? Vector3<double>(0, 1, 0) : Vector3<double>(-1, 0, 0);
-            cast.joints.push_back(&stage.connect("joint " + std::to_string(cast.joints.size()),
-                                                 cast.parts[std::size_t(other)],
-                                                 cast.parts[std::size_t(one)], at, axes,
-                                                 joint(capacity, bending)));
+            cast.joints.push_back(&stage.connect(
+                "joint " + std::to_string(cast.joints.size()), cast.parts[std::size_t(other)],
+                cast.parts[std::size_t(one)], at, axes, joint(capacity, bending)));
         };
         const double middle = level + thick / 2;
         for (int row = 0; row < n; ++row) {
@@ -249,8 +249,6 @@ class Plate final : public Scene {
 
 } // namespace
 
-std::unique_ptr<Scene> plate_scene() {
-    return std::make_unique<Plate>();
-}
+std::unique_ptr<Scene> plate_scene() { return std::make_unique<Plate>(); }
 
 } // namespace ductile::scenes

@@ -2,19 +2,21 @@
 //
 // A roll-over hoop folds sideways under a force, and stops a vehicle that lands on it.
 //
-// Reference problem P41: a square hoop, legs of h = 1.2 m without mass, four plastic hinges of M_p = 8000 N m (feet
-// and knees); the roof stays level and goes along a circle, θ the angle of the legs. Force F on the
-// roof, φ below the horizontal, weight W:
+// Reference problem P41: a square hoop, legs of h = 1.2 m without mass, four plastic hinges of M_p
+// = 8000 N m (feet and knees); the roof stays level and goes along a circle, θ the angle of the
+// legs. Force F on the roof, φ below the horizontal, weight W:
 //
-//   F = (4 M_p - W h sin θ)/(h cos(θ - φ)),   δ = h (sin θ cos φ + (1 - cos θ) sin φ),   work 4 M_p θ
+//   F = (4 M_p - W h sin θ)/(h cos(θ - φ)),   δ = h (sin θ cos φ + (1 - cos θ) sin φ),   work 4 M_p
+//   θ
 //
 //   a  W = 0, φ = 0:             26,667 N at once, 28,952 N at 0.4 rad (0.4673 m)
 //   b  W = 15 kN, φ = 25°:       29,423 N at once, 20,839 N at 0.4 rad (0.4636 m)
 //
-// At each angle the hoop stands under 0.995 F and moves under 1.005 F. Last, a roof of 1500 kg that goes
-// sideways at 6 m/s: it stops at 0.84375 rad, 0.896569 m. Legs of 0.5 kg here. Where a step is as it is, bodies
-// go with the speed of its end and work is counted with that of its middle: a start is half a step's way
-// too long, a stop too short, 7 % of the angle at 1/60 s. So of ODE work over angle and stop are told.
+// At each angle the hoop stands under 0.995 F and moves under 1.005 F. Last, a roof of 1500 kg that
+// goes sideways at 6 m/s: it stops at 0.84375 rad, 0.896569 m. Legs of 0.5 kg here. Where a step is
+// as it is, bodies go with the speed of its end and work is counted with that of its middle: a
+// start is half a step's way too long, a stop too short, 7 % of the angle at 1/60 s. So of ODE work
+// over angle and stop are told.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -36,7 +38,8 @@ constexpr std::array<Case, 2> cases{{
     {"level", 0, 0},
     {"25 degrees", 15000, 25 * std::numbers::pi / 180},
 }};
-constexpr std::array<double, 4> angles{0, 0.2, 0.4, 0.6}; ///< θ, and what a frame goes too far [rad]
+constexpr std::array<double, 4> angles{0, 0.2, 0.4,
+                                       0.6}; ///< θ, and what a frame goes too far [rad]
 
 class RollCage final : public Scene {
   public:
@@ -71,7 +74,7 @@ class RollCage final : public Scene {
     static Cast build(Stage& stage, double speed) {
         Cast cast;
         Vector6<double> capacity = Vector6<double>::Constant(1e7); // in all else very strong
-        capacity[3] = moment;                                      // about x, which is the world's y
+        capacity[3] = moment; // about x, which is the world's y
         const UsualSixAxisJoint hinge(Ellipsoid<double, 6>({.capacity = capacity}),
                                       Perfect<double>({.strength = moment}), TravelLimit<double>());
         Matrix3<double> axes;
@@ -93,8 +96,8 @@ class RollCage final : public Scene {
                                   .at = {x, 0, height / 2},
                                   .velocity = {speed / 2, 0, 0},
                                   .collides = false});
-            cast.hinges[2 * i] = &stage.connect(side + " foot", cast.leg, Stage::ground, {x, 0, 0},
-                                                axes, hinge);
+            cast.hinges[2 * i] =
+                &stage.connect(side + " foot", cast.leg, Stage::ground, {x, 0, 0}, axes, hinge);
             cast.hinges[2 * i + 1] =
                 &stage.connect(side + " knee", cast.roof, cast.leg, {x, 0, height}, axes, hinge);
         }
@@ -121,7 +124,8 @@ class RollCage final : public Scene {
             return stage.speed();
         };
         for (std::size_t i = 0; i < angles.size(); ++i) {
-            while (cast.angle(stage) < angles[i]) push(1.2 * strength(cast.angle(stage)), take.frame());
+            while (cast.angle(stage) < angles[i])
+                push(1.2 * strength(cast.angle(stage)), take.frame());
             stage.halt();
             const double angle = cast.angle(stage), force = strength(angle);
             const std::string at = std::string(of.name) + ", " +
@@ -147,8 +151,8 @@ class RollCage final : public Scene {
         take.cut();
     }
     void land(Run& run) const {
-        Take take = run.take("1500 kg at 6 m per s", "A hoop stops 1.5 t.",
-                             {.gravity = 0, .floor = false});
+        Take take =
+            run.take("1500 kg at 6 m per s", "A hoop stops 1.5 t.", {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
         const Cast cast = build(stage, speed_);
         take.action(120);
@@ -171,8 +175,6 @@ class RollCage final : public Scene {
 
 } // namespace
 
-std::unique_ptr<Scene> roll_cage_scene() {
-    return std::make_unique<RollCage>();
-}
+std::unique_ptr<Scene> roll_cage_scene() { return std::make_unique<RollCage>(); }
 
 } // namespace ductile::scenes
