@@ -23,7 +23,8 @@ const shots = [
     ["paperclip", "paperclip-wire-1-bullet", 0.97],
     ["bridge", "bridge-10-percent-80-t-bullet", 0.72],
     ["plate", "plate-5-t-dropped-bullet", 1],
-    ["roll-cage", "roll-cage-level-bullet", 0.7],
+    ["hoop", "roll-cage-level-bullet", 0.7],
+    ["roll-cage", "roll-cage-roll-over-bullet", 0.5],
 ];
 
 await mkdir(to, { recursive: true });

@@ -17,11 +17,19 @@
 // as it is, bodies go with the speed of its end and work is counted with that of its middle: a
 // start is half a step's way too long, a stop too short, 7 % of the angle at 1/60 s. So of ODE work
 // over angle and stop are told.
+//
+// And a cage to look at: 54 tubes of 50 × 3 mm, S355, in four hoops with rails and braces, 1500 kg
+// on its floor, falls on the edge of its roof and rolls over. Nothing is known of it but where its
+// energy goes: in Bullet 26 to 27 kJ into the tubes, at 1/60 and 1/240 s; ODE's steps of 1/60 s
+// give nearly all of it to the contacts instead. Bullet's dearest frame is six times as long as
+// real time.
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
+#include "ductile/material/named.hpp"
+#include "ductile/section/tube.hpp"
 #include "scene.hpp"
 
 namespace ductile::scenes {
@@ -45,7 +53,8 @@ class RollCage final : public Scene {
   public:
     [[nodiscard]] std::string name() const override { return "roll-cage"; }
     [[nodiscard]] std::string about() const override {
-        return "a roll-over hoop: its force over crush, and 1.5 t at 6 m/s on its roof";
+        return "a roll-over hoop: its force over crush, 1.5 t at 6 m/s on its roof; a cage that "
+               "rolls";
     }
     void add_options(CLI::App& app) override {
         app.add_option("--speed", speed_, "of the roof [m/s]")->capture_default_str();
@@ -53,6 +62,7 @@ class RollCage final : public Scene {
     void play(Run& run) override {
         for (const Case& of : cases) crush(run, of);
         land(run);
+        roll_over(run);
     }
 
   private:
@@ -167,6 +177,59 @@ class RollCage final : public Scene {
             run.tell("1.5 t: crush", stage.place(cast.roof).x(), "m");
         }
         run.expect("1.5 t: work", cast.absorbed(), mass * speed_ * speed_ / 2, 0.01, "J");
+        take.cut();
+    }
+
+    /// Four hoops of tube with rails, floor and braces, 54 members; 1500 kg on the floor.
+    static StructureModel cage() {
+        const Tube<double> tube({.outer_radius = 0.025, .inner_radius = 0.022});
+        const Material<double> steel(s355<double>());
+        StructureModel model({.elastic = true});
+        // across: floor, belt and roof, left and right; the roof below as it has rolled by 150°
+        constexpr std::array<std::array<double, 2>, 6> outline{
+            {{-0.75, 0}, {-0.75, 0.6}, {-0.5, 1.2}, {0.5, 1.2}, {0.75, 0.6}, {0.75, 0}}};
+        const double roll = 150 * std::numbers::pi / 180;
+        std::array<std::array<NodeId, 6>, 4> at;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            for (std::size_t k = 0; k < outline.size(); ++k) {
+                const auto& [y, z] = outline[k];
+                at[i][k] = model.node({0.8 * double(i), y * std::cos(roll) - z * std::sin(roll),
+                                       2 + y * std::sin(roll) + z * std::cos(roll)});
+            }
+            for (const std::size_t floor : {0, 5}) model.mass(at[i][floor], mass / 8);
+        }
+        int number = 0;
+        const auto member = [&](NodeId a, NodeId b) {
+            model.member("tube " + std::to_string(number++), a, b, tube, steel,
+                         {.joint_length = 0.1, .gap = 0.03});
+        };
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            for (std::size_t k = 0; k < 6; ++k) {
+                member(at[i][k], at[i][(k + 1) % 6]);
+                if (i > 0) member(at[i - 1][k], at[i][k]);
+            }
+            if (i == 0) continue;
+            member(at[i - 1][0], at[i][1]); // sides, roof
+            member(at[i - 1][5], at[i][4]);
+            member(at[i - 1][2], at[i][3]);
+        }
+        for (const std::size_t i : {0, 1, 3}) member(at[i][0], at[i][3]);
+        return model;
+    }
+    static void roll_over(Run& run) {
+        Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 48});
+        Stage& stage = take.stage();
+        BuiltStructure& built = stage.build(cage());
+        take.action(60);
+        take.run(3);
+        const Ledger<double>& ledger = stage.world().ledger();
+        run.tell("cage: bodies", double(built.plan().bodies.size()));
+        run.tell("cage: joints", double(built.plan().joints.size()));
+        run.tell("cage: absorbed", built.absorbed_energy(), "J");
+        run.tell("cage: contact", ledger.booked(Account::contact), "J");
+        run.tell("cage: friction", ledger.booked(Account::friction), "J");
+        run.tell("cage: joints took", ledger.booked(Account::joints), "J");
+        run.expect("cage: unexplained of its fall", ledger.unexplained() / (mass * 9.81), 0, 0.01);
         take.cut();
     }
 
