@@ -5,7 +5,6 @@
 #pragma once
 
 #include "ductile/fidelity/joint_detail.hpp"
-#include "ductile/fidelity/member_subdivision.hpp"
 #include "ductile/fidelity/model_choice.hpp"
 #include "ductile/fidelity/peak_response.hpp"
 #include "ductile/fidelity/rehearsal.hpp"
@@ -67,6 +66,13 @@
 #include "ductile/material/fatigue_constants.hpp"
 #include "ductile/material/named.hpp"
 #include "ductile/material/stress_strain_curve.hpp"
+#include "ductile/member/active_sections.hpp"
+#include "ductile/member/blow.hpp"
+#include "ductile/member/internal_forces.hpp"
+#include "ductile/member/member.hpp"
+#include "ductile/member/member_course.hpp"
+#include "ductile/member/member_piece.hpp"
+#include "ductile/member/member_state.hpp"
 #include "ductile/member/section_joint.hpp"
 #include "ductile/numeric/anderson.hpp"
 #include "ductile/numeric/block_ldlt.hpp"

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+//
+// Which sections open and close. A step is solved with those that are open; what the others would
+// have to carry is found by inverse dynamics (internal_forces.hpp), one that cannot is opened, and
+// the same step is solved again, until all that are closed can. The answer is that of the member
+// with all its sections open, and any order ends there.
+//
+//   in a step  the worst of each piece
+//   in a blow  the nearest to where it was struck: what is farther in is not loaded then
+//              (member_course.hpp)
+//
+// Where a hinge travels the sections that it comes to carry M_p all along: only what is beyond by
+// more than round-off is opened.
+//
+// Closed again is a section that held, moment within its strength, in some steps in a row. It does
+// not move then, so nothing is lost but the drift of its joint; and opening it too early or late
+// changes no motion, only what it costs.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "ductile/member/internal_forces.hpp"
+
+namespace ductile {
+
+struct ActiveSections {
+    double beyond = 1e-7; ///< of its strength, by which a section opens [-], >= 0
+    int hold = 3;         ///< steps after which one that holds closes, >= 1
+};
+
+inline constexpr int no_section = -1;
+
+/// What a section carries as a share of its strength [-]; the joint as `state` has it.
+[[nodiscard]] inline double utilisation_of(const Member& member, const MemberState& state,
+                                           const SectionForce& carried, double dt) {
+    UsualAxisJoint joint = member.section(carried.section);
+    joint.restore(state[std::size_t(carried.section)].joint);
+    const double strength = joint.strength(carried.bending > 0 ? -1 : 1) * dt;
+    return strength > 0 ? std::abs(carried.bending) / strength
+                        : std::numeric_limits<double>::infinity();
+}
+
+/// The closed section of a piece that carries the most, if that is too much.
+[[nodiscard]] inline int worst_section(const Member& member, const MemberState& state,
+                                       const InternalForces& forces, double dt,
+                                       const ActiveSections& rule = {}) {
+    int worst = no_section;
+    double most = 1 + rule.beyond;
+    for (const SectionForce& carried : forces.sections) {
+        const double used = utilisation_of(member, state, carried, dt);
+        if (!(used > most)) continue;
+        most = used;
+        worst = carried.section;
+    }
+    return worst;
+}
+
+/// Counts the step that an open section's joint has committed; true where it closes.
+[[nodiscard]] inline bool closes(SectionState& section, const ActiveSections& rule = {}) noexcept {
+    section.held = section.joint.flowing || section.joint.broken ? 0 : section.held + 1;
+    return section.held >= rule.hold;
+}
+
+} // namespace ductile

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+//
+// A member while it is in an engine: which bodies it is now, and, after a step, whether that was
+// enough. All that an adapter needs to know but how its engine makes and moves bodies:
+//
+//   after a step   beyond(steps, loads, dt)     sections that have to open: put the step back,
+//                  open(sections, bodies)       the bodies that it is from then on; do it again
+//   after a blow   struck(steps, loads, blow)   the same for one section at a time
+//   it stands      close(bodies)                the bodies that it is from then on
+//
+// The adapter writes what open sections' joints went through into state() before it asks.
+//
+// Not thread-safe.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/member/active_sections.hpp"
+#include "ductile/member/blow.hpp"
+
+namespace ductile {
+
+/// What struck a member. Plain value.
+struct MemberStrike {
+    double energy = 0; ///< that its contacts took [J]
+    double speed = 0;  ///< at which the fastest of them closed [m/s]
+    int segment = 0;   ///< where that was
+};
+
+class MemberCourse {
+  public:
+    explicit MemberCourse(Member member, const ActiveSections& rule = {})
+        : member_(std::move(member)), rule_(rule), state_(straight(member_)) {
+        make_pieces();
+    }
+    MemberCourse(const MemberCourse&) = delete;
+    MemberCourse& operator=(const MemberCourse&) = delete;
+
+    [[nodiscard]] const Member& member() const noexcept { return member_; }
+    [[nodiscard]] const MemberState& state() const noexcept { return state_; }
+    [[nodiscard]] SectionState& section(int i) noexcept { return state_[std::size_t(i)]; }
+    [[nodiscard]] const SectionState& section(int i) const noexcept {
+        return state_[std::size_t(i)];
+    }
+    [[nodiscard]] const std::vector<MemberPiece>& pieces() const noexcept { return pieces_; }
+    [[nodiscard]] bool whole() const noexcept { return pieces_.size() == 1; }
+    [[nodiscard]] int open_sections() const noexcept { return int(pieces_.size()) - 1; }
+    /// The piece that has a segment.
+    [[nodiscard]] std::size_t piece_of(int segment) const noexcept {
+        std::size_t i = 0;
+        while (i + 1 < pieces_.size() && pieces_[i].run.last < segment) ++i;
+        return i;
+    }
+    /// Straight enough to be the body that it was at first.
+    [[nodiscard]] bool is_straight() const noexcept {
+        constexpr double straight_enough = 1e-7; // [rad]
+        return std::all_of(state_.begin(), state_.end(), [](const SectionState& section) {
+            return std::abs(section.bend) < straight_enough;
+        });
+    }
+    /// Of closed sections: energy that they absorbed [J], plastic travel [rad].
+    [[nodiscard]] double closed_work() const noexcept { return closed_work_; }
+    [[nodiscard]] double closed_travel() const noexcept { return closed_travel_; }
+    /// Of closed sections, so that impulses that add up to less than a share of it load none
+    /// beyond [N m].
+    [[nodiscard]] double least_strength() const noexcept { return least_strength_; }
+    /// The same times the travel that nobody misses [J].
+    [[nodiscard]] double unmissed_work() const noexcept {
+        return least_strength_ == std::numeric_limits<double>::infinity()
+                   ? 0
+                   : least_strength_ * member_.section(0).parameters().least_travel;
+    }
+    /// Largest left_over of the last `beyond` [-].
+    [[nodiscard]] double left_over() const noexcept { return left_over_; }
+
+    /// Closed sections, the worst of each piece, that carried more than they can in a step of `dt`
+    /// [s]; `steps`: by piece. Valid until the next call.
+    const std::vector<int>& beyond(std::span<const PieceStep> steps,
+                                   std::span<const MemberLoad> loads, double dt) {
+        found_.clear();
+        left_over_ = 0;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            internal_forces(member_, pieces_[i], steps[i], loads, forces_);
+            left_over_ = std::max(left_over_, forces_.left_over());
+            const int worst = worst_section(member_, state_, forces_, dt, rule_);
+            if (worst != no_section) found_.push_back(worst);
+        }
+        return found_;
+    }
+
+    /// A blow begins: the next `struck` is its first.
+    void begin_blow() noexcept { largest_ = 0; }
+    /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
+    [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
+                             const MemberStrike& strike) {
+        int nearest = no_section, least = std::numeric_limits<int>::max();
+        const bool first = largest_ == 0;
+        for (std::size_t i = 0; i < pieces_.size(); ++i) {
+            internal_forces(member_, pieces_[i], steps[i], loads, forces_);
+            const MemberBlow blow =
+                member_blow(member_, state_, forces_, strike.energy, strike.speed, strike.segment);
+            for (const SectionForce& carried : forces_.sections) {
+                const double moment = std::abs(carried.bending);
+                if (first) largest_ = std::max(largest_, moment);
+                if (!beyond_in_blow(blow, carried)) continue;
+                const int away = std::abs(2 * carried.section + 1 - 2 * strike.segment);
+                if (away >= least) continue;
+                least = away;
+                nearest = carried.section;
+            }
+        }
+        return nearest;
+    }
+
+    /// Opens sections; `bodies`: the pieces as they are. What they are then, in order.
+    std::vector<PlacedPiece> open(std::span<const int> sections,
+                                  std::span<const PlacedPiece> bodies) {
+        for (const int i : sections) {
+            section(i).open = true;
+            section(i).held = 0;
+        }
+        return rearrange(bodies);
+    }
+    /// Counts a step that stands, and says which open sections it would close.
+    [[nodiscard]] const std::vector<int>& held() {
+        found_.clear();
+        for (int i = 0; i < member_.sections(); ++i) {
+            if (section(i).open && closes(section(i), rule_)) found_.push_back(i);
+        }
+        return found_;
+    }
+    /// Closes sections, `bend` of their states being what they are bent by now.
+    std::vector<PlacedPiece> close(std::span<const int> sections,
+                                   std::span<const PlacedPiece> bodies) {
+        for (const int i : sections) section(i).open = false;
+        return rearrange(bodies);
+    }
+
+  private:
+    /// Of an elastic member what its profile comes to; of a rigid one what is not left over from
+    /// segments that are not quite lumped.
+    [[nodiscard]] bool beyond_in_blow(const MemberBlow& blow, const SectionForce& carried) const {
+        constexpr double lumped = 0.02; // of the largest that the blow would have loaded
+        const double moment = std::abs(carried.bending);
+        if (member_.bending_stiffness() == std::numeric_limits<double>::infinity()) {
+            return moment > lumped * largest_;
+        }
+        SectionForce peak = carried;
+        peak.bending = peak_moment(member_, blow, carried);
+        return moment > lumped * largest_ && utilisation_of(member_, state_, peak, 1) > 1;
+    }
+    std::vector<PlacedPiece> rearrange(std::span<const PlacedPiece> bodies) {
+        before_ = std::move(pieces_);
+        std::vector<PlacedPiece> old(bodies.begin(), bodies.end());
+        for (std::size_t i = 0; i < old.size(); ++i) old[i].piece = &before_[i];
+        make_pieces();
+        return rearranged(member_, state_, old, pieces_);
+    }
+    void make_pieces() {
+        pieces_.clear();
+        for (const MemberRun& run : runs(state_)) {
+            pieces_.push_back(make_piece(member_, state_, run));
+        }
+        least_strength_ = std::numeric_limits<double>::infinity();
+        closed_work_ = closed_travel_ = 0;
+        for (int i = 0; i < member_.sections(); ++i) {
+            if (section(i).open) continue;
+            closed_work_ += section(i).joint.plastic_work;
+            closed_travel_ += section(i).joint.plastic_travel;
+            UsualAxisJoint joint = member_.section(i);
+            joint.restore(section(i).joint);
+            least_strength_ = std::min({least_strength_, joint.strength(1), joint.strength(-1)});
+        }
+    }
+
+    Member member_;
+    ActiveSections rule_;
+    MemberState state_;
+    std::vector<MemberPiece> pieces_, before_;
+    std::vector<int> found_;
+    InternalForces forces_;
+    double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
+    double largest_ = 0; ///< moment of the blow's first solve [N m s]
+};
+
+} // namespace ductile

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+//
+// What a member remembers: of each section whether it is open, how far it is bent and what its
+// joint went through. It does not matter to it how often a section was closed in between.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "ductile/member/member.hpp"
+
+namespace ductile {
+
+/// Plain value.
+struct SectionState {
+    bool open = false; ///< a joint between two bodies
+    int held = 0;      ///< steps in which it held since it last flowed, while open
+    double bend = 0;   ///< of the next segment about x, from this one; while closed [rad]
+    UsualAxisJoint::State joint{};
+
+    bool operator==(const SectionState&) const = default;
+};
+
+/// By section. Plain value: copy, compare, save and restore it.
+using MemberState = std::vector<SectionState>;
+
+[[nodiscard]] inline MemberState straight(const Member& member) {
+    MemberState state;
+    for (int i = 0; i < member.sections(); ++i) {
+        state.push_back({.joint = member.section(i).state()});
+    }
+    return state;
+}
+
+/// Segments first ... last, which are one body.
+struct MemberRun {
+    int first = 0, last = 0;
+
+    [[nodiscard]] bool holds(int segment) const noexcept {
+        return first <= segment && segment <= last;
+    }
+    bool operator==(const MemberRun&) const = default;
+};
+
+/// From the start.
+[[nodiscard]] inline std::vector<MemberRun> runs(const MemberState& state) {
+    std::vector<MemberRun> result{{}};
+    for (const SectionState& section : state) {
+        const int next = result.back().last + 1;
+        if (section.open) {
+            result.push_back({next, next});
+        } else {
+            result.back().last = next;
+        }
+    }
+    return result;
+}
+
+} // namespace ductile

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "ductile/member/member.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/member/strips.hpp"
+#include "ductile/material/named.hpp"
+#include "ductile/member/blow.hpp"
+#include "ductile/member/member_course.hpp"
+#include "ductile/section/rectangle.hpp"
+#include "support/throws.hpp"
+
+using namespace ductile;
+using ductile::test::message_of;
+using ductile::test::strip;
+
+namespace {
+
+const Vector3<double> none = Vector3<double>::Zero();
+
+/// Of a cantilever, or a free bar, as one body: what its sections carry.
+InternalForces of_whole(const Member& member, const BodyMotion& change,
+                        const std::vector<MemberLoad>& loads) {
+    const MemberPiece piece = make_piece(member, straight(member), {0, member.segments() - 1});
+    const JointFrame<double> start = piece.section(member, 0, false);
+    InternalForces forces;
+    internal_forces(member, piece, {.pose = frame_around({}, start), .change = change}, loads,
+                    forces);
+    return forces;
+}
+
+} // namespace
+
+TEST_CASE("a cantilever at rest carries its weight and a load at its end", "[member]") {
+    const Member member = strip(16);
+    const double g = 9.81, dt = 1e-3, load = 30;
+    const auto forces =
+        of_whole(member, {{0, g * dt, 0}, none},
+                 {{.segment = 16, .point = {0, 0, 1}, .impulse = {0, -load * dt, 0}}});
+    REQUIRE(forces.sections.size() == 16);
+    for (const SectionForce& carried : forces.sections) {
+        const double beyond = 1 - member.place(carried.section);
+        CHECK(carried.bending / dt ==
+              Approx(-(g * 2 * beyond * beyond / 2 + load * beyond)).epsilon(1e-12));
+        CHECK(carried.force[1] / dt == Approx(load + g * 2 * beyond).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("a bar at rest on two supports carries q s (L - s)/2, and both ends agree", "[member]") {
+    const Member member = strip(16, false);
+    const double g = 9.81, dt = 1e-3, reaction = g * dt;
+    std::vector<MemberLoad> supports{
+        {.segment = 0, .point = {0, 0, 0}, .impulse = {0, reaction, 0}},
+        {.segment = 15, .point = {0, 0, 1}, .impulse = {0, reaction, 0}}};
+    const auto forces = of_whole(member, {{0, g * dt, 0}, none}, supports);
+    REQUIRE(forces.sections.size() == 15);
+    for (const SectionForce& carried : forces.sections) {
+        const double s = member.place(carried.section);
+        CHECK(std::abs(carried.bending) / dt == Approx(g * 2 * s * (1 - s) / 2).epsilon(1e-12));
+    }
+    CHECK(forces.left_over() < 1e-12);
+    supports.pop_back();
+    CHECK(of_whole(member, {{0, g * dt, 0}, none}, supports).left_over() > 0.1);
+}
+
+TEST_CASE("a spinning bar is stretched by what it holds on its circle", "[member]") {
+    const Member member = strip(32, false);
+    const MemberPiece piece = make_piece(member, straight(member), {0, 31});
+    InternalForces forces;
+    internal_forces(member, piece, {.spin = {5, 0, 0}, .dt = 1e-3}, {}, forces);
+    CHECK(forces.left_over() < 1e-12);
+    // ∫ μ ω² r dr from the middle
+    const SectionForce& middle = forces.sections[15];
+    CHECK(-middle.force[2] / 1e-3 == Approx(2 * 25 * 0.25 / 2).epsilon(1e-12));
+    CHECK(std::abs(middle.bending) < 1e-15);
+}
+
+TEST_CASE("bodies that are split and made one keep momentum and moment of momentum", "[member]") {
+    const Member member = strip(7, false);
+    MemberState state = straight(member);
+    state[1].bend = 0.4;
+    state[4].bend = -1.1;
+    const MemberPiece whole = make_piece(member, state, {0, 6});
+    const Matrix3<double> axes = turned_by<double>({0.3, -0.8, 1.2}, Matrix3<double>::Identity());
+    const PlacedPiece before{&whole, {{3, -2, 1}, axes}, {{1, 2, 3}, {-4, 5, 6}}};
+    const auto momenta = [](std::span<const PlacedPiece> pieces) {
+        Vector6<double> all = Vector6<double>::Zero();
+        for (const PlacedPiece& p : pieces) {
+            const Vector3<double> linear = scaled(p.piece->mass, p.motion.velocity);
+            all +=
+                twist_of(linear, sum(cross(p.pose.origin, linear),
+                                     times(p.piece->inertia_in_world(p.pose.axes), p.motion.spin)));
+        }
+        return all;
+    };
+    const Vector6<double> all = momenta(std::array{before});
+    std::array<MemberPiece, 3> pieces{make_piece(member, state, {0, 1}),
+                                      make_piece(member, state, {2, 2}),
+                                      make_piece(member, state, {3, 6})};
+    std::array<PlacedPiece, 3> parts;
+    for (std::size_t i = 0; i < 3; ++i) parts[i] = split_off(before, pieces[i]);
+    CHECK((momenta(parts) - all).norm() < 1e-12 * all.norm());
+    // its segments have not moved
+    const auto at = [](const PlacedPiece& p, int k) { return placed(p.pose, p.piece->segment(k)); };
+    CHECK((at(parts[2], 5).origin - at(before, 5).origin).norm() < 1e-14);
+    CHECK((at(parts[2], 5).axes - at(before, 5).axes).norm() < 1e-14);
+    parts[0].motion.spin[0] += 3; // they move against each other
+    const Vector6<double> moved = momenta(parts);
+    const PlacedPiece after = fused(parts, whole);
+    CHECK((momenta(std::array{after}) - moved).norm() < 1e-12 * moved.norm());
+    CHECK((after.pose.origin - before.pose.origin).norm() < 1e-14);
+}
+
+TEST_CASE("a bent piece has the inertia of its segments about its own axes", "[member]") {
+    const Member member = strip(2, false);
+    MemberState state = straight(member);
+    state[0].bend = M_PI / 2;
+    const MemberPiece piece = make_piece(member, state, {0, 1});
+    // two bars of 1 kg, at right angles: each middle √2/8 m from the centre
+    const double i = member.segment(0).inertia[0];
+    CHECK(piece.inertia[0] == Approx(2 * i + 2.0 / 32));
+    CHECK(piece.inertia[1] + piece.inertia[2] ==
+          Approx(2 * (member.segment(0).inertia[1] + member.segment(0).inertia[2]) + 2.0 / 32));
+    CHECK(piece.mass == 2);
+}
+
+TEST_CASE("a cantilever yields where a blow takes more than its strain energy at yield",
+          "[member]") {
+    const Rectangle<double> section({.width = 0.064, .height = 0.004});
+    const Material<double> steel(s355<double>());
+    const Member member = beam(section, steel, {.length = 1, .segments = 32, .clamped = true});
+    const MemberState state = straight(member);
+    const double mp = plastic_moment(section, steel), stiffness = member.bending_stiffness();
+    const auto forces =
+        of_whole(member, {}, {{.segment = 32, .point = {0, 0, 1}, .impulse = {0, 3, 0}}});
+    // M_p² L/(6 EI), whatever the impulse
+    CHECK(energy_at_yield(member, state, forces) == Approx(mp * mp / (6 * stiffness)));
+    const double at_yield = energy_at_yield(member, state, forces);
+    CHECK_FALSE(member_blow(member, state, forces, 0.999 * at_yield, 0, 32).yields());
+    const MemberBlow twice = member_blow(member, state, forces, 2 * at_yield, 0, 32);
+    CHECK(twice.yields());
+    CHECK(twice.plastic_share() == Approx(0.5));
+    // the wave of a sudden speed alone: V √(μ EI)
+    const double v = mp / std::sqrt(member.mass_per_length() * stiffness);
+    CHECK(member_blow(member, state, forces, 1e-12, 1.01 * v, 32).yields());
+    CHECK_FALSE(member_blow(member, state, forces, 1e-12, 0.98 * v, 32).yields());
+    // without elasticity every blow does
+    const Member rigid = strip(8);
+    const auto in_rigid =
+        of_whole(rigid, {}, {{.segment = 8, .point = {0, 0, 1}, .impulse = {0, 1e-6, 0}}});
+    CHECK(member_blow(rigid, straight(rigid), in_rigid, 1e-9, 0, 8).plastic_share() == 1);
+}
+
+TEST_CASE("in a blow the section nearest to it opens, in a step the worst", "[member]") {
+    const Member member = strip(4);
+    const auto at_end = [](double impulse) {
+        return std::vector<MemberLoad>{
+            {.segment = 4, .point = {0, 0, 1}, .impulse = {0, impulse, 0}}};
+    };
+    const auto worst = [&](double impulse) {
+        return worst_section(member, straight(member), of_whole(member, {}, at_end(impulse)), 1);
+    };
+    CHECK(worst(200) == 0);
+    // a moment that is just what it can carry is no violation
+    CHECK(worst(100) == no_section);
+
+    MemberCourse course(member);
+    const MemberStrike strike{.energy = 1, .speed = 1, .segment = 4};
+    std::vector<PieceStep> steps(1);
+    course.begin_blow();
+    CHECK(course.struck(steps, at_end(200), strike) == 3);
+    const std::vector<int> opened{3};
+    const std::vector<PlacedPiece> whole{{&course.pieces().front(), {}, {}}};
+    const auto pieces = course.open(opened, whole);
+    REQUIRE(pieces.size() == 2);
+    CHECK(course.piece_of(3) == 0);
+    CHECK(course.piece_of(4) == 1);
+    CHECK(pieces[1].pose.origin[2] == Approx(0.875));
+    // what segments that are not quite lumped leave over opens none
+    steps.resize(2);
+    const std::vector<MemberLoad> rest{{.segment = 3, .point = {0, 0, 0.75}, .impulse = {0, 1, 0}}};
+    CHECK(course.struck(steps, rest, strike) == no_section);
+    // one that holds closes after three steps
+    CHECK(course.held().empty());
+    CHECK(course.held().empty());
+    CHECK(course.held() == opened);
+    CHECK(course.close(opened, pieces).size() == 1);
+    CHECK(course.whole());
+}
+
+TEST_CASE("what a member cannot be is said", "[member]") {
+    const auto message = [](const auto& change) {
+        MemberParameters p;
+        p.segments = lumped_segments(1, 2, 3, {1e-6, 1e-6, 2e-6});
+        p.sections.assign(2, UsualAxisJoint(Perfect<double>({.strength = 1})));
+        change(p);
+        return message_of([&] { Member member(p); });
+    };
+    CHECK(message([](auto& p) { p.segments.clear(); }) == "Member.segments = 0: must be 2 or more");
+    CHECK(message([](auto& p) { p.sections.pop_back(); }) ==
+          "Member.sections = 1: must be 2, one less than segments");
+    CHECK(message([](auto& p) { p.segments[1].mass = -1; }) ==
+          "Member.segments[1].mass = -1 kg: must be finite and > 0");
+    CHECK(message([](auto& p) { p.segments[2].held = true; }) ==
+          "Member.segments[2].held = 1: must be 0: only the first may be held");
+    CHECK(message([](auto& p) {
+              p.sections[1] =
+                  UsualAxisJoint(Perfect<double>({.strength = 1}), {}, {.stiffness = 5});
+          }) ==
+          "Member.sections[1].stiffness = 5 N m/rad: must be infinite: a section that closes "
+          "would lose what it stores");
+    CHECK(message([](auto& p) { p.bending_stiffness = 0; }) ==
+          "Member.bending_stiffness = 0 N m^2: must be > 0 (infinity: no limit)");
+}

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+//
+// Members that the tests strike: Parkes' cantilevers and free bars.
+#pragma once
+
+#include "ductile/member/member.hpp"
+
+namespace ductile::test {
+
+enum class Lumping {
+    ends, ///< half of a segment's mass at either end
+    rods
+};
+
+/// P13: 1 m, 2 kg/m, M_p = 100 N m.
+inline Member strip(int segments, bool clamped = true, Lumping lumping = Lumping::ends,
+                    double strength = 100) {
+    MemberParameters p;
+    p.segments = lumped_segments(1.0, 2.0, segments, {1e-6, 1e-6, 2e-6});
+    if (lumping == Lumping::rods) {
+        for (MemberSegment& segment : p.segments) {
+            const double rod = segment.mass * segment.length * segment.length / 12;
+            segment.inertia = {rod, rod, 1e-5};
+        }
+    }
+    if (clamped) {
+        p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    }
+    p.sections.assign(p.segments.size() - 1,
+                      UsualAxisJoint(Perfect<double>({.strength = strength})));
+    return Member(p);
+}
+
+} // namespace ductile::test
