@@ -13,7 +13,11 @@
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/meeting_islands.ipp>
+#include <ductile/bullet/member.ipp>
+#include <ductile/bullet/member_tick.ipp>
+#include <ductile/bullet/members.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
+#include <ductile/bullet/piece_maker.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
 #include <ductile/bullet/structure.ipp>

@@ -371,9 +371,10 @@ TEST_CASE("Frames: a blow closes what touches, and nothing else", "[frame]") {
         {
             bullet::FrontHold front(engine);
             bullet::EnergyMeter meter(engine);
+            bullet::Members members(engine);
             bullet::WorldParts parts(
-                engine, front, meter, [](const bullet::PlasticConstraint&) { return 0u; },
-                [](double) {});
+                engine, front, meter, members,
+                [](const bullet::PlasticConstraint&) { return 0u; }, [](double) {});
             slider.add_to(engine);
             parts.begin(1);
             (void)parts.blow();

@@ -13,6 +13,7 @@ namespace {
 
 using ductile::bullet::EnergyMeter;
 using ductile::bullet::FrontHold;
+using ductile::bullet::Members;
 using ductile::bullet::PlasticConstraint;
 using ductile::bullet::WorldParts;
 using pile::Options;
@@ -26,8 +27,9 @@ struct Parted {
     Pile pile;
     FrontHold front{pile.world};
     EnergyMeter meter{pile.world};
-    WorldParts parts{pile.world, front, meter, [](const PlasticConstraint&) { return 0u; },
-                     [](double) {}};
+    Members members{pile.world};
+    WorldParts parts{pile.world, front, meter, members,
+                     [](const PlasticConstraint&) { return 0u; }, [](double) {}};
 
     explicit Parted(const Options& options) : pile(options) {
         for (auto& hinge : pile.hinges) hinge->set_force_share({.ahead = true});

@@ -171,7 +171,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
 
 DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
                                                const PartMotion& motion) const noexcept {
-    const bool known = row < past_.size() && past_[row].row.joint == motion.rows[row].joint;
+    const bool known = row < past_.size() && past_[row].row.joint == motion.rows[row].joint &&
+                       past_[row].row.section == motion.rows[row].section;
     if (!known) return {};
     return {past_[row].acceleration, before_};
 }
@@ -180,7 +181,7 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    double ahead = 0, power = 0, largest = 0, unmissed = 0;
+    double ahead = 0, power = 0, largest = 0, unmissed = motion.closed_work * detail::unmissed;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         unmissed += row.strength * row.least * detail::unmissed;

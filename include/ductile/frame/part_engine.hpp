@@ -22,6 +22,9 @@ namespace ductile {
 struct PartMotion {
     std::vector<PartRow> rows; ///< of all plastic joints, in an order that stays
     double plastic_work = 0;   ///< of all plastic joints since they were made [J]
+    /// Strength x travel that nobody misses, the least of what has no row as it is closed: sections
+    /// of members; 0: there are none.
+    double closed_work = 0;
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
     double contact_work = 0;   ///< that contacts took, either sign [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end

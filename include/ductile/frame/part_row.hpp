@@ -36,6 +36,7 @@ namespace ductile {
 /// One plastic row in one part. Plain value.
 struct PartRow {
     std::size_t joint = 0; ///< whose, as its world counts joints
+    int section = 0;       ///< which of a member's, whose rows come and go
     double start = 0;      ///< u [m/s | rad/s]
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation

@@ -14,6 +14,7 @@
 //   sleep        motion that ends because the engine puts a body to sleep
 //   contact      normal impulses
 //   friction     tangential impulses
+//   members      what bodies of members that split or fuse change of the world's energy
 //   integration  gravity's work against the change of potential energy; damping; gyroscopic
 //                torque and the turning of inertia tensors
 // What the engine does not tell stays unexplained.
@@ -108,6 +109,8 @@ class EnergyMeter {
     /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
     /// forces acted (force_share.hpp).
     void after_step(double dt, double share = 1);
+    /// Between two steps bodies of members were split or made one; `before`: held().total() before [J].
+    void bodies_rearranged(double before);
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();

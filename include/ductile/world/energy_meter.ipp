@@ -68,6 +68,13 @@ DUCTILE_INLINE void EnergyMeter::before_step() {
     watch_step();
 }
 
+DUCTILE_INLINE void EnergyMeter::bodies_rearranged(double before) {
+    const double gained = held().total() - before;
+    ledger_.book(Account::members, -gained);
+    last_.kinetic += gained; // what was changed from outside is seen by the next step
+    ledger_.update(last_);
+}
+
 DUCTILE_INLINE void EnergyMeter::keep() {
     kept_.ledger = ledger_;
     kept_.last = last_;

@@ -17,6 +17,8 @@ enum class EventKind {
     broke,      ///< see JointEvent::fracture
     unreliable, ///< unsolved, makes energy, or turned unseen (Outcome); told once per joint
     coarse,     ///< the step was too long for what it did; told once per joint
+    split,      ///< of a member: a section opened (member/README.md)
+    fused,      ///< of a member: a section closed again
 };
 
 [[nodiscard]] constexpr std::string_view to_string(EventKind kind) noexcept {
@@ -29,6 +31,10 @@ enum class EventKind {
             return "unreliable";
         case EventKind::coarse:
             return "coarse";
+        case EventKind::split:
+            return "split";
+        case EventKind::fused:
+            return "fused";
     }
     return "unknown";
 }
@@ -41,6 +47,7 @@ struct JointEvent {
     std::string name;      ///< of the joint
     double time = 0;       ///< at the end of the step, for a break within it [s]
     JointReport<S> report;
+    int section = -1; ///< of a member, that split or fused; else -1
 };
 
 } // namespace ductile

@@ -39,12 +39,14 @@ enum class Account : std::size_t {
     sleep,       ///< motion that ends because the engine puts a body to sleep
     integration, ///< the engine's own drift: potential over a step against the work of gravity,
                  ///< kinetic energy changed by turning an inertia tensor or by damping
+    members,     ///< bodies of members that were split or made one: motion of pieces against each
+                 ///< other, and what pieces of a static body brought or took with their weight
     count
 };
 
 [[nodiscard]] constexpr std::string_view to_string(Account account) noexcept {
     constexpr std::array<std::string_view, std::size_t(Account::count)> names{
-        "plastic", "friction", "contact", "joints", "damping", "sleep", "integration"};
+        "plastic", "friction", "contact", "joints", "damping", "sleep", "integration", "members"};
     return account < Account::count ? names[std::size_t(account)] : "unknown";
 }
 

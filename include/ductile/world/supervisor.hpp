@@ -148,6 +148,13 @@ class Supervisor {
         }
     }
 
+    /// A section of a member, which is here like a joint, opened or closed.
+    void tell_section(const void* member, EventKind kind, int section) {
+        const auto found = find(member);
+        if (found == joints_.end()) return;
+        watch_.tell_section(found->number, kind, section, found->ask());
+    }
+
     /// The effort of the next step, all parts of this one having been looked at.
     const Effort& close() {
         forget_removed();

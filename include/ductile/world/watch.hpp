@@ -81,6 +81,12 @@ class Watch {
         seen.broken = broken;
     }
 
+    /// A section of a member opened or closed.
+    void tell_section(std::size_t joint, EventKind kind, int section,
+                      const JointReport<S>& report) {
+        tell(kind, joint, time_, report, section);
+    }
+
     /// Events of the open step, valid until the next one is opened.
     [[nodiscard]] std::span<const JointEvent<S>> events() const noexcept { return events_; }
     [[nodiscard]] const WorstCertificate<S>& worst() const noexcept { return worst_; }
@@ -115,8 +121,9 @@ class Watch {
         return joints_[joint];
     }
 
-    void tell(EventKind kind, std::size_t joint, double time, const JointReport<S>& report) {
-        events_.push_back({kind, joint, joints_[joint].name, time, report});
+    void tell(EventKind kind, std::size_t joint, double time, const JointReport<S>& report,
+              int section = -1) {
+        events_.push_back({kind, joint, joints_[joint].name, time, report, section});
         if (listener_) listener_(JointEvent<S>(events_.back())); // a copy: it may add joints
     }
 

@@ -41,9 +41,13 @@ namespace ductile::bullet {
 /// A point this near is closed; half of it is the hair [m].
 inline constexpr double closed_gap = sizeof(btScalar) == sizeof(double) ? 1e-8 : 2e-6;
 
+class Members;
+
 class ClosingContactsFinder {
   public:
-    /// As PartEngine::closing.
+    explicit ClosingContactsFinder(Members& members) : members_(members) {}
+
+    /// As PartEngine::closing. A member is struck like an island with plastic joints.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
     /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed before
@@ -55,12 +59,15 @@ class ClosingContactsFinder {
     void find_islands(btDiscreteDynamicsWorld& world);
     void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least);
     [[nodiscard]] bool is_plastic(const btRigidBody& body) const;
+    /// A body of a member that contacts do not push.
+    [[nodiscard]] bool is_still_member(const btCollisionObject& object) const;
 
     struct Pair {
         btCollisionObject* a;
         btCollisionObject* b;
         btScalar reach; ///< how far they can come in time [m]
     };
+    Members& members_;
     std::vector<const btRigidBody*> joined_; ///< bodies of plastic joints, sorted
     std::vector<int> islands_;               ///< sorted
     std::vector<Pair> pairs_;

@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/members.hpp"
 
 namespace ductile::bullet {
 
@@ -78,7 +79,8 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
                                                            double touching, double apart) {
     ClosingContacts found;
     find_islands(world);
-    if (joined_.empty()) return found;
+    if (joined_.empty() && members_.empty()) return found;
+    members_.number_bodies();
     list_pairs(world, btScalar(h), std::min(touching, apart));
     for (const Pair& pair : pairs_) {
         detail::ClosestPoints points(found, touching, apart, pair.reach);
@@ -110,7 +112,8 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
         const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
         const btRigidBody *of_a = detail::pushed(a), *of_b = detail::pushed(b);
         const bool plastic = (of_a != nullptr && is_plastic(*of_a)) ||
-                             (of_b != nullptr && is_plastic(*of_b));
+                             (of_b != nullptr && is_plastic(*of_b)) || is_still_member(a) ||
+                             is_still_member(b);
         if (!plastic) continue;
         const btVector3& normal = nearest->m_normalWorldOnB;
         const double yields = detail::yield_at(a, nearest->getPositionWorldOnA(), normal) +
@@ -147,8 +150,13 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld&
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
     return std::binary_search(joined_.begin(), joined_.end(), &body) ||
+           members_.is_member(body) ||
            (body.getIslandTag() >= 0 &&
             std::binary_search(islands_.begin(), islands_.end(), body.getIslandTag()));
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObject& object) const {
+    return detail::pushed(object) == nullptr && members_.is_member(object);
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
@@ -174,9 +182,10 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
     for (int i = 0; i < objects.size(); ++i) {
         btRigidBody* body = btRigidBody::upcast(objects[i]);
         if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
-            detail::pushed(*body) == nullptr || !is_plastic(*body)) {
+            !(detail::pushed(*body) != nullptr ? is_plastic(*body) : is_still_member(*body))) {
             continue;
         }
+        const bool still = detail::pushed(*body) == nullptr;
         const btScalar turning = detail::turning_speed(*body);
         const btScalar speed = body->getLinearVelocity().length() + turning;
         const double most = double(speed + fastest);
@@ -190,6 +199,10 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         for (btCollisionObject* other : near.found) {
             btRigidBody* mate = btRigidBody::upcast(other);
             if (other == body || other->getBroadphaseHandle() == nullptr) continue;
+            // seen from there
+            if (still && (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
+                continue;
+            }
             // both ways only once
             if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
                 std::less<const btCollisionObject*>()(other, body)) {

@@ -48,6 +48,9 @@ class FrontSolver final : public btConstraintSolver {
     /// Of the coming ticks.
     void set_kind(TickKind kind) noexcept { kind_ = kind; }
 
+    /// Islands of these are solved at once, too; null: there are none. Not while it solves.
+    void set_direct(const DirectBodies* direct) noexcept { direct_ = direct; }
+
     // ---- Bullet's side
 
     void prepareSolve(int bodies, int manifolds) override {
@@ -69,7 +72,7 @@ class FrontSolver final : public btConstraintSolver {
     struct Room {
         TouchingIslands islands;
     };
-    /// The solver of an island, by its first plastic joint: it keeps the topology.
+    /// The solver of an island, by its first plastic joint, or body: it keeps the topology.
     struct Kept {
         IslandSolver solver;
         bool used = true;
@@ -83,17 +86,18 @@ class FrontSolver final : public btConstraintSolver {
                          btDispatcher* dispatcher);
     [[nodiscard]] std::unique_ptr<Room> borrow();
     void give_back(std::unique_ptr<Room> room);
-    [[nodiscard]] std::shared_ptr<Kept> solver_of(const btTypedConstraint& first);
+    [[nodiscard]] std::shared_ptr<Kept> solver_of(const void* first);
 
     friend class FrontHold;
 
     btConstraintSolver& usual_;
     bool owned_;
     TickKind kind_ = TickKind::step;
+    const DirectBodies* direct_ = nullptr;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
     std::mutex mutex_; ///< of what follows
     std::vector<std::unique_ptr<Room>> idle_;
-    std::unordered_map<const btTypedConstraint*, std::shared_ptr<Kept>> kept_;
+    std::unordered_map<const void*, std::shared_ptr<Kept>> kept_;
 };
 
 /// Puts a front before the solver of a world, and takes it away again. Whichever ends first: the
@@ -111,6 +115,7 @@ class FrontHold {
     /// False once Bullet's world has ended.
     [[nodiscard]] bool is_alive() const noexcept { return !front_.expired(); }
     void set_kind(TickKind kind) const { (**front_.lock()).set_kind(kind); }
+    void set_direct(const DirectBodies* direct) const { (**front_.lock()).set_direct(direct); }
 
   private:
     btDiscreteDynamicsWorld& world_;

@@ -155,7 +155,10 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                                         kind_ == TickKind::blow ? int(island.manifolds.size()) : 0);
     const auto first =
         std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
-    solver_of(**first)->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
+    const void* key = first != island.constraints.end()
+                          ? static_cast<const void*>(*first)
+                          : static_cast<const void*>(island.bodies.front());
+    solver_of(key)->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
                                           island.manifolds.data(), int(island.manifolds.size()),
                                           island.constraints.data(), int(island.constraints.size()),
                                           info, drawer, dispatcher);
@@ -180,13 +183,16 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     // Bullet flushes an empty group after an island above its batch size
     if (body_count == 0 && manifold_count == 0 && constraint_count == 0) return 0;
     const detail::HalfwayContacts halfway(manifolds, kind_ == TickKind::part ? manifold_count : 0);
-    if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic)) {
+    static const DirectBodies none;
+    const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
+    if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic) &&
+        !direct.any) {
         return solve_usual(bodies, body_count, manifolds, manifold_count, constraints,
                            constraint_count, info, drawer, dispatcher);
     }
     std::unique_ptr<Room> room = borrow();
     room->islands.find(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
-                       detail::is_plastic);
+                       detail::is_plastic, direct);
     for (IslandParts& island : room->islands.chosen()) {
         solve_plastic(island, info, drawer, dispatcher);
     }
@@ -225,10 +231,10 @@ DUCTILE_INLINE void FrontSolver::give_back(std::unique_ptr<Room> room) {
     idle_.push_back(std::move(room));
 }
 
-DUCTILE_INLINE auto FrontSolver::solver_of(const btTypedConstraint& first)
+DUCTILE_INLINE auto FrontSolver::solver_of(const void* first)
     -> std::shared_ptr<Kept> {
     const std::lock_guard lock(mutex_);
-    std::shared_ptr<Kept>& kept = kept_[&first];
+    std::shared_ptr<Kept>& kept = kept_[first];
     if (kept == nullptr) kept = std::make_shared<Kept>();
     kept->used = true;
     return kept;

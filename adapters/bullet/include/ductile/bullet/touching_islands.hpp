@@ -21,6 +21,17 @@
 
 namespace ductile::bullet {
 
+/// Bodies whose islands are chosen whatever holds them together, by their places in the world.
+struct DirectBodies {
+    std::vector<char> by_place;
+    bool any = false;
+
+    [[nodiscard]] bool has(const btCollisionObject& object) const noexcept {
+        const int place = object.getWorldArrayIndex();
+        return any && place >= 0 && place < int(by_place.size()) && by_place[std::size_t(place)];
+    }
+};
+
 struct IslandParts {
     std::vector<btCollisionObject*> bodies;
     std::vector<btPersistentManifold*> manifolds;
@@ -39,14 +50,16 @@ class TouchingIslands {
 
     void find(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
               int manifold_count, btTypedConstraint** constraints, int constraint_count,
-              Choice choice);
-    /// Islands with a constraint that was chosen.
+              Choice choice, const DirectBodies& direct);
+    /// Islands with a constraint or body that was chosen, or that touch such a body.
     [[nodiscard]] std::span<IslandParts> chosen() noexcept { return {islands_.data(), count_}; }
     [[nodiscard]] IslandParts& others() noexcept { return others_; }
 
   private:
     static constexpr int nowhere = -1;
 
+    /// An island is chosen.
+    void choose(int root);
     [[nodiscard]] int root(int body) noexcept;
     /// Of one of two bodies that are held together; nowhere where neither is in an island.
     [[nodiscard]] int island_of(const btCollisionObject& a, const btCollisionObject& b) noexcept;

@@ -13,7 +13,7 @@ namespace ductile::bullet {
 DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_count,
                                           btPersistentManifold** manifolds, int manifold_count,
                                           btTypedConstraint** constraints, int constraint_count,
-                                          Choice choice) {
+                                          Choice choice, const DirectBodies& direct) {
     parent_.resize(std::size_t(body_count));
     for (int i = 0; i < body_count; ++i) {
         parent_[std::size_t(i)] = i;
@@ -32,11 +32,16 @@ DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_c
     others_.clear();
     for (int i = 0; i < constraint_count; ++i) {
         if (!choice(constraints[i])) continue;
-        const int at = island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB());
-        if (at == nowhere || island_[std::size_t(at)] != nowhere) continue;
-        island_[std::size_t(at)] = int(count_++);
-        if (count_ > islands_.size()) islands_.emplace_back();
-        islands_[count_ - 1].clear();
+        choose(island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB()));
+    }
+    for (int i = 0; direct.any && i < body_count; ++i) {
+        if (direct.has(*bodies[i])) choose(island_of(*bodies[i], *bodies[i]));
+    }
+    for (int i = 0; direct.any && i < manifold_count; ++i) {
+        const btCollisionObject &a = *manifolds[i]->getBody0(), &b = *manifolds[i]->getBody1();
+        if (manifolds[i]->getNumContacts() > 0 && (direct.has(a) || direct.has(b))) {
+            choose(island_of(a, b));
+        }
     }
     for (int i = 0; i < body_count; ++i) {
         const int id = bodies[i]->getCompanionId();
@@ -73,6 +78,13 @@ DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_c
                                     place(y->getRigidBodyA(), y->getRigidBodyB());
                          });
     }
+}
+
+DUCTILE_INLINE void TouchingIslands::choose(int root) {
+    if (root == nowhere || island_[std::size_t(root)] != nowhere) return;
+    island_[std::size_t(root)] = int(count_++);
+    if (count_ > islands_.size()) islands_.emplace_back();
+    islands_[count_ - 1].clear();
 }
 
 DUCTILE_INLINE int TouchingIslands::root(int body) noexcept {

@@ -55,8 +55,10 @@
 
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/stepped_world.hpp"
 
@@ -98,6 +100,13 @@ class World final : public SteppedWorld {
     /// @throws std::invalid_argument where it is here already.
     void add(PlasticConstraint& joint, std::string name = {});
     void add(MultiBodyPlasticConstraint& joint, std::string name = {});
+    /// Looks after a member (member.hpp) until it ends or is removed. Its body is in Bullet's world
+    /// already.
+    /// @throws std::invalid_argument where it is in a world already, a constraint that it did not
+    /// make holds its body, or this world leapfrogs or is a btMultiBodyDynamicsWorld.
+    void add(Member& member, std::string name = {});
+    /// Of a member that is open the pieces end, and its body is in no world.
+    void remove(Member& member);
     /// Takes a joint out of Bullet's world too. What is not here is left alone.
     void remove(PlasticConstraint& joint);
     void remove(MultiBodyPlasticConstraint& joint);
@@ -107,6 +116,10 @@ class World final : public SteppedWorld {
     /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
     void share(const ForceShare& how);
     void require_leapfrog() const;
+    void part_with_members(double dt, const ForceShare& how);
+    template <class Change>
+    void rearrange(const Change& change);
+    void tell_of_members();
     void start_frames(const WorldParameters& parameters);
     [[nodiscard]] bool holds_multibodies() const noexcept;
     [[nodiscard]] btMultiBodyDynamicsWorld& world_of_multibodies() const;
@@ -131,6 +144,8 @@ class World final : public SteppedWorld {
     std::optional<EnergyMeter> meter_;
     bool tells_ledger_ = false;
     HeldForces forces_;
+    Members members_;
+    WorldSnapshot snapshot_;           ///< of a step, while there are members
     std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;
     std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's

@@ -41,7 +41,7 @@ void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Re
 } // namespace detail
 
 DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
-    : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world) {
+    : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world), members_(world) {
     require_matching_precision();
     if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
@@ -69,22 +69,33 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
     }
     start_in_frames(frames);
     parts_ = std::make_unique<WorldParts>(
-        world_, *front_, *meter_,
+        world_, *front_, *meter_, members_,
         [this](const PlasticConstraint& joint) {
-            return supervisor().number(detail::address(joint));
+            int section = 0;
+            const Member* member = members_.owner(joint, section);
+            return supervisor().number(member != nullptr ? member : detail::address(joint));
         },
-        [this](double h) { part_stands(h); });
+        [this](double h) {
+            tell_of_members(); // what opened did so as the part began
+            part_stands(h);
+        });
 }
 
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
     share({.ahead = true});
+    members_.set_share({.ahead = true});
     parts_->begin(length);
     return *parts_;
 }
-DUCTILE_INLINE void World::end_frame() { parts_->end(); }
+DUCTILE_INLINE void World::end_frame() {
+    parts_->end();
+    members_.drop_forces();
+    tell_of_members();
+}
 
 DUCTILE_INLINE World::~World() {
     parts_.reset();
+    if (front_ != nullptr && front_->is_alive()) front_->set_direct(nullptr);
     for (PlasticConstraint* joint : sharing_) joint->set_force_share({});
 }
 
@@ -101,6 +112,30 @@ DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string na
         supervisor(), joint, std::move(name), [&joint] { return joint.report(); },
         [&] { joint.add_to(world_of_multibodies()); });
     keep(joint, [this, &joint] { supervisor().remove(detail::address(joint)); });
+}
+
+DUCTILE_INLINE void World::add(Member& member, std::string name) {
+    if (leapfrogs()) {
+        throw std::invalid_argument("World.leapfrog = true: must not be asked for beside members");
+    }
+    if (front_ == nullptr) {
+        throw std::invalid_argument(
+            "World.add.member: must not be added to a btMultiBodyDynamicsWorld");
+    }
+    front_->set_direct(&members_.direct());
+    members_.add(member, [this, &member] { remove(member); });
+    supervisor().add(&member, std::move(name),
+                     [this, &member] { return members_.report(member); });
+}
+DUCTILE_INLINE void World::remove(Member& member) {
+    if (!members_.has(member)) return;
+    supervisor().remove(&member);
+    members_.remove(member);
+}
+DUCTILE_INLINE void World::tell_of_members() {
+    members_.tell([this](const Member& member, int section, EventKind kind) {
+        supervisor().tell_section(&member, kind, section);
+    });
 }
 
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
@@ -165,6 +200,10 @@ DUCTILE_INLINE void World::require_possible(double dt) {
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
 }
 DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& /*effort*/) {
+    if (!members_.empty()) {
+        part_with_members(dt, how);
+        return;
+    }
     const bool keeps_ledger = meter_ && !holds_multibodies();
     if (keeps_ledger) meter_->before_step();
     const bool told = how.value == 1 && told_ == world_.getNumConstraints();
@@ -173,12 +212,43 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
     world_.stepSimulation(btScalar(dt), 0);
     if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.value);
 }
+
+/// What changes bodies of members, which is told to the ledger; true where it did.
+template <class Change>
+void World::rearrange(const Change& change) {
+    const double before = meter_ ? meter_->held().total() : 0;
+    if (change() && meter_) meter_->bodies_rearranged(before);
+}
+
+/// The part, again with more sections open until none that is closed is beyond its strength.
+DUCTILE_INLINE void World::part_with_members(double dt, const ForceShare& how) {
+    members_.set_share(how);
+    for (;;) {
+        snapshot_.take(world_, front_->usual());
+        if (meter_) meter_->keep();
+        if (meter_) meter_->before_step();
+        members_.apply_forces();
+        members_.before_solve();
+        world_.stepSimulation(btScalar(dt), 0);
+        if (!members_.look(double(btScalar(dt)))) break;
+        snapshot_.put_back(world_, front_->usual());
+        if (meter_) meter_->put_back();
+        rearrange([this] {
+            members_.open_found();
+            return true;
+        });
+    }
+    if (meter_) meter_->after_step(double(btScalar(dt)), how.value);
+    rearrange([this] { return members_.close_held(); });
+    tell_of_members();
+}
+
 DUCTILE_INLINE int World::iterations() const { return world_.getSolverInfo().m_numIterations; }
 DUCTILE_INLINE void World::set_iterations(int iterations) {
     world_.getSolverInfo().m_numIterations = iterations;
 }
 DUCTILE_INLINE void World::suspect(const void* /*joint*/) {} // solved directly already
-DUCTILE_INLINE void World::finish(const Effort& /*effort*/) {}
+DUCTILE_INLINE void World::finish(const Effort& /*effort*/) { members_.drop_forces(); }
 DUCTILE_INLINE bool World::has_body(const void* body) const {
     const auto& objects = world_.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {

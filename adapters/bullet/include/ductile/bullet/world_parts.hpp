@@ -6,6 +6,7 @@
 //   part    half a step ahead (half_ahead.hpp), a tick of h, the rest of the way within it
 //   blow    a tick of a nanosecond in which contacts of islands with plastic joints that touch are
 //           closed and all others open (front_solver.hpp); nothing is pushed apart
+//   member  one with a section beyond its strength opens it, and the part or blow is done again
 //   ERP     what a part removes of the error of rigid rows and of overlap: the world's share, or
 //           less where the part is short, h/5 ms
 //
@@ -34,6 +35,7 @@
 namespace ductile::bullet {
 
 class FrontHold;
+class Members;
 
 class WorldParts final : public PartEngine {
   public:
@@ -42,8 +44,8 @@ class WorldParts final : public PartEngine {
     /// A part of this length stands [s].
     using Accept = std::function<void(double)>;
 
-    WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter, Number number,
-               Accept accept);
+    WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter,
+               Members& members, Number number, Accept accept);
     ~WorldParts();
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
@@ -65,11 +67,14 @@ class WorldParts final : public PartEngine {
   private:
     class Settings;
     void tick(double h, bool ahead);
+    /// Back to before it, with the sections open that it was beyond.
+    void do_again();
     const PartMotion& tell();
 
     btDiscreteDynamicsWorld& world_;
     FrontHold& front_;
     EnergyMeter& meter_;
+    Members& members_;
     Number number_;
     Accept accept_;
     HalfAhead half_ahead_;

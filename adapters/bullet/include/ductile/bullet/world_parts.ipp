@@ -9,6 +9,7 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/world_parts.hpp"
 
 namespace ductile::bullet {
@@ -54,14 +55,17 @@ class WorldParts::Settings {
 };
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
-                                      EnergyMeter& meter, Number number, Accept accept)
+                                      EnergyMeter& meter, Members& members, Number number,
+                                      Accept accept)
     : world_(world),
       front_(front),
       meter_(meter),
+      members_(members),
       number_(std::move(number)),
       accept_(std::move(accept)),
       half_ahead_(world),
       islands_(MeetingIslands::enter(world)),
+      closing_(members),
       pairs_were_sorted_(world.getDispatchInfo().m_deterministicOverlappingPairs) {
     world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
 }
@@ -109,12 +113,14 @@ DUCTILE_INLINE void WorldParts::put_back() {
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     if (!std::exchange(forces_act_, false)) forces_.apply();
+    members_.apply_forces();
     meter_.before_step();
     if (ahead) {
         half_ahead_.move(btScalar(h), ways_, btScalar(time_));
         time_ += h;
         meter_.bodies_ahead();
     }
+    members_.before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), !ahead);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow);
     detail::SingleTick::go(world_, btScalar(h));
@@ -125,7 +131,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const double rigid = meter_.of_plastic_joints();
     const double contact = meter_.ledger().booked(Account::contact);
-    tick(h, true);
+    for (tick(h, true); members_.look(double(btScalar(h))); tick(h, true)) do_again();
     tell();
     motion_.rigid_work = meter_.of_plastic_joints() - rigid;
     motion_.contact_work = meter_.ledger().booked(Account::contact) - contact;
@@ -133,22 +139,45 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     return motion_;
 }
 
+DUCTILE_INLINE void WorldParts::do_again() {
+    put_back();
+    const double before = meter_.held().total();
+    members_.open_found();
+    meter_.bodies_rearranged(before);
+    save();
+}
+
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     constexpr double instant = 1e-9;
-    tick(instant, false);
+    if (!members_.empty()) save();
+    members_.begin_blow();
+    for (tick(instant, false); members_.look_blow(instant); tick(instant, false)) do_again();
     motion_.closed = 0;
     return tell();
 }
 
-DUCTILE_INLINE void WorldParts::accept(double h) { accept_(h); }
+DUCTILE_INLINE void WorldParts::accept(double h) {
+    accept_(h);
+    if (!(h > 0) || members_.empty()) return;
+    const double before = meter_.held().total();
+    if (members_.close_held()) meter_.bodies_rearranged(before);
+}
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
-    motion_.plastic_work = 0;
+    motion_.plastic_work = members_.closed_work();
+    motion_.closed_work = members_.unmissed_work();
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
+        const std::size_t first = motion_.rows.size();
         plastic->list_part_rows(number_(*plastic), motion_.rows);
+        int section = 0;
+        if (members_.owner(*plastic, section) != nullptr) {
+            for (std::size_t k = first; k < motion_.rows.size(); ++k) {
+                motion_.rows[k].section = section + 1;
+            }
+        }
         motion_.plastic_work += plastic->queries().absorbed_energy();
     }
     return motion_;

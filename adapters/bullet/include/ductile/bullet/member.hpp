@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+//
+// A member in Bullet: the user's rigid body as long as all its sections hold, several bodies while
+// some flow, the user's body again, bent, when the flow has stopped.
+//
+//   ductile::bullet::World world(dynamics, {.tolerance = 0.01});
+//   const auto beam = ductile::beam(section, steel, {.length = 2, .clamped = true});
+//   ductile::bullet::Member post(body, beam, start_in_body, {.half_width = 0.05, .half_height =
+//   0.05}); world.add(post, "lamp post");
+//
+// The body. It is the member while that is whole, with its own shape, mass and inertia; of a
+// clamped member it is static. While the member is open it is in no world, and its pieces are; it
+// is never ended, and in the world again where all sections hold: as it was where none is bent,
+// else with a shape and an inertia of bent segments. Its collision filter, friction, restitution,
+// damping, factors, flags, gravity and user pointer are also those of the pieces, which collide
+// with each other only where a broken section lies between them. `of` finds the member of a body in
+// a contact callback. Bodies of pieces end when sections open and close: keep no address of one.
+//
+// What holds on to it. Constraints cannot change their bodies in Bullet: `attach` makes them anew
+// for the piece that has their place. Forces: apply_force, as a body's own loses the point where it
+// acted.
+//
+// Not thread-safe. Must end before its body and before Bullet's world.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ductile/bullet/piece_maker.hpp"
+#include "ductile/bullet/plastic_hinge.hpp"
+#include "ductile/joint/usual_joints.hpp"
+#include "ductile/member/member_course.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/joint_report.hpp"
+
+namespace ductile::bullet {
+
+class Member {
+  public:
+    /// Makes a constraint between a body of the member and whatever it holds; `place`: in that
+    /// body, axes of the member.
+    using Maker =
+        std::function<std::unique_ptr<btTypedConstraint>(btRigidBody&, const btTransform& place)>;
+
+    /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
+    /// @throws std::invalid_argument where the body is kinematic, is static and the member not
+    /// clamped or the other way round, has another mass than the member, its centre elsewhere, or
+    /// is a member already.
+    Member(btRigidBody& body, ductile::Member member, const btTransform& start_in_body,
+           const MemberBox& box = {});
+    /// While it is open its pieces end with it, and the body is in no world.
+    ~Member();
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+
+    /// Null for a body that belongs to no member.
+    [[nodiscard]] static Member* of(const btCollisionObject* object);
+
+    [[nodiscard]] const ductile::Member& description() const noexcept { return course_.member(); }
+    [[nodiscard]] bool whole() const noexcept { return course_.whole(); }
+    [[nodiscard]] int open_sections() const noexcept { return course_.open_sections(); }
+    /// Bodies that it is now, from its start, but for the ground at a held one.
+    [[nodiscard]] std::vector<btRigidBody*> pieces() const;
+    /// The body that has a segment now.
+    [[nodiscard]] btRigidBody& body_of(int segment) const;
+    /// Middle of a segment, axes of the member: what to draw.
+    [[nodiscard]] btTransform pose(int segment) const;
+    /// Of a section, accumulated plastic rotation [rad], and how far it is bent now [rad].
+    [[nodiscard]] double plastic_rotation(int section) const;
+    [[nodiscard]] double bend(int section) const;
+    [[nodiscard]] double absorbed_energy() const; ///< by all sections [J]
+    [[nodiscard]] MemberState state() const;
+    /// Largest share of what acted on it that was left over in the last step that was looked at
+    /// closely (internal_forces.hpp): impulses that it does not know of.
+    [[nodiscard]] double left_over() const noexcept { return course_.left_over(); }
+
+    /// A constraint at `place` [m] along the member, on its axis, now and whenever bodies change.
+    /// To be called before it is added to a World.
+    /// @throws std::invalid_argument where the place is beyond the ends or nothing is made;
+    /// std::logic_error once it is in a World.
+    void attach(double place, Maker maker);
+    /// `force` [N] at `place` [m] along the member, world axes, for the next step.
+    void apply_force(const btVector3& force, double place);
+
+  private:
+    friend class Members;
+    friend class MemberTick;
+    using Hinge = PlasticHinge<UsualAxisJoint>;
+    struct OpenSection {
+        int section;
+        std::unique_ptr<btJointFeedback> feedback;
+        std::unique_ptr<Hinge> hinge;
+    };
+    struct Attachment {
+        double place;
+        int segment;
+        Maker maker;
+        std::unique_ptr<btTypedConstraint> constraint;
+        std::unique_ptr<btJointFeedback> feedback;
+        const btRigidBody* body = nullptr; ///< of the constraint
+    };
+    struct Force {
+        Vector3<double> force;
+        int segment;
+        Vector3<double> in_segment;
+    };
+    [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
+    [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
+    [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
+    [[nodiscard]] JointReport<double> report() const;
+    void require_place(const char* name, double place) const;
+    void require_possible() const;
+    void enter(btDiscreteDynamicsWorld& world);
+    void leave();
+    void note_sections();
+    void open(std::span<const int> sections, const ForceShare& share);
+    void close(std::span<const int> sections, const ForceShare& share);
+    void become(const std::vector<PlacedPiece>& pieces, const ForceShare& share);
+    void make_joints(const ForceShare& share);
+    void make_attachments();
+    void drop_attachment(Attachment& attachment);
+    void let_pieces_pass() const;
+
+    btRigidBody& user_;
+    MemberCourse course_;
+    std::unique_ptr<PieceMaker> maker_;
+    JointFrame<double> held_; ///< where a held segment is
+    btDiscreteDynamicsWorld* world_ = nullptr;
+    std::function<void()> ends_;    ///< tells the World that it was added to
+    std::vector<PieceBody> pieces_; ///< by piece
+    std::vector<OpenSection> joints_;
+    std::vector<Attachment> attachments_;
+    std::vector<Force> forces_;
+};
+
+} // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/member.ipp"
+#endif

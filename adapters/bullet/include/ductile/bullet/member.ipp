@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/member.hpp"
+#include "ductile/bullet/member_book.hpp"
+#include "ductile/vocabulary/check.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+/// PlasticHinge turns about z, a member bends about x.
+[[nodiscard]] DUCTILE_INLINE btTransform hinge_frame(const JointFrame<double>& frame) {
+    Matrix3<double> axes;
+    for (int i = 0; i < 3; ++i) {
+        axes(i, 0) = frame.axes(i, 1);
+        axes(i, 1) = frame.axes(i, 2);
+        axes(i, 2) = frame.axes(i, 0);
+    }
+    return to_bullet(JointFrame<double>{frame.origin, axes});
+}
+
+} // namespace detail
+
+DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
+                              const btTransform& start_in_body, const MemberBox& box)
+    : user_(body), course_(std::move(member)) {
+    const ductile::Member& of = description();
+    if (body.isKinematicObject()) {
+        throw std::invalid_argument("Member.body: must not be kinematic");
+    }
+    if (body.isStaticObject() != of.clamped()) {
+        throw std::invalid_argument(of.clamped()
+                                        ? "Member.body: must be static for a clamped member"
+                                        : "Member.body: must move where the member is not clamped");
+    }
+    if (Member::of(&body) != nullptr) {
+        throw std::invalid_argument("Member.body: must not be a member already");
+    }
+    if (box.half_width != 0 || box.half_height != 0) {
+        check::positive("Member.box.half_width", box.half_width, "m");
+        check::positive("Member.box.half_height", box.half_height, "m");
+    }
+    const MemberPiece& whole = course_.pieces().front();
+    const JointFrame<double> start = to_core(start_in_body);
+    JointFrame<double> whole_in_body = frame_around(start, whole.section(of, 0, false));
+    if (!of.clamped()) {
+        constexpr double share = 1e-3;
+        const auto mass = double(body.getMass());
+        if (!(std::abs(mass - of.mass()) <= share * of.mass())) {
+            check::fail("Member.body.mass", mass, "kg",
+                        "that of the member, " + number_text(of.mass(), 6) + " kg");
+        }
+        const double off = norm(whole_in_body.origin);
+        if (!(off <= share * of.length())) {
+            check::fail("Member.start_in_body", off, "m",
+                        "0: the member's centre is to be the body's");
+        }
+        whole_in_body.origin.setZero();
+    }
+    maker_ = std::make_unique<PieceMaker>(body, of, box, whole_in_body);
+    held_ = placed(to_core(body.getCenterOfMassTransform()), start);
+    pieces_.push_back({&user_, nullptr, nullptr, whole.run});
+    detail::MemberBook::all().enter(&user_, this);
+}
+
+DUCTILE_INLINE Member::~Member() {
+    if (const auto ends = std::exchange(ends_, nullptr)) ends();
+    leave();
+    for (const PieceBody& piece : pieces_) detail::MemberBook::all().leave(piece.body);
+    detail::MemberBook::all().leave(&user_);
+}
+
+DUCTILE_INLINE Member* Member::of(const btCollisionObject* object) {
+    return detail::MemberBook::all().find(object);
+}
+
+// ---- what it says
+
+DUCTILE_INLINE std::vector<btRigidBody*> Member::pieces() const {
+    std::vector<btRigidBody*> bodies;
+    for (const PieceBody& piece : pieces_) {
+        if (piece.own != nullptr || piece.body == &user_) bodies.push_back(piece.body);
+    }
+    return bodies;
+}
+
+DUCTILE_INLINE btRigidBody& Member::body_of(int segment) const {
+    return *pieces_[course_.piece_of(segment)].body;
+}
+
+DUCTILE_INLINE btTransform Member::pose(int segment) const {
+    const std::size_t piece = course_.piece_of(segment);
+    return to_bullet(placed(frame_of(piece), course_.pieces()[piece].segment(segment)));
+}
+
+DUCTILE_INLINE double Member::plastic_rotation(int section) const {
+    return state()[std::size_t(section)].joint.plastic_travel;
+}
+
+DUCTILE_INLINE double Member::bend(int section) const { return state()[std::size_t(section)].bend; }
+
+DUCTILE_INLINE MemberState Member::state() const {
+    MemberState state = course_.state();
+    for (const OpenSection& open : joints_) {
+        SectionState& section = state[std::size_t(open.section)];
+        section.joint = open.hinge->joint().state();
+        section.bend = open.hinge->rotation();
+    }
+    return state;
+}
+
+DUCTILE_INLINE double Member::absorbed_energy() const {
+    double sum = course_.closed_work();
+    for (const OpenSection& open : joints_) sum += open.hinge->absorbed_energy();
+    return sum;
+}
+
+DUCTILE_INLINE JointReport<double> Member::report() const {
+    JointReport<double> all;
+    for (const OpenSection& open : joints_) {
+        const JointReport<double> report = open.hinge->queries().report();
+        all.first_yield = all.first_yield || report.first_yield;
+        all.coarse = all.coarse || report.coarse;
+        all.residual = std::max(all.residual, report.residual);
+        all.step_error = std::max(all.step_error, report.step_error);
+        all.rotation_rate = std::max(all.rotation_rate, report.rotation_rate);
+        all.plastic_travel += report.plastic_travel;
+        if (int(report.outcome) > int(all.outcome)) all.outcome = report.outcome;
+        if (report.fracture) all.fracture = report.fracture;
+    }
+    all.absorbed_energy = absorbed_energy();
+    all.plastic_travel += course_.closed_travel();
+    return all;
+}
+
+// ---- its life
+
+/// Lengths of segments add up with round-off.
+DUCTILE_INLINE void Member::require_place(const char* name, double place) const {
+    const double length = description().length(), hair = 1e-9 * length;
+    if (place >= -hair && place <= length + hair) return;
+    check::between(name, place, 0.0, length, "m", true);
+}
+
+DUCTILE_INLINE void Member::attach(double place, Maker maker) {
+    if (world_ != nullptr) {
+        throw std::logic_error("Member.attach: must be called before the member is in a World");
+    }
+    require_place("Member.attach.place", place);
+    attachments_.push_back({place, description().segment_at(place), std::move(maker), nullptr,
+                            std::make_unique<btJointFeedback>()});
+}
+
+DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
+    require_place("Member.apply_force.place", place);
+    const int segment = description().segment_at(place);
+    const double middle = (segment > 0 ? description().place(segment - 1) : 0) +
+                          description().segment(segment).length / 2;
+    forces_.push_back({to_core(force), segment, {0, 0, place - middle}});
+    body_of(segment).activate();
+}
+
+DUCTILE_INLINE void Member::require_possible() const {
+    if (whole() && user_.getBroadphaseHandle() == nullptr) {
+        throw std::logic_error("Member.body: must be in the world: addRigidBody it");
+    }
+}
+
+DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
+    if (world_ != nullptr) {
+        throw std::invalid_argument("World.add.member: must not be in a world already");
+    }
+    if (!whole()) {
+        throw std::invalid_argument("World.add.member: must be whole, no section of it open");
+    }
+    if (user_.getBroadphaseHandle() == nullptr) {
+        throw std::invalid_argument(
+            "World.add.member: its body must be in the world before: addRigidBody it");
+    }
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world.getConstraint(i);
+        if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
+            continue;
+        }
+        throw std::invalid_argument(
+            "World.add.member: no constraint of the world may hold its body but by "
+            "Member::attach, as Bullet's constraints cannot change their bodies");
+    }
+    world_ = &world;
+    maker_->enter(world);
+    make_attachments();
+}
+
+/// Bodies of pieces stay, so that what it says stays.
+DUCTILE_INLINE void Member::leave() {
+    if (world_ == nullptr) return;
+    ends_ = nullptr;
+    for (Attachment& attachment : attachments_) drop_attachment(attachment);
+    note_sections();
+    joints_.clear();
+    for (PieceBody& piece : pieces_) {
+        if (piece.own != nullptr) world_->removeRigidBody(piece.body);
+    }
+    world_ = nullptr;
+}
+
+DUCTILE_INLINE JointFrame<double> Member::frame_of(std::size_t piece) const {
+    if (course_.pieces()[piece].held) return held_;
+    const JointFrame<double> body = to_core(pieces_[piece].body->getCenterOfMassTransform());
+    return pieces_[piece].body == &user_ ? placed(body, maker_->whole_in_body()) : body;
+}
+
+DUCTILE_INLINE PlacedPiece Member::placed_piece(std::size_t piece) const {
+    const btRigidBody& body = *pieces_[piece].body;
+    PlacedPiece result{&course_.pieces()[piece], frame_of(piece), {}};
+    if (result.piece->held) return result;
+    result.motion = {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
+    return result;
+}
+
+DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
+    std::vector<PlacedPiece> all;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) all.push_back(placed_piece(i));
+    if (whole() && !description().clamped()) {
+        // the moment of momentum is that of the user's inertia
+        const btMatrix3x3& inverse = user_.getInvInertiaTensorWorld();
+        const btVector3 about = inverse.inverse() * user_.getAngularVelocity();
+        all[0].motion.spin =
+            times(all[0].piece->inverse_inertia_in_world(all[0].pose.axes), to_core(about));
+    }
+    return all;
+}
+
+/// Into the course's state what the joints of open sections went through.
+DUCTILE_INLINE void Member::note_sections() {
+    for (const OpenSection& open : joints_) {
+        SectionState& section = course_.section(open.section);
+        section.joint = open.hinge->joint().state();
+        section.bend = open.hinge->rotation();
+    }
+}
+
+DUCTILE_INLINE void Member::open(std::span<const int> sections, const ForceShare& share) {
+    note_sections();
+    become(course_.open(sections, placed_pieces()), share);
+}
+
+DUCTILE_INLINE void Member::close(std::span<const int> sections, const ForceShare& share) {
+    become(course_.close(sections, placed_pieces()), share);
+}
+
+// ---- its bodies
+
+DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces,
+                                   const ForceShare& share) {
+    if (pieces_.size() == 1) maker_->take_out();
+    std::vector<PieceBody> old = std::exchange(pieces_, {});
+    const auto take_kept = [&old](const MemberRun& run) {
+        for (PieceBody& piece : old) {
+            if (piece.own != nullptr && piece.run == run) return std::move(piece);
+        }
+        return PieceBody{};
+    };
+    std::vector<const PlacedPiece*> made;
+    for (const PlacedPiece& placed : pieces) {
+        PieceBody piece = pieces.size() > 1 ? take_kept(placed.piece->run) : PieceBody{};
+        piece.run = placed.piece->run;
+        made.push_back(piece.body == nullptr ? &placed : nullptr);
+        pieces_.push_back(std::move(piece));
+    }
+    // constraints end before their bodies
+    std::erase_if(joints_, [this](const OpenSection& open) {
+        const std::size_t lower = course_.piece_of(open.section);
+        const bool stays = course_.section(open.section).open &&
+                           pieces_[lower].body == &open.hinge->getRigidBodyB() &&
+                           pieces_[lower + 1].body == &open.hinge->getRigidBodyA();
+        return !stays;
+    });
+    for (Attachment& attachment : attachments_) {
+        if (pieces_[course_.piece_of(attachment.segment)].body != attachment.body) {
+            drop_attachment(attachment);
+        }
+    }
+    for (PieceBody& piece : old) {
+        if (piece.own == nullptr) continue;
+        detail::MemberBook::all().leave(piece.body);
+        world_->removeRigidBody(piece.body);
+    }
+    if (pieces.size() == 1) {
+        pieces_[0].body = &user_;
+        maker_->put_whole(pieces[0], course_.is_straight());
+    } else {
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            if (made[i] == nullptr) continue;
+            pieces_[i] = maker_->make(*made[i]);
+            if (pieces_[i].own != nullptr) detail::MemberBook::all().enter(pieces_[i].body, this);
+        }
+        let_pieces_pass();
+    }
+    make_joints(share);
+    make_attachments();
+}
+
+DUCTILE_INLINE void Member::let_pieces_pass() const {
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        bool broken = false;
+        for (std::size_t j = i + 1; j < pieces_.size(); ++j) {
+            broken = broken || course_.section(pieces_[j].run.first - 1).joint.broken;
+            pieces_[i].body->setIgnoreCollisionCheck(pieces_[j].body, !broken);
+        }
+    }
+}
+
+DUCTILE_INLINE void Member::make_joints(const ForceShare& share) {
+    for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
+        const int section = pieces_[i].run.last;
+        if (std::any_of(joints_.begin(), joints_.end(),
+                        [&](const OpenSection& open) { return open.section == section; })) {
+            continue;
+        }
+        const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
+        const JointFrame<double> in_lower = lower.section(description(), section, true);
+        const bool ground = pieces_[i].own == nullptr;
+        const btTransform frame = detail::hinge_frame(ground ? placed(held_, in_lower) : in_lower);
+        OpenSection open{section, std::make_unique<btJointFeedback>(), nullptr};
+        open.hinge = std::make_unique<Hinge>(
+            *pieces_[i + 1].body, *pieces_[i].body,
+            detail::hinge_frame(upper.section(description(), section + 1, false)), frame,
+            description().section(section));
+        Hinge& hinge = *open.hinge;
+        Hinge::State state = hinge.state();
+        const double bend = state.joint.plastic_offset;
+        state.joint = course_.section(section).joint;
+        state.joint.plastic_offset = bend;
+        hinge.restore(state);
+        hinge.setJointFeedback(open.feedback.get());
+        hinge.set_force_share(share);
+        hinge.add_to(*world_);
+        if (share.ahead) hinge.begin_part();
+        joints_.push_back(std::move(open));
+    }
+}
+
+DUCTILE_INLINE void Member::make_attachments() {
+    for (Attachment& attachment : attachments_) {
+        if (attachment.constraint != nullptr) continue;
+        const std::size_t piece = course_.piece_of(attachment.segment);
+        const MemberPiece& of = course_.pieces()[piece];
+        const double start =
+            attachment.segment > 0 ? description().place(attachment.segment - 1) : 0;
+        JointFrame<double> place = placed(of.section(description(), attachment.segment, false),
+                                          {.origin = {0, 0, attachment.place - start}});
+        if (pieces_[piece].body == &user_) {
+            place = placed(maker_->whole_in_body(), place);
+        } else if (pieces_[piece].own == nullptr) {
+            place = placed(held_, place);
+        }
+        attachment.body = pieces_[piece].body;
+        attachment.constraint = attachment.maker(*pieces_[piece].body, to_bullet(place));
+        if (attachment.constraint == nullptr) {
+            throw std::invalid_argument("Member.attach.maker: must make a constraint");
+        }
+        attachment.constraint->setJointFeedback(attachment.feedback.get());
+        world_->addConstraint(attachment.constraint.get());
+    }
+}
+
+DUCTILE_INLINE void Member::drop_attachment(Attachment& attachment) {
+    if (attachment.constraint == nullptr) return;
+    world_->removeConstraint(attachment.constraint.get());
+    attachment.constraint.reset();
+    attachment.body = nullptr;
+}
+
+} // namespace ductile::bullet

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies and shapes of a member's pieces, and the user's body in and out of its world.
+//
+// Not thread-safe.
+#pragma once
+
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <memory>
+#include <vector>
+
+#include "ductile/member/member_piece.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+/// Of the boxes that pieces collide with, along x and y of the member [m], > 0; both 0: pieces
+/// collide with nothing.
+struct MemberBox {
+    double half_width = 0, half_height = 0;
+};
+
+struct PieceBody {
+    btRigidBody* body = nullptr;
+    std::unique_ptr<btCompoundShape> shape; ///< ends after the body
+    std::unique_ptr<btRigidBody> own;       ///< null: the user's, or the ground
+    MemberRun run;
+};
+
+class PieceMaker {
+  public:
+    /// `whole_in_body`: the frame of the whole member in the user's body.
+    PieceMaker(btRigidBody& user, const ductile::Member& member, const MemberBox& box,
+               const JointFrame<double>& whole_in_body)
+        : user_(user),
+          member_(member),
+          box_(box),
+          whole_in_body_(whole_in_body),
+          straight_(user.getCollisionShape()) {}
+    /// The user's body has its own shape again.
+    ~PieceMaker() {
+        if (user_.getCollisionShape() == bent_.get()) user_.setCollisionShape(straight_);
+    }
+    PieceMaker(const PieceMaker&) = delete;
+    PieceMaker& operator=(const PieceMaker&) = delete;
+
+    void enter(btDiscreteDynamicsWorld& world) noexcept { world_ = &world; }
+    [[nodiscard]] const JointFrame<double>& whole_in_body() const noexcept {
+        return whole_in_body_;
+    }
+
+    /// The user's body leaves the world.
+    void take_out();
+    /// It is the member again, in the world: as it was at first where that is `straight`.
+    void put_whole(const PlacedPiece& placed, bool straight);
+    /// A piece in the world; the ground itself of a held segment alone.
+    [[nodiscard]] PieceBody make(const PlacedPiece& placed);
+
+  private:
+    [[nodiscard]] std::unique_ptr<btCompoundShape> make_shape(const MemberPiece& piece);
+    void copy_manners(btRigidBody& body) const;
+    void enter_world(btRigidBody& body) const;
+    static void move(btRigidBody& body, const BodyMotion& motion);
+
+    btRigidBody& user_;
+    const ductile::Member& member_;
+    MemberBox box_;
+    JointFrame<double> whole_in_body_;
+    btDiscreteDynamicsWorld* world_ = nullptr;
+    int group_ = 0, mask_ = 0; ///< of the user's body
+    btVector3 gravity_{0, 0, 0};
+    std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by segment
+    btCollisionShape* straight_;                     ///< the user's
+    std::unique_ptr<btCompoundShape> bent_;          ///< of the user's body, once it is bent
+};
+
+} // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/piece_maker.ipp"
+#endif

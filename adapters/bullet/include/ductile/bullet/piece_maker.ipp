@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of piece_maker.hpp.
+#pragma once
+
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+
+#include <utility>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/piece_maker.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE std::unique_ptr<btCompoundShape> PieceMaker::make_shape(const MemberPiece& piece) {
+    auto shape = std::make_unique<btCompoundShape>();
+    boxes_.resize(std::size_t(member_.segments()));
+    for (int k = piece.run.first; k <= piece.run.last; ++k) {
+        if (member_.segment(k).held || !(box_.half_width > 0)) continue;
+        std::unique_ptr<btBoxShape>& box = boxes_[std::size_t(k)];
+        if (box == nullptr) {
+            box = std::make_unique<btBoxShape>(btVector3(btScalar(box_.half_width),
+                                                         btScalar(box_.half_height),
+                                                         btScalar(member_.segment(k).length / 2)));
+        }
+        shape->addChildShape(to_bullet(piece.segment(k)), box.get());
+    }
+    if (shape->getNumChildShapes() == 0) shape->recalculateLocalAabb();
+    return shape;
+}
+
+DUCTILE_INLINE PieceBody PieceMaker::make(const PlacedPiece& placed) {
+    const MemberPiece& of = *placed.piece;
+    PieceBody piece;
+    piece.run = of.run;
+    if (of.held && of.run.first == of.run.last) {
+        piece.body = &btTypedConstraint::getFixedBody();
+        return piece;
+    }
+    piece.shape = make_shape(of);
+    btRigidBody::btRigidBodyConstructionInfo info(
+        btScalar(of.held ? 0 : of.mass), nullptr, piece.shape.get(),
+        of.held ? btVector3(0, 0, 0) : to_bullet(of.inertia));
+    info.m_startWorldTransform = to_bullet(placed.pose);
+    piece.own = std::make_unique<btRigidBody>(info);
+    piece.body = piece.own.get();
+    copy_manners(*piece.body);
+    if (!of.held) move(*piece.body, placed.motion);
+    enter_world(*piece.body);
+    return piece;
+}
+
+DUCTILE_INLINE void PieceMaker::copy_manners(btRigidBody& body) const {
+    body.setFriction(user_.getFriction());
+    body.setRollingFriction(user_.getRollingFriction());
+    body.setSpinningFriction(user_.getSpinningFriction());
+    body.setRestitution(user_.getRestitution());
+    body.setDamping(user_.getLinearDamping(), user_.getAngularDamping());
+    body.setLinearFactor(user_.getLinearFactor());
+    body.setAngularFactor(user_.getAngularFactor());
+    body.setSleepingThresholds(user_.getLinearSleepingThreshold(),
+                               user_.getAngularSleepingThreshold());
+    body.setFlags(user_.getFlags());
+    body.setUserPointer(user_.getUserPointer());
+    body.setUserIndex(user_.getUserIndex());
+    body.setUserIndex2(user_.getUserIndex2());
+    const int manners = user_.getCollisionFlags() & ~(btCollisionObject::CF_STATIC_OBJECT |
+                                                      btCollisionObject::CF_KINEMATIC_OBJECT);
+    body.setCollisionFlags(body.getCollisionFlags() | manners);
+    if (user_.getActivationState() == DISABLE_DEACTIVATION) {
+        body.setActivationState(DISABLE_DEACTIVATION);
+    }
+}
+
+DUCTILE_INLINE void PieceMaker::enter_world(btRigidBody& body) const {
+    const bool collides = box_.half_width > 0 || &body == &user_;
+    world_->addRigidBody(&body, collides ? group_ : 0, collides ? mask_ : 0);
+    if (!body.isStaticObject()) body.setGravity(gravity_);
+}
+
+DUCTILE_INLINE void PieceMaker::put_whole(const PlacedPiece& placed, bool straight) {
+    const MemberPiece& whole = *placed.piece;
+    if (!straight) {
+        bent_ = make_shape(whole);
+        if (bent_->getNumChildShapes() > 0) user_.setCollisionShape(bent_.get());
+        // the frame of a piece is that of its centre and main axes
+        whole_in_body_ = {};
+        if (!whole.held) user_.setMassProps(btScalar(whole.mass), to_bullet(whole.inertia));
+    }
+    const btTransform pose = to_bullet(frame_around(placed.pose, whole_in_body_));
+    user_.setCenterOfMassTransform(pose);
+    user_.setInterpolationWorldTransform(pose);
+    if (user_.getMotionState() != nullptr) user_.getMotionState()->setWorldTransform(pose);
+    if (!whole.held) {
+        // the moment of momentum is that of the pieces
+        const btVector3 about =
+            to_bullet(times(whole.inertia_in_world(placed.pose.axes), placed.motion.spin));
+        move(user_, {placed.motion.velocity, to_core(user_.getInvInertiaTensorWorld() * about)});
+        user_.clearForces();
+        user_.activate(true);
+    }
+    enter_world(user_);
+}
+
+DUCTILE_INLINE void PieceMaker::take_out() {
+    const btBroadphaseProxy& proxy = *user_.getBroadphaseHandle();
+    group_ = proxy.m_collisionFilterGroup;
+    mask_ = proxy.m_collisionFilterMask;
+    gravity_ = user_.isStaticObject() ? world_->getGravity() : user_.getGravity();
+    world_->removeRigidBody(&user_);
+}
+
+DUCTILE_INLINE void PieceMaker::move(btRigidBody& body, const BodyMotion& motion) {
+    body.setLinearVelocity(to_bullet(motion.velocity));
+    body.setAngularVelocity(to_bullet(motion.spin));
+    body.setInterpolationLinearVelocity(body.getLinearVelocity());
+    body.setInterpolationAngularVelocity(body.getAngularVelocity());
+}
+
+} // namespace ductile::bullet
