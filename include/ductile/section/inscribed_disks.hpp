@@ -22,8 +22,8 @@ namespace ductile {
 
 namespace detail {
 
-/// How far a disk may grow before one obstacle stops it, as c0 + c1 u + c2 u² to be minimised, and
-/// where along u the obstacle may begin or cease to count.
+/// How far a disk may grow before one obstacle stops it, as c0 + c1 t + c2 t² to be minimised,
+/// t = u - centre, and where along u the obstacle may begin or cease to count.
 template <class W>
 struct Stop {
     static constexpr W nowhere = std::numeric_limits<W>::infinity();
@@ -31,9 +31,13 @@ struct Stop {
     W c0 = nowhere;
     W c1 = 0;
     W c2 = 0;
+    W centre = 0;
     std::array<W, 3> ends{nowhere, nowhere, nowhere};
 
-    [[nodiscard]] W operator()(W u) const noexcept { return c0 + u * (c1 + u * c2); }
+    [[nodiscard]] W operator()(W u) const noexcept {
+        return c0 + (u - centre) * (c1 + (u - centre) * c2);
+    }
+    [[nodiscard]] W slope(W u) const noexcept { return c1 + 2 * c2 * (u - centre); }
 };
 
 /// 1 - a·b of unit vectors, also where they are nearly the same.
@@ -136,8 +140,7 @@ class EdgeDisks {
         const W height = dot(edge_.inward, offset);
         const bool own = k == index_ || k == (index_ + 1) % outline_.count();
         if (own || !(height > epsilon)) return {};
-        const W half = 1 / (2 * height);
-        return {.c0 = half * dot(offset, offset), .c1 = -2 * half * dot(edge_.along, offset), .c2 = half};
+        return {.c0 = height / 2, .c2 = 1 / (2 * height), .centre = dot(edge_.along, offset)};
     }
 
     [[nodiscard]] Stop<W> by_edge(std::size_t k) const noexcept {

@@ -75,20 +75,20 @@ void clip_to_piece(const Disks& disks, const Nearest<W, Disks>& nearest, W u, W&
     for (std::size_t k = 0; k < disks.count(); ++k) {
         const Stop<W> other = disks.stop(k);
         if (k == nearest.index || !(other.c0 < Stop<W>::nowhere)) continue;
-        const W d0 = other.c0 - nearest.stop.c0;
-        const W d1 = other.c1 - nearest.stop.c1;
-        const W d2 = other.c2 - nearest.stop.c2;
-        const W discriminant = d1 * d1 - 4 * d0 * d2;
         for (const W end : other.ends) {
             // A line takes over from the vertex it ends at without crossing it.
             const bool inside = end > low && end < high;
-            if (inside && d0 + end * (d1 + end * d2) <= tolerance<W> * std::abs(nearest.stop(end))) {
-                clip(end);
-            }
+            const W stopped = nearest.stop(end);
+            if (inside && other(end) - stopped <= tolerance<W> * std::abs(stopped)) clip(end);
         }
+        // as polynomials in what is beyond u, where thin outlines lose no digits
+        const W d0 = other(u) - nearest.stop(u);
+        const W d1 = other.slope(u) - nearest.stop.slope(u);
+        const W d2 = other.c2 - nearest.stop.c2;
+        const W discriminant = d1 * d1 - 4 * d0 * d2;
         if (!(discriminant > 0)) continue; // they never cross
         const W q = -(d1 + std::copysign(std::sqrt(discriminant), d1)) / 2;
-        for (const W root : {q / d2, d0 / q}) {
+        for (const W root : {u + q / d2, u + d0 / q}) {
             if (root > low && root < high && disks.holds(k, other, root)) clip(root);
         }
     }

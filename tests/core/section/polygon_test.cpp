@@ -116,6 +116,20 @@ TEST_CASE("a polygon has the properties of the named section with its outline", 
     });
 }
 
+TEST_CASE("the plastic torsion of a flat outline keeps its digits", "[section]") {
+    // 261 × 1 mm: parabolas around vertices that are 100 radii away from an edge's end
+    const auto torsion = [](auto width) {
+        using S = decltype(width);
+        return ISection<S>({.width = width,
+                            .height = S(0.001),
+                            .web_thickness = width * S(0.23),
+                            .flange_thickness = S(0.0002)})
+            .plastic_torsion_modulus();
+    };
+    const long double reference = torsion(0.261L);
+    CHECK(double(torsion(0.261) / reference - 1) == Approx(0).margin(round_off));
+}
+
 TEST_CASE("a polygon is the same wherever it lies and in either orientation", "[section]") {
     rc::prop("", [] {
         const auto outline = any_star();
