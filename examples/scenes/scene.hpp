@@ -112,5 +112,6 @@ class Scene {
 [[nodiscard]] std::unique_ptr<Scene> bridge_scene();
 [[nodiscard]] std::unique_ptr<Scene> plate_scene();
 [[nodiscard]] std::unique_ptr<Scene> roll_cage_scene();
+[[nodiscard]] std::unique_ptr<Scene> ramp_scene();
 
 } // namespace ductile::scenes

@@ -56,6 +56,7 @@ int main(int argc, char** argv) try {
     scenes.push_back(bridge_scene());
     scenes.push_back(plate_scene());
     scenes.push_back(roll_cage_scene());
+    scenes.push_back(ramp_scene());
 
     CLI::App app("Scenes to look at, with what must come out");
     RunOptions options;
