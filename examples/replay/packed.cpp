@@ -125,17 +125,6 @@ Json text_of(const Joint& joint, const JointSamples& samples) {
             {"facts", std::move(facts)}};
 }
 
-Json text_of(const Strip& strip) {
-    Json stations = Json::array();
-    for (const Strip::Station& station : strip.stations) {
-        stations.push_back({{"body", station.body}, {"in_body", station.in_body}});
-    }
-    return {{"name", strip.name},
-            {"half_width", strip.half_width},
-            {"half_height", strip.half_height},
-            {"stations", std::move(stations)}};
-}
-
 Json text_of(const Event& event) {
     return {{"time", event.time},
             {"kind", event.kind},
@@ -201,7 +190,7 @@ std::string pack(const Recording& recording) {
     add_columns(columns, recording);
     Json text{{"name", recording.name},   {"about", recording.about},  {"engine", recording.engine},
               {"times", recording.times}, {"bodies", Json::array()},   {"joints", Json::array()},
-              {"strips", Json::array()},  {"energies", Json::array()}, {"events", Json::array()},
+              {"energies", Json::array()}, {"events", Json::array()},
               {"columns", columns.text()}};
     for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
         text["bodies"].push_back(text_of(recording.bodies[i], recording.poses[i]));
@@ -209,7 +198,6 @@ std::string pack(const Recording& recording) {
     for (std::size_t i = 0; i < recording.joints.size(); ++i) {
         text["joints"].push_back(text_of(recording.joints[i], recording.samples[i]));
     }
-    for (const Strip& strip : recording.strips) text["strips"].push_back(text_of(strip));
     for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
     for (const Event& event : recording.events) text["events"].push_back(text_of(event));
     const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);

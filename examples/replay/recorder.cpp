@@ -99,8 +99,6 @@ void Recorder::remove(const JointQueries& joint) {
     }
 }
 
-void Recorder::add_strip(Strip strip) { recording_.strips.push_back(std::move(strip)); }
-
 void Recorder::look(const SteppedWorld& world) {
     for (const JointEvent<double>& event : world.events()) {
         const auto known = by_name_.find(event.name);

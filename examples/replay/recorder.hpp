@@ -49,7 +49,6 @@ class Recorder {
     void remove(const JointQueries& joint);
     /// Number of an engine's body; -1 where it is not known, as the ground is not.
     [[nodiscard]] int number(const void* body) const;
-    void add_strip(Strip strip);
 
     /// To be called after each step: samples where the time for it has come, takes the events.
     void look(const SteppedWorld& world);

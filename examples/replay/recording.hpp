@@ -52,17 +52,6 @@ struct Joint {
     std::vector<Fact> facts;
 };
 
-/// A member that is several bodies: drawn as one, bent.
-struct Strip {
-    struct Station {
-        int body = 0;
-        std::array<double, 3> in_body{}; ///< on the member's axis [m]
-    };
-    std::string name;
-    double half_width = 0, half_height = 0; ///< along x and y of its bodies [m]
-    std::vector<Station> stations;          ///< from end to end, two or more
-};
-
 /// One axis of a joint that stands for it: what flowed most, else what was loaded most.
 struct Curve {
     std::string axis;             ///< as JointAxis names it, or "axis"
@@ -98,7 +87,6 @@ struct Recording {
     std::vector<std::vector<Pose>> poses; ///< by body; one sample where it does not move
     std::vector<Joint> joints;
     std::vector<JointSamples> samples; ///< by joint
-    std::vector<Strip> strips;
     std::vector<std::pair<std::string, std::vector<double>>> energies; ///< named [J]
     std::vector<Event> events;                                         ///< in order of time
     std::vector<std::uint32_t> hashes; ///< of the poses, bit for bit, of each sample

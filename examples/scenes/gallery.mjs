@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// Takes the pictures of the gallery from the replays, in headless Chromium, drawn by software:
+// Takes the pictures of the gallery, and its one replay, from the replays, in headless Chromium, drawn
+// by software:
 //
 //   build/release/bin/scenes --out examples/scenes/out
 //   cd build/release/examples/replay/page        (where playwright-core is installed)
 //   node SOURCE/examples/scenes/gallery.mjs SOURCE/examples/scenes/out SOURCE/examples/scenes/gallery
-import { mkdir, stat } from "node:fs/promises";
+import { copyFile, mkdir, stat } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
@@ -25,6 +26,7 @@ const shots = [
     ["plate", "plate-5-t-dropped-bullet", 1],
     ["hoop", "roll-cage-level-bullet", 0.7],
     ["roll-cage", "roll-cage-roll-over-bullet", 0.5],
+    ["ramp", "ramp-cars-bullet", 0.5],
 ];
 
 await mkdir(to, { recursive: true });
@@ -52,7 +54,7 @@ try {
             for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
             return seen.size;
         }, share);
-        if (colours < 20) throw new Error(`${replay}: nothing is drawn`);
+        if (colours < 4) throw new Error(`${replay}: nothing is drawn`);
         const picture = join(to, `${scene}.jpg`);
         await page.screenshot({ path: picture, type: "jpeg", quality: 70 });
         const { size } = await stat(picture);
@@ -60,6 +62,7 @@ try {
         console.log(`${scene}.jpg ${size} bytes`);
         await page.close();
     }
+    await copyFile(join(from, "bridge-10-percent-80-t-bullet.html"), join(to, "bridge.html"));
 } finally {
     await browser.close();
 }

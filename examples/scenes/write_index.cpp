@@ -42,8 +42,8 @@ std::string escaped(const std::string& text) {
 void write_index(const std::vector<Shown>& all, const std::filesystem::path& folder) {
     std::string page = head;
     for (const Shown& shown : all) {
-        page += fmt::format("<h2>{} <small>in {}</small></h2>\n<p>{}</p>\n<p>", shown.run.scene(),
-                            shown.engine, escaped(shown.about));
+        page += fmt::format("<h2 id=\"{0}-{1}\">{0} <small>in {1}</small></h2>\n<p>{2}</p>\n<p>",
+                            shown.run.scene(), shown.engine, escaped(shown.about));
         for (const std::string& file : shown.run.replays()) {
             page += fmt::format("<a href=\"{}\">{}</a> ", file, file);
         }

@@ -184,6 +184,9 @@ class Replay {
         $("time").textContent = `${this.time.toFixed(4)} s`;
         this.scene.update(this.time, this.colour);
         this.energy.update();
+        const index = this.index();
+        if (index === this.shown) return;
+        this.shown = index;
         this.curve.update();
         this.facts();
     }
@@ -205,15 +208,12 @@ class Replay {
             ["certificate", short(joint.residual[i])],
             ...joint.facts,
         ];
-        $("facts").replaceChildren(
-            ...rows.flatMap(([name, value]) => {
-                const term = document.createElement("dt");
-                const fact = document.createElement("dd");
-                term.textContent = name;
-                fact.textContent = value;
-                return [term, fact];
-            }),
-        );
+        const shown = $("facts");
+        while (shown.children.length > 2 * rows.length) shown.lastChild.remove();
+        rows.flat().forEach((text, k) => {
+            const item = shown.children[k] ?? shown.appendChild(document.createElement(k % 2 ? "dd" : "dt"));
+            if (item.textContent !== String(text)) item.textContent = text;
+        });
     }
 
     async compare(file) {
@@ -258,9 +258,23 @@ class Replay {
         this.legend();
     }
 
+    /** Drawn coarser while it plays where frames take longer than 1/30 s, sharp when it stands. */
+    pace(now) {
+        if (!this.playing) {
+            this.pacing = undefined;
+            return this.scene.setSharpness(1);
+        }
+        this.pacing ??= { since: now, frames: 0 };
+        if (++this.pacing.frames < 8) return;
+        const each = (now - this.pacing.since) / this.pacing.frames;
+        if (each > 34) this.scene.setSharpness(Math.max(0.4, 0.75 * this.scene.sharpness));
+        this.pacing = { since: now, frames: 0 };
+    }
+
     loop() {
         const frame = (now) => {
             requestAnimationFrame(frame);
+            this.pace(now);
             if (this.playing) {
                 const passed = this.last === undefined ? 0 : (now - this.last) / 1000;
                 this.last = now;

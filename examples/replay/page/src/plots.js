@@ -38,6 +38,11 @@ function overlay(plot, name) {
     return made;
 }
 
+/** Without a layout: the mark is a layer of its own. */
+function put(mark, x, y) {
+    mark.style.transform = `translate(${x}px, ${y}px)`;
+}
+
 /** Where each energy ends when all are stacked; what is negative is drawn as nothing. */
 export function stacked(energies) {
     const shown = energies.filter(({ name }) => name !== "supplied" && name !== "unexplained");
@@ -87,7 +92,7 @@ export class EnergyPlot {
         keepWidth(this.plot, target);
     }
     update() {
-        if (this.plot) this.line.style.left = `${this.plot.valToPos(this.time(), "x")}px`;
+        if (this.plot) put(this.line, this.plot.valToPos(this.time(), "x"), 0);
     }
 }
 
@@ -159,7 +164,6 @@ export class CurvePlot {
         if (!this.plot) return;
         const { force, position } = this.recording.joints[this.number];
         const i = this.index();
-        this.dot.style.left = `${this.plot.valToPos(position[i], "x")}px`;
-        this.dot.style.top = `${this.plot.valToPos(force[i], "y")}px`;
+        put(this.dot, this.plot.valToPos(position[i], "x"), this.plot.valToPos(force[i], "y"));
     }
 }

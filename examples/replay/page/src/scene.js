@@ -1,16 +1,64 @@
 // SPDX-License-Identifier: MIT
 //
-// Draws a recording at a time: shapes as instances, members of several bodies as one bent strip,
-// joints as markers that can be clicked.
+// Draws a recording at a time: all shapes as one mesh whose bodies' places are a texture, members of
+// several bodies as one bent bar, joints as points that can be clicked. Three calls, whatever there
+// is; instances would be as few, but where pixels are drawn by software each is a call of its own.
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
+import { chains } from "./chains.js";
 import { brokenColour, colourOf, lostColour, stillColour } from "./colours.js";
 import { broken, placeOf, poseAt, unreliable } from "./recording.js";
 
+// Lit at the corners, not at the pixels: of flat faces in parallel light that is the same.
+const light = `
+varying vec3 shown;
+void light(vec3 place, vec3 normal, vec3 tint) {
+    float sun = max(0.0, dot(normal, normalize(vec3(3.0, -5.0, 8.0))));
+    shown = tint * (mix(0.5, 0.75, 0.5 + 0.5 * normal.z) + 0.4 * sun);
+    gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+}
+`;
+const perRow = 64; // bodies in a row of the texture
+const ofBodies = `
+uniform sampler2D bodies;
+attribute float body;
+${light}
+vec3 turned(vec3 v, vec4 q) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
+void main() {
+    ivec2 at = ivec2(3 * (int(body) % ${perRow}), int(body) / ${perRow});
+    vec4 place = texelFetch(bodies, at, 0); // and whether it is drawn
+    vec4 turn = texelFetch(bodies, at + ivec2(1, 0), 0);
+    light(place.xyz + turned(place.w * position, turn), turned(normal, turn), texelFetch(bodies, at + ivec2(2, 0), 0).xyz);
+}`;
+const ofBars = `
+${light}
+void main() {
+    vec3 n = normalize(normal);
+    light(position, dot(n, cameraPosition - position) < 0.0 ? -n : n, color);
+}`;
+const ofPoints = `
+uniform float size;
+varying vec3 shown;
+void main() {
+    shown = color;
+    gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+    gl_PointSize = max(3.0, size * projectionMatrix[1][1] / gl_Position.w);
+}`;
+const filled = `
+varying vec3 shown;
+void main() { gl_FragColor = vec4(shown, 1.0); }`;
+const round = `
+varying vec3 shown;
+void main() {
+    if (length(gl_PointCoord - 0.5) > 0.5) discard;
+    gl_FragColor = vec4(shown, 0.85);
+}`;
+
 const geometries = {
     box: () => new three.BoxGeometry(2, 2, 2),
-    sphere: () => new three.SphereGeometry(1, 24, 16),
+    sphere: () => new three.SphereGeometry(1, 20, 14),
     cylinder: () => new three.CylinderGeometry(1, 1, 2, 24).rotateX(Math.PI / 2),
     plane: () => new three.BoxGeometry(2, 2, 2),
 };
@@ -22,13 +70,19 @@ function scaleOf({ kind, size }) {
     return size;
 }
 
-/** Points and turns of a strip between its stations: four to a bay. */
-const bays = 4;
+// for a moment
+const [point, at, x, y, z, left, below] = Array.from({ length: 7 }, () => new three.Vector3());
+const [turn, next] = [new three.Quaternion(), new three.Quaternion()];
+/** Round a section: right, top, left, bottom; each side has its own corners. */
+const outline = [[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]];
 
-class Strip {
-    constructor(strip, material) {
-        this.strip = strip;
-        this.count = (strip.stations.length - 1) * bays + 1;
+const bays = 6; // of a bar between two joints
+
+/** A chain of bodies (chains.js) as one bar: through its joints, along the bodies between them. */
+class Bar {
+    constructor(chain, material) {
+        this.chain = chain;
+        this.count = chain.length * bays + 1;
         const faces = [];
         for (let i = 0; i + 1 < this.count; ++i) {
             for (let k = 0; k < 4; ++k) {
@@ -39,68 +93,79 @@ class Strip {
         const last = 8 * this.count;
         faces.push(last, last + 1, last + 2, last, last + 2, last + 3);
         faces.push(last + 4, last + 6, last + 5, last + 4, last + 7, last + 6);
-        const points = last + 8;
         this.geometry = new three.BufferGeometry();
         this.geometry.setIndex(faces);
-        this.geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(3 * points), 3));
-        this.geometry.setAttribute("normal", new three.BufferAttribute(new Float32Array(3 * points), 3));
-        this.geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * points), 3));
+        for (const name of ["position", "normal", "color"]) {
+            this.geometry.setAttribute(name, new three.BufferAttribute(new Float32Array(3 * (last + 8)), 3));
+        }
         this.mesh = new three.Mesh(this.geometry, material);
         this.mesh.frustumCulled = false;
+        this.stations = Array.from({ length: chain.length + 1 }, () => ({ at: new three.Vector3(), along: new three.Vector3() }));
     }
 
-    /** `poses`: of all bodies; `colours`: of all bodies. */
-    update(poses, colours) {
-        const { stations, half_width, half_height } = this.strip;
-        const places = [];
-        const turns = [];
-        for (const { body, in_body } of stations) {
+    /** Where the joints are, and which way the bar goes there: the mean of the two bodies. */
+    place(poses) {
+        const { chain, stations } = this;
+        for (const { at, along } of stations) at.set(0, 0, 0), along.set(0, 0, 0);
+        chain.forEach(({ body, axis, sign, entry, exit }, i) => {
             const pose = poses[body];
-            const turn = new three.Quaternion(pose[4], pose[5], pose[6], pose[3]);
-            const place = new three.Vector3(...in_body).applyQuaternion(turn);
-            places.push(place.add(new three.Vector3(pose[0], pose[1], pose[2])));
-            turns.push(turn);
-        }
-        const line = new three.CatmullRomCurve3(places, false, "centripetal");
-        const position = this.geometry.attributes.position;
-        const normal = this.geometry.attributes.normal;
-        const colour = this.geometry.attributes.color;
-        const x = new three.Vector3();
-        const y = new three.Vector3();
-        const z = new three.Vector3();
-        const at = new three.Vector3();
-        const turn = new three.Quaternion();
-        const put = (index, along, across, n, c) => {
-            position.setXYZ(index, at.x + along * x.x + across * y.x, at.y + along * x.y + across * y.y, at.z + along * x.z + across * y.z);
-            normal.setXYZ(index, n.x, n.y, n.z);
-            colour.setXYZ(index, ...c);
-        };
-        // round the section: right, top, left, bottom; each side has its own corners
-        const round = [[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]];
+            turn.set(pose[4], pose[5], pose[6], pose[3]);
+            for (const [station, end] of [[stations[i], entry], [stations[i + 1], exit]]) {
+                station.at.add(point.fromArray(end).applyQuaternion(turn)).add(point.fromArray(pose));
+                station.along.add(point.set(0, 0, 0).setComponent(axis, sign).applyQuaternion(turn));
+            }
+        });
+        for (let i = 1; i < chain.length; ++i) stations[i].at.multiplyScalar(0.5);
+        for (const { along } of stations) along.normalize();
+    }
+
+    /** `poses`, `colours`: of all bodies. */
+    update(poses, colours) {
+        this.place(poses);
+        const { chain, stations } = this;
+        const { position, normal, color } = this.geometry.attributes;
+        const write = (attribute, index, v) => v.toArray(attribute.array, 3 * index);
         for (let i = 0; i < this.count; ++i) {
-            const bay = Math.min(stations.length - 2, Math.floor(i / bays));
-            const share = (i - bay * bays) / bays;
-            line.getPoint((bay + share) / (stations.length - 1), at);
-            turn.slerpQuaternions(turns[bay], turns[bay + 1], share);
-            x.set(1, 0, 0).applyQuaternion(turn);
-            y.set(0, 1, 0).applyQuaternion(turn);
-            const of = colours[stations[share < 0.5 ? bay : bay + 1].body];
-            const sides = [x, y, x.clone().negate(), y.clone().negate()];
+            const bay = Math.min(chain.length - 1, Math.floor(i / bays));
+            const s = i / bays - bay;
+            const { body, axis, half } = chain[bay];
+            const [from, to] = [stations[bay], stations[bay + 1]];
+            const length = from.at.distanceTo(to.at);
+            // a cubic through both joints
+            const [r, q] = [1 - s, s * s];
+            at.copy(from.at).multiplyScalar((1 + 2 * s) * r * r).addScaledVector(to.at, q * (3 - 2 * s));
+            at.addScaledVector(from.along, length * s * r * r).addScaledVector(to.along, -length * q * r);
+            z.copy(to.at).sub(from.at).multiplyScalar(6 * s * r / length);
+            z.addScaledVector(from.along, r * (1 - 3 * s)).addScaledVector(to.along, s * (3 * s - 2)).normalize();
+            // the section: as the bodies turn about the bar
+            const [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+            const other = chain[Math.min(chain.length - 1, Math.max(0, s < 0.5 ? bay - 1 : bay + 1))].body;
+            const share = Math.abs(s - 0.5);
+            next.set(poses[other][4], poses[other][5], poses[other][6], poses[other][3]);
+            turn.set(poses[body][4], poses[body][5], poses[body][6], poses[body][3]).slerp(next, share);
+            x.set(0, 0, 0).setComponent(u, 1).applyQuaternion(turn);
+            y.crossVectors(z, x).normalize();
+            x.crossVectors(y, z);
+            const sides = [x, y, left.copy(x).negate(), below.copy(y).negate()];
             for (let k = 0; k < 4; ++k) {
                 for (let end = 0; end < 2; ++end) {
-                    const [a, b] = round[k + end];
-                    put(8 * i + 2 * k + end, a * half_width, b * half_height, sides[k], of);
+                    const [a, b] = outline[k + end];
+                    const index = 8 * i + 2 * k + end;
+                    write(position, index, point.copy(at).addScaledVector(x, a * half[u]).addScaledVector(y, b * half[v]));
+                    write(normal, index, sides[k]);
+                    color.array.set(colours[body], 3 * index);
                 }
             }
             const cap = i === 0 ? 0 : i === this.count - 1 ? 4 : -1;
-            if (cap >= 0) {
-                z.crossVectors(x, y).multiplyScalar(cap === 0 ? -1 : 1);
-                for (let k = 0; k < 4; ++k) {
-                    put(8 * this.count + cap + k, round[k][0] * half_width, round[k][1] * half_height, z, of);
-                }
+            for (let k = 0; cap >= 0 && k < 4; ++k) {
+                const [a, b] = outline[k];
+                const index = 8 * this.count + cap + k;
+                write(position, index, point.copy(at).addScaledVector(x, a * half[u]).addScaledVector(y, b * half[v]));
+                write(normal, index, z);
+                color.array.set(colours[body], 3 * index);
             }
         }
-        for (const attribute of [position, normal, colour]) attribute.needsUpdate = true;
+        for (const attribute of [position, normal, color]) attribute.needsUpdate = true;
     }
 }
 
@@ -108,21 +173,19 @@ export class Scene {
     /** @param {HTMLElement} view */
     constructor(view, recording) {
         this.view = view;
+        this.sharpness = 1;
         this.recording = recording;
-        this.renderer = new three.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+        this.renderer = new three.WebGLRenderer({ antialias: false });
         view.prepend(this.renderer.domElement);
         this.scene = new three.Scene();
         this.camera = new three.PerspectiveCamera(45, 1, 0.01, 1e4);
         this.camera.up.set(0, 0, 1);
         this.controls = new OrbitControls(this.camera, this.renderer.domElement);
         this.controls.addEventListener("change", () => (this.stale = true));
-        const sun = new three.DirectionalLight(0xffffff, 2.2);
-        sun.position.set(3, -5, 8);
-        this.scene.add(sun, new three.HemisphereLight(0xffffff, 0x8a8f98, 1.6));
         this.poses = recording.bodies.map(() => new Float64Array(7));
         this.colours = recording.bodies.map(() => stillColour);
+        this.shares = new Float64Array(recording.bodies.length);
         this.largestTravel = Math.max(1e-12, ...recording.joints.map((joint) => joint.plastic.reduce((a, b) => (b > a ? b : a), 0)));
-        this.addStrips();
         this.addShapes();
         this.addMarkers();
         this.dark = matchMedia("(prefers-color-scheme: dark)");
@@ -143,52 +206,72 @@ export class Scene {
     resize() {
         const { clientWidth: width, clientHeight: height } = this.view;
         if (!(width > 0 && height > 0)) return;
-        this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+        this.renderer.setPixelRatio(this.sharpness * Math.min(2, this.sharpness < 1 ? 1 : 2 * devicePixelRatio));
         this.renderer.setSize(width, height);
         this.camera.aspect = width / height;
         this.camera.updateProjectionMatrix();
         this.stale = true;
     }
 
-    addStrips() {
-        const material = new three.MeshLambertMaterial({ vertexColors: true, side: three.DoubleSide });
-        this.strips = this.recording.strips.map((strip) => new Strip(strip, material));
-        this.stripped = new Set(this.recording.strips.flatMap((strip) => strip.stations.map((s) => s.body)));
-        for (const strip of this.strips) this.scene.add(strip.mesh);
+    /** Pixels to a pixel of the page, each way; 1: twice as many as there are, which smooths edges. */
+    setSharpness(share) {
+        if (share === this.sharpness) return;
+        this.sharpness = share;
+        this.resize();
+    }
+
+    /** Bars of what holds together in a sample: made anew where a joint breaks. */
+    setBars(index) {
+        const { joints } = this.recording;
+        const holds = (joint) => !(joints[joint].state[index] & broken);
+        const key = joints.map((_, i) => (holds(i) ? "" : i)).join();
+        if (key === this.holding) return;
+        this.holding = key;
+        for (const { mesh, geometry } of this.bars ?? []) {
+            this.scene.remove(mesh);
+            geometry.dispose();
+        }
+        this.barred ??= new three.ShaderMaterial({ vertexShader: ofBars, fragmentShader: filled, vertexColors: true, side: three.DoubleSide });
+        this.bars = chains(this.recording, holds).map((chain) => new Bar(chain, this.barred));
+        for (const bar of this.bars) this.scene.add(bar.mesh);
     }
 
     addShapes() {
-        const material = new three.MeshLambertMaterial();
-        const kinds = new Map();
-        this.recording.bodies.forEach((body, index) => {
-            if (this.stripped.has(index)) return;
+        const { bodies } = this.recording;
+        this.places = new Float32Array(4 * 3 * perRow * Math.max(1, Math.ceil(bodies.length / perRow)));
+        this.texture = new three.DataTexture(this.places, 3 * perRow, this.places.length / 12 / perRow, three.RGBAFormat, three.FloatType);
+        this.shapes = [];
+        const drawn = [];
+        bodies.forEach((body, index) => {
             for (const shape of body.shapes) {
-                if (!kinds.has(shape.kind)) kinds.set(shape.kind, []);
                 const { pose } = shape;
                 const local = new three.Matrix4().compose(
                     new three.Vector3(pose[0], pose[1], pose[2]),
                     new three.Quaternion(pose[4], pose[5], pose[6], pose[3]),
                     new three.Vector3(...scaleOf(shape)),
                 );
-                kinds.get(shape.kind).push({ body: index, local });
+                const geometry = geometries[shape.kind]().applyMatrix4(local);
+                geometry.deleteAttribute("uv");
+                const count = geometry.attributes.position.count;
+                geometry.setAttribute("body", new three.BufferAttribute(new Float32Array(count).fill(index), 1));
+                drawn.push(geometry);
+                this.shapes.push({ body: index, local });
             }
         });
-        this.instances = [...kinds].map(([kind, items]) => {
-            const mesh = new three.InstancedMesh(geometries[kind](), material, items.length);
-            mesh.instanceColor = new three.InstancedBufferAttribute(new Float32Array(3 * items.length), 3);
-            mesh.frustumCulled = false;
-            this.scene.add(mesh);
-            return { mesh, items };
-        });
+        if (drawn.length === 0) return;
+        const material = new three.ShaderMaterial({ vertexShader: ofBodies, fragmentShader: filled, uniforms: { bodies: { value: this.texture } } });
+        const mesh = new three.Mesh(mergeGeometries(drawn), material);
+        mesh.frustumCulled = false;
+        this.scene.add(mesh);
     }
 
     addMarkers() {
-        const { joints } = this.recording;
-        const geometry = new three.SphereGeometry(1, 12, 8);
-        const material = new three.MeshBasicMaterial({ depthTest: false, transparent: true, opacity: 0.85 });
-        this.markers = new three.InstancedMesh(geometry, material, Math.max(1, joints.length));
-        this.markers.count = joints.length;
-        this.markers.instanceColor = new three.InstancedBufferAttribute(new Float32Array(3 * Math.max(1, joints.length)), 3);
+        const count = this.recording.joints.length;
+        const geometry = new three.BufferGeometry();
+        geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(3 * count).fill(NaN), 3));
+        geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(3 * count), 3));
+        const material = new three.ShaderMaterial({ vertexShader: ofPoints, fragmentShader: round, uniforms: { size: { value: 1 } }, vertexColors: true, depthTest: false, transparent: true });
+        this.markers = new three.Points(geometry, material);
         this.markers.renderOrder = 1;
         this.markers.frustumCulled = false;
         this.scene.add(this.markers);
@@ -209,7 +292,8 @@ export class Scene {
         const { recording, poses } = this;
         const place = placeOf(recording.times, time);
         recording.bodies.forEach((body, i) => poseAt(body, place, poses[i]));
-        const shares = recording.bodies.map(() => -1);
+        const { shares } = this;
+        shares.fill(0);
         for (const joint of recording.joints) {
             if (joint.state[place.index] & broken) continue;
             const share = this.shareOf(joint, place.index, by);
@@ -217,39 +301,35 @@ export class Scene {
                 if (body >= 0) shares[body] = Math.max(shares[body], share);
             }
         }
-        this.colours = shares.map((share, i) => {
-            if (!recording.bodies[i].moves) return stillColour;
-            return colourOf(Math.max(0, share));
-        });
-        const body = new three.Matrix4();
-        const whole = new three.Matrix4();
-        const point = new three.Vector3();
-        const origin = new three.Vector3();
-        const turn = new three.Quaternion();
-        const one = new three.Vector3(1, 1, 1);
-        const matrixOf = (pose) => body.compose(origin.set(pose[0], pose[1], pose[2]), turn.set(pose[4], pose[5], pose[6], pose[3]), one);
-        for (const { mesh, items } of this.instances) {
-            items.forEach((item, i) => {
-                whole.multiplyMatrices(matrixOf(poses[item.body]), item.local);
-                mesh.setMatrixAt(i, whole);
-                mesh.instanceColor.setXYZ(i, ...this.colours[item.body]);
-            });
-            mesh.instanceMatrix.needsUpdate = true;
-            mesh.instanceColor.needsUpdate = true;
+        recording.bodies.forEach(({ moves }, i) => (this.colours[i] = moves ? colourOf(shares[i]) : stillColour));
+        const { places, colours } = this;
+        for (let i = 0; i < poses.length; ++i) {
+            const [pose, colour, at] = [poses[i], colours[i], 12 * i];
+            for (let k = 0; k < 3; ++k) {
+                places[at + k] = pose[k];
+                places[at + 4 + k] = pose[4 + k];
+                places[at + 8 + k] = colour[k];
+            }
+            places[at + 3] = 1;
+            places[at + 7] = pose[3];
         }
-        for (const strip of this.strips) strip.update(poses, this.colours);
-        const radius = 0.008 * (this.size ?? 1);
+        this.setBars(place.index);
+        for (const bar of this.bars) {
+            bar.update(poses, colours);
+            for (const { body } of bar.chain) places[12 * body + 3] = 0;
+        }
+        this.texture.needsUpdate = true;
+        const { position, color } = this.markers.geometry.attributes;
         recording.joints.forEach((joint, i) => {
             const anchor = joint.a >= 0 ? joint.a : joint.b;
             if (anchor < 0) return;
-            point.set(...joint.in_a).applyMatrix4(matrixOf(poses[anchor]));
-            whole.makeScale(radius, radius, radius).setPosition(point);
-            this.markers.setMatrixAt(i, whole);
-            this.markers.instanceColor.setXYZ(i, ...this.colourOfJoint(joint, place.index, by));
+            const pose = poses[anchor];
+            point.set(...joint.in_a).applyQuaternion(turn.set(pose[4], pose[5], pose[6], pose[3]));
+            position.setXYZ(i, point.x + pose[0], point.y + pose[1], point.z + pose[2]);
+            color.array.set(this.colourOfJoint(joint, place.index, by), 3 * i);
         });
-        this.markers.instanceMatrix.needsUpdate = true;
-        this.markers.instanceColor.needsUpdate = true;
-        this.markers.boundingSphere = null;
+        position.needsUpdate = true;
+        color.needsUpdate = true;
         this.follow();
         this.stale = true;
     }
@@ -277,20 +357,15 @@ export class Scene {
         const size = new three.Vector3();
         const { bodies } = this.recording;
         const moving = bodies.some((body) => body.moves);
-        for (const { mesh, items } of this.instances) {
-            items.forEach((item, i) => {
-                if (moving && !bodies[item.body].moves) return;
-                const matrix = new three.Matrix4();
-                mesh.getMatrixAt(i, matrix);
-                for (let k = 0; k < 8; ++k) {
-                    corner.set(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-                    bounds.expandByPoint(corner.applyMatrix4(matrix));
-                }
-            });
-        }
-        for (const strip of this.strips) {
-            strip.geometry.computeBoundingBox();
-            bounds.union(strip.geometry.boundingBox);
+        const matrix = new three.Matrix4();
+        for (const { body, local } of this.shapes) {
+            if (moving && !bodies[body].moves) continue;
+            const pose = this.poses[body];
+            matrix.compose(point.fromArray(pose), turn.set(pose[4], pose[5], pose[6], pose[3]), size.set(1, 1, 1)).multiply(local);
+            for (let k = 0; k < 8; ++k) {
+                corner.set(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+                bounds.expandByPoint(corner.applyMatrix4(matrix));
+            }
         }
         if (bounds.isEmpty() || !Number.isFinite(bounds.getSize(size).length())) bounds.set(new three.Vector3(-1, -1, -1), new three.Vector3(1, 1, 1));
         this.size = Math.max(1e-3, bounds.getSize(size).length());
@@ -315,10 +390,8 @@ export class Scene {
         let best = -1;
         let nearest = 0.03; // of the view
         const place = new three.Vector3();
-        const matrix = new three.Matrix4();
         for (let i = 0; i < this.recording.joints.length; ++i) {
-            this.markers.getMatrixAt(i, matrix);
-            place.setFromMatrixPosition(matrix).project(this.camera);
+            place.fromBufferAttribute(this.markers.geometry.attributes.position, i).project(this.camera);
             const distance = Math.hypot((place.x - at.x) * this.camera.aspect, place.y - at.y);
             if (distance < nearest) [nearest, best] = [distance, i];
         }
@@ -328,6 +401,8 @@ export class Scene {
     render() {
         if (!this.stale) return false;
         this.stale = false;
+        const height = this.renderer.domElement.height;
+        this.markers.material.uniforms.size.value = 0.008 * (this.size ?? 1) * height;
         this.renderer.render(this.scene, this.camera);
         return true;
     }

@@ -9,6 +9,8 @@ import test, { after, before } from "node:test";
 
 import { chromium } from "playwright-core";
 
+import { pageOf } from "./made.mjs";
+
 const folder = resolve(process.env.REPLAY_DIR ?? ".");
 const file = resolve(folder, "replay_rotor.html");
 const expected = JSON.parse(await readFile(resolve(folder, "replay_rotor.json"), "utf8"));
@@ -56,7 +58,7 @@ const pixels = (page) =>
 test("something is drawn, it changes with time, without errors or a network", async () => {
     const page = await open();
     const start = await pixels(page);
-    assert.ok(start.colours > 20, `${start.colours} colours`);
+    assert.ok(start.colours > 4, `${start.colours} colours`); // background, floor, sides, joint
     await page.evaluate(() => replay.setTime(0.4));
     const later = await pixels(page);
     assert.notEqual(later.sum, start.sum);
@@ -66,8 +68,8 @@ test("something is drawn, it changes with time, without errors or a network", as
 
 test("scrubbing moves both plots' cursors and the numbers are the recording's", async () => {
     const page = await open();
-    const line = () => page.$eval("#energy .now", (mark) => parseFloat(mark.style.left));
-    const dot = () => page.$eval("#curve .dot", (mark) => parseFloat(mark.style.left));
+    const line = () => page.$eval("#energy .now", (mark) => new DOMMatrix(mark.style.transform).m41);
+    const dot = () => page.$eval("#curve .dot", (mark) => new DOMMatrix(mark.style.transform).m41);
     await page.evaluate(() => replay.setTime(replay.recording.times[0]));
     const before = [await line(), await dot()];
     await page.locator("#scrub").evaluate((scrub) => {
@@ -98,7 +100,7 @@ test("a click on the energies sets the time", async () => {
 
 test("a broken joint has its colour, and an event leads to its time", async () => {
     const page = await open();
-    const colour = () => page.evaluate(() => Array.from(replay.scene.markers.instanceColor.array.slice(0, 3)));
+    const colour = () => page.evaluate(() => Array.from(replay.scene.markers.geometry.attributes.color.array.slice(0, 3)));
     await page.evaluate(() => replay.setTime(replay.recording.times[1]));
     const [red, green] = await colour();
     assert.ok(red > 0.8 && green < 0.3, "it flows: red");
@@ -115,6 +117,7 @@ test("keys play, step and go to events; the address keeps the state", async () =
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.evaluate(() => replay.time), expected.times[1]);
     await page.keyboard.press("n");
+    await page.evaluate(() => replay.setSpeed(1 / 30)); // so that it does not end meanwhile
     await page.keyboard.press(" ");
     await page.waitForFunction(() => replay.drawn > 5 && replay.time > replay.recording.times[4]);
     await page.keyboard.press(" ");
@@ -133,6 +136,42 @@ test("it is readable on a phone and in the dark", async () => {
     const width = await page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(width <= 390, `${width} px wide`);
     assert.match(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), /rgb\(18, 22, 28\)/);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+});
+
+test("two boxes that a joint bends are drawn as one bar, and as boxes once it broke", async () => {
+    const template = await readFile(process.env.REPLAY_PAGE, "utf8");
+    const bent = (t) => [0.5 + 0.5 * Math.cos(t), 0, -0.5 * Math.sin(t), Math.cos(t / 2), 0, Math.sin(t / 2), 0];
+    const made = {
+        name: "bent", times: [0, 0.5, 1, 1.01],
+        bodies: [{ name: "left", half: [0.49, 0.02, 0.02], pose: () => [0, 0, 0, 1, 0, 0, 0] }, { name: "right", half: [0.49, 0.02, 0.02], pose: bent }],
+        joints: [{ name: "joint", a: 1, b: 0, in_a: [-0.5, 0, 0], sample: (t) => ({ state: t > 1 ? 2 : 0 }) }],
+    };
+    const bentPage = resolve(folder, "replay_bent.html");
+    await writeFile(bentPage, pageOf(template, made));
+    const page = await open(bentPage);
+    const middle = await page.evaluate(() => {
+        replay.setTime(1);
+        const [bar] = replay.scene.bars;
+        const line = []; // of the middle of each section
+        for (let i = 0; i < bar.count; ++i) {
+            const sum = [0, 0, 0];
+            for (let k = 0; k < 8; ++k) for (let c = 0; c < 3; ++c) sum[c] += bar.geometry.attributes.position.array[3 * (8 * i + k) + c] / 8;
+            line.push(sum);
+        }
+        return { line, drawn: [replay.scene.places[3], replay.scene.places[15]] };
+    });
+    const near = (a, b) => assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) < 1e-3, `${a} for ${b}`);
+    near(middle.line[0], [-0.49, 0, 0]);
+    near(middle.line[6], [0.5, 0, 0]);
+    near(middle.line[12], [0.5 + 0.99 * Math.cos(1), 0, -0.99 * Math.sin(1)]);
+    assert.deepEqual(middle.drawn, [0, 0]);
+    const after = await page.evaluate(() => {
+        replay.setTime(1.01);
+        return [replay.scene.bars.length, replay.scene.places[3], replay.scene.places[15]];
+    });
+    assert.deepEqual(after, [0, 1, 1]);
     assert.deepEqual(page.faults, []);
     await page.close();
 });

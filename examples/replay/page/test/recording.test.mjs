@@ -8,6 +8,8 @@ import test from "node:test";
 
 import validator from "gltf-validator";
 
+import { pack } from "./made.mjs";
+import { chains } from "../src/chains.js";
 import { decode, firstDifference, ofPage, placeOf, poseAt, RecordingError } from "../src/recording.js";
 
 const folder = process.env.REPLAY_DIR ?? ".";
@@ -53,6 +55,32 @@ test("recordings are compared by their hashes", async () => {
     assert.equal(firstDifference(recording, other), -1);
     other.hashes[7] ^= 1;
     assert.equal(firstDifference(recording, other), 7);
+});
+
+/** Boxes of 1 m along x, 2 cm apart, with what is named otherwise. */
+const row = (count, other = {}) => ({
+    name: "row", times: [0, 1],
+    bodies: Array.from({ length: count }, (_, i) => ({ name: `${i}`, half: [0.49, 0.05, 0.04], pose: () => [i, 0, 0, 1, 0, 0, 0], ...other.bodies?.[i] })),
+    joints: Array.from({ length: count - 1 }, (_, i) => ({ name: `${i}`, a: i + 1, b: i, in_a: [-0.5, 0, 0], sample: () => ({}), ...other.joints?.[i] })),
+});
+const bodiesOf = (found) => found.map((chain) => chain.map(({ body }) => body));
+
+test("boxes in a row are one bar, from joint to joint, cut where a joint does not hold", async () => {
+    const made = await decode(pack(row(4)));
+    const [chain] = chains(made);
+    assert.deepEqual(bodiesOf([chain]), [[0, 1, 2, 3]]);
+    assert.deepEqual(chain[1].entry, [-0.5, 0, 0]);
+    assert.deepEqual(chain[1].exit, [0.5, 0, 0]);
+    assert.deepEqual(chain[3].exit, [0.49, 0, 0]);
+    assert.deepEqual(bodiesOf(chains(made, (joint) => joint !== 1)), [[0, 1], [2, 3]]);
+});
+
+test("another section, a bend or a joint aside is no bar", async () => {
+    const bodies = { 1: { half: [0.49, 0.05, 0.05] } };
+    const turned = { 1: { pose: () => [1, 0, 0, Math.cos(0.1), 0, 0, Math.sin(0.1)] } };
+    for (const other of [{ bodies }, { bodies: turned }, { joints: { 0: { in_a: [0, 0.05, 0] } } }]) {
+        assert.deepEqual(chains(await decode(pack(row(2, other)))), []);
+    }
 });
 
 test("the glb is valid glTF", async () => {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+//
+// Members that are several bodies: boxes of one section that joints hold together end to end, in one
+// line at the start. They are drawn as one bent bar, not as boxes with gaps.
+import { poseAt } from "./recording.js";
+
+const start = { index: 0, share: 0 };
+
+/** v turned by the pose's quaternion, or back. */
+function turned(pose, v, back = 1) {
+    const [w, x, y, z] = [pose[3], back * pose[4], back * pose[5], back * pose[6]];
+    const t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
+    return [v[0] + w * t[0] + y * t[2] - z * t[1], v[1] + w * t[1] + z * t[0] - x * t[2], v[2] + w * t[2] + x * t[1] - y * t[0]];
+}
+
+/** Half lengths of a body that is one box about its centre; undefined of another. */
+function boxOf({ shapes }) {
+    if (shapes.length !== 1 || shapes[0].kind !== "box") return undefined;
+    const { pose, size } = shapes[0];
+    const off = Math.hypot(...pose.slice(0, 3)) + Math.hypot(...pose.slice(4));
+    return off < 1e-9 ? size : undefined;
+}
+
+/** The end at which a point lies: the axis of the body and its sign; the longest of several. */
+function endAt(half, point) {
+    let found;
+    for (let k = 0; k < 3; ++k) {
+        const others = [0, 1, 2].filter((each) => each !== k);
+        const gap = Math.abs(point[k]) - half[k];
+        const section = Math.max(...others.map((each) => half[each]));
+        if (Math.abs(gap) > Math.max(0.1 * half[k], 0.5 * section)) continue;
+        if (others.some((each) => Math.abs(point[each]) > 1.01 * half[each] + 1e-9)) continue;
+        if (!found || half[k] > half[found.axis]) found = { axis: k, sign: Math.sign(point[k]) };
+    }
+    return found;
+}
+
+/**
+ * @param holds  whether a joint, by its number, holds
+ * @returns chains of [{ body, axis, sign, half, entry, exit }]: bodies from end to end, `sign` that of
+ * the axis along the chain, `entry` and `exit` on the body's axis
+ */
+export function chains({ bodies, joints }, holds = () => true) {
+    const halves = bodies.map(boxOf);
+    const poses = bodies.map((body) => poseAt(body, start, new Float64Array(7)));
+    const links = bodies.map(() => []); // of each body: { axis, sign, to, joint, at }
+    joints.forEach((joint, number) => {
+        const { a, b } = joint;
+        if (!holds(number) || a < 0 || b < 0 || !halves[a] || !halves[b]) return;
+        const at = turned(poses[a], joint.in_a).map((v, k) => v + poses[a][k]);
+        const inB = turned(poses[b], at.map((v, k) => v - poses[b][k]), -1);
+        const [endA, endB] = [endAt(halves[a], joint.in_a), endAt(halves[b], inB)];
+        if (!endA || !endB || endA.axis !== endB.axis || endA.sign === endB.sign) return;
+        // one section, and axes that agree
+        for (let k = 0; k < 3; ++k) {
+            const axis = [0, 1, 2].map((each) => (each === k ? 1 : 0));
+            const [u, v] = [turned(poses[a], axis), turned(poses[b], axis)];
+            if (u[0] * v[0] + u[1] * v[1] + u[2] * v[2] < 0.999) return;
+            if (k !== endA.axis && Math.abs(halves[a][k] - halves[b][k]) > 1e-6 * halves[a][k]) return;
+        }
+        links[a].push({ ...endA, to: b, joint: number, at: joint.in_a });
+        links[b].push({ ...endB, to: a, joint: number, at: inB });
+    });
+    // a body that is joined along two axes is part of a plate; of two at one end none is the next
+    const usable = links.map((each) => {
+        const axes = new Set(each.map(({ axis }) => axis));
+        const ends = new Set(each.map(({ sign }) => sign));
+        return axes.size === 1 && ends.size === each.length ? each : [];
+    });
+    const seen = new Set();
+    const found = [];
+    const walk = (first) => {
+        const chain = [];
+        let from = -1;
+        for (let body = first; body >= 0 && !seen.has(body); ) {
+            seen.add(body);
+            const entry = usable[body].find(({ to }) => to === from);
+            const next = usable[body].find((link) => link !== entry && usable[link.to].some(({ joint }) => joint === link.joint));
+            const { axis } = entry ?? next;
+            const sign = next ? next.sign : -entry.sign;
+            const end = (link, side) => [0, 1, 2].map((k) => (k === axis ? link?.at[k] ?? side * halves[body][k] : 0));
+            chain.push({ body, axis, sign, half: halves[body], entry: end(entry, -sign), exit: end(next, sign) });
+            from = body;
+            body = next ? next.to : -1;
+        }
+        if (chain.length > 1) found.push(chain);
+    };
+    const partners = (body) => usable[body].filter(({ to, joint }) => usable[to].some((link) => link.joint === joint)).length;
+    bodies.forEach((_, body) => partners(body) === 1 && !seen.has(body) && walk(body));
+    return found;
+}
