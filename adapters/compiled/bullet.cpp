@@ -21,6 +21,7 @@
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>
 #include <ductile/bullet/structure.ipp>
+#include <ductile/bullet/structure_in_time.ipp>
 #include <ductile/bullet/touching_islands.ipp>
 #include <ductile/bullet/world.ipp>
 #include <ductile/bullet/world_parts.ipp>

@@ -16,6 +16,7 @@
 #include <ductile/solve/one_pair.ipp>
 #include <ductile/structure/built_structure.ipp>
 #include <ductile/structure/joint_stations.ipp>
+#include <ductile/structure/structure_course.ipp>
 #include <ductile/structure/structure_model.ipp>
 #include <ductile/structure/structure_plan.ipp>
 #include <ductile/world/energy_meter.hpp>

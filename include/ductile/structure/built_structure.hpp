@@ -94,7 +94,17 @@ class BuiltStructure {
 
     /// Place and axes of a body of the plan or of the user's (of the plan's kinds but ground).
     [[nodiscard]] virtual JointFrame<double> frame_of(const PlanSeat& seat) const = 0;
+    /// Of a joint that the engine has now.
     [[nodiscard]] virtual const PairQueries& queries(std::size_t joint) const = 0;
+    [[nodiscard]] virtual double utilisation_of(std::size_t joint) const {
+        return queries(joint).utilisation();
+    }
+    [[nodiscard]] virtual double absorbed_by(std::size_t joint) const {
+        return queries(joint).absorbed_energy();
+    }
+    [[nodiscard]] virtual double stored_by(std::size_t joint) const {
+        return queries(joint).stored_energy();
+    }
     /// Adds a force at a place to a body, which is woken.
     virtual void push(const PlanSeat& seat, const Vector3<double>& force,
                       const Vector3<double>& at) = 0;

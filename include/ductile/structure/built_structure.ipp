@@ -37,7 +37,7 @@ DUCTILE_INLINE void BuiltStructure::over_joints(
 
 DUCTILE_INLINE double BuiltStructure::utilisation() const {
     double most = 0;
-    over_joints([&](std::size_t i) { most = std::max(most, queries(i).utilisation()); });
+    over_joints([&](std::size_t i) { most = std::max(most, utilisation_of(i)); });
     return most;
 }
 
@@ -45,7 +45,7 @@ DUCTILE_INLINE std::string BuiltStructure::most_used() const {
     double most = -1;
     std::string name;
     over_joints([&](std::size_t i) {
-        const double used = queries(i).utilisation();
+        const double used = utilisation_of(i);
         if (!(used > most)) return;
         most = used;
         name = plan_.joints[i].name;
@@ -55,13 +55,13 @@ DUCTILE_INLINE std::string BuiltStructure::most_used() const {
 
 DUCTILE_INLINE double BuiltStructure::absorbed_energy() const {
     double all = 0;
-    over_joints([&](std::size_t i) { all += queries(i).absorbed_energy(); });
+    over_joints([&](std::size_t i) { all += absorbed_by(i); });
     return all;
 }
 
 DUCTILE_INLINE double BuiltStructure::stored_energy() const {
     double all = 0;
-    over_joints([&](std::size_t i) { all += queries(i).stored_energy(); });
+    over_joints([&](std::size_t i) { all += stored_by(i); });
     return all;
 }
 

@@ -69,6 +69,12 @@ class Supervisor {
 
     // ---- joints
 
+    /// One of which nothing can become, until it is said otherwise, is not asked.
+    void set_idle(const void* joint, bool idle) {
+        const auto found = find(joint);
+        if (found != joints_.end()) found->idle = idle;
+    }
+
     /// Number of the joint in the watch. An empty `name`: "joint 3", with its number.
     /// @throws std::invalid_argument where it is here already.
     std::size_t add(const void* joint, std::string name, Ask ask) {
@@ -138,7 +144,7 @@ class Supervisor {
         const std::size_t here = joints_.size(); // a listener may add more
         for (std::size_t i = 0; i < here; ++i) {
             const void* joint = joints_[i].joint;
-            if (joint == nullptr) continue;
+            if (joint == nullptr || joints_[i].idle) continue;
             const Report report = joints_[i].ask();
             if (report.outcome == Outcome::unreliable) {
                 reliable_ = false;
@@ -198,6 +204,7 @@ class Supervisor {
         const void* joint; ///< null: removed while all were asked
         std::size_t number;
         Ask ask;
+        bool idle = false;
     };
 
     /// A listener may throw.

@@ -80,7 +80,6 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     ClosingContacts found;
     find_islands(world);
     if (joined_.empty() && members_.empty()) return found;
-    members_.number_bodies();
     list_pairs(world, btScalar(h), std::min(touching, apart));
     for (const Pair& pair : pairs_) {
         detail::ClosestPoints points(found, touching, apart, pair.reach);

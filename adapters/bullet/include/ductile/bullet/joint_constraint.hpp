@@ -45,6 +45,12 @@ enum class Feedback {
     all_rows     ///< of all six, by joint feedback: the user's where there is one, else its own
 };
 
+/// Whether the rigid axes of the bodies have to meet where these are.
+enum class Meeting {
+    required,   ///< to within what a sloppy assembly leaves
+    as_they_are ///< of a joint that is made anew for what has moved: the rows pull them together
+};
+
 class JointConstraint : public PlasticConstraint, public LinkQueries {
   public:
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }
@@ -82,7 +88,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
 
   protected:
     /// Where the bodies are now the joint is at rest.
-    JointConstraint(AnyLink<double>& link, btRigidBody& a, btRigidBody& b, Feedback feedback);
+    JointConstraint(AnyLink<double>& link, btRigidBody& a, btRigidBody& b, Feedback feedback,
+                    Meeting meeting);
     DUCTILE_INLINE ~JointConstraint() override;
 
     DUCTILE_INLINE void settle() const override;
@@ -155,10 +162,10 @@ class JointConstraintOf : public LinkJoint<Joint, JointConstraint> {
     /// static.
     JointConstraintOf(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                       const btTransform& frame_in_b, Joint joint, const typename Base::Axes& axes,
-                      Feedback feedback)
+                      Feedback feedback, Meeting meeting = Meeting::required)
         : Base(Link<Joint>{std::move(joint), axes, checked("frame_in_a", frame_in_a),
                            checked("frame_in_b", frame_in_b)},
-               a, b, feedback) {}
+               a, b, feedback, meeting) {}
 
   private:
     static JointFrame<double> checked(const char* name, const btTransform& frame) {

@@ -17,13 +17,14 @@ struct JointConstraint::Reading {
 };
 
 DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBody& a,
-                                                btRigidBody& b, Feedback feedback)
+                                                btRigidBody& b, Feedback feedback,
+                                                Meeting meeting)
     : PlasticConstraint(a, b),
       LinkQueries(link),
       feedback_(feedback),
       order_(rigid_rotations_first(link.axes())) {
     link_.start(body_motion(m_rbA), body_motion(m_rbB));
-    require_meeting("JointConstraint", link_);
+    if (meeting == Meeting::required) require_meeting("JointConstraint", link_);
 }
 
 DUCTILE_INLINE JointConstraint::~JointConstraint() = default;

@@ -132,6 +132,7 @@ class Member {
     JointFrame<double> held_; ///< where a held segment is
     btDiscreteDynamicsWorld* world_ = nullptr;
     std::function<void()> ends_;    ///< tells the World that it was added to
+    std::vector<Member*>* pushed_ = nullptr; ///< that World's, of members with forces
     std::vector<PieceBody> pieces_; ///< by piece
     std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;

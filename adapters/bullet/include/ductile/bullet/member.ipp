@@ -166,6 +166,7 @@ DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
     const int segment = description().segment_at(place);
     const double middle = (segment > 0 ? description().place(segment - 1) : 0) +
                           description().segment(segment).length / 2;
+    if (forces_.empty() && pushed_ != nullptr) pushed_->push_back(this);
     forces_.push_back({to_core(force), segment, {0, 0, place - middle}});
     body_of(segment).activate();
 }
@@ -204,6 +205,8 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
 /// Bodies of pieces stay, so that what it says stays.
 DUCTILE_INLINE void Member::leave() {
     if (world_ == nullptr) return;
+    if (pushed_ != nullptr) std::erase(*pushed_, this);
+    pushed_ = nullptr;
     ends_ = nullptr;
     for (Attachment& attachment : attachments_) drop_attachment(attachment);
     note_sections();
@@ -246,6 +249,7 @@ DUCTILE_INLINE void Member::note_sections() {
     for (const OpenSection& open : joints_) {
         SectionState& section = course_.section(open.section);
         section.joint = open.hinge->joint().state();
+        if (!open.hinge->is_awake_member()) section.joint.flowing = false; // not any more
         section.bend = open.hinge->rotation();
     }
 }
@@ -336,7 +340,7 @@ DUCTILE_INLINE void Member::make_joints(const ForceShare& share) {
         open.hinge = std::make_unique<Hinge>(
             *pieces_[i + 1].body, *pieces_[i].body,
             detail::hinge_frame(upper.section(description(), section + 1, false)), frame,
-            description().section(section));
+            description().section(section), Meeting::as_they_are);
         Hinge& hinge = *open.hinge;
         Hinge::State state = hinge.state();
         const double bend = state.joint.plastic_offset;

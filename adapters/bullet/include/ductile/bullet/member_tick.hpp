@@ -12,45 +12,49 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/divisible.hpp"
 #include "ductile/bullet/member.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
-/// Velocities before the tick.
-struct BodyBefore {
-    btVector3 velocity, spin;
-};
-
-class MemberTick {
+class MemberTick final : public Divisible {
   public:
-    explicit MemberTick(Member& member) : member_(&member) {}
+    explicit MemberTick(Member& member);
 
-    [[nodiscard]] Member& member() const noexcept { return *member_; }
-    /// By piece.
-    [[nodiscard]] const std::vector<PieceStep>& steps() const noexcept { return steps_; }
-    [[nodiscard]] const std::vector<MemberLoad>& loads() const noexcept { return loads_; }
-    [[nodiscard]] const MemberStrike& strike() const noexcept { return strike_; }
-    [[nodiscard]] bool touched() const noexcept { return !touches_.empty(); }
+    [[nodiscard]] DUCTILE_INLINE std::span<const PieceBody> pieces() const override;
+    [[nodiscard]] DUCTILE_INLINE bool idle() const override;
+    [[nodiscard]] DUCTILE_INLINE bool whole() const override;
+    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
+                                                    int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
+    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
+    DUCTILE_INLINE void require_possible() const override;
+    DUCTILE_INLINE void leave() override;
 
-    /// The pieces are where the tick solves them.
-    void begin();
-    /// Contacts with impulses that add up to `sum` [N s] acted on it, as body A or B of these.
-    void touch(const btPersistentManifold& manifold, bool of_a, double sum) {
+    DUCTILE_INLINE void apply_forces() override;
+    DUCTILE_INLINE void drop_forces() override;
+    DUCTILE_INLINE void begin() override;
+    void touch(const btPersistentManifold& manifold, bool of_a, double sum) override {
         touches_.push_back({&manifold, of_a});
         sum_ += sum;
     }
-    /// Contacts are known: adds up the rest.
-    void sum_up(double dt) {
+    void sum_up(double dt) override {
         read_constraints(dt, false);
         read_forces(dt, false);
     }
-    /// Whether what acted on it could load a section beyond its strength. `before`: by place in the
-    /// world.
-    [[nodiscard]] bool may_be_beyond(double dt, std::span<const BodyBefore> before,
-                                     const btVector3& gravity) const;
-    /// Lists all.
-    void read(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
+    [[nodiscard]] bool touched() const override { return !touches_.empty(); }
+    [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
+                                                    const btVector3& gravity) const override;
+    DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
+                             const btVector3& gravity) override;
+    DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
+    DUCTILE_INLINE void begin_blow() override;
+    DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
+    DUCTILE_INLINE void open(std::span<const int> sections, const ForceShare& share,
+                             std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE bool close_held(const ForceShare& share,
+                                   std::vector<DivisionChange>& told) override;
 
   private:
     struct Touch {
@@ -63,17 +67,23 @@ class MemberTick {
     /// Sums what acted, and lists it where `lists`.
     void read_constraints(double dt, bool lists);
     void read_forces(double dt, bool lists);
+    /// The largest moment that the contacts of a whole straight member can have given a section,
+    /// with what its own motion takes [N m s].
+    [[nodiscard]] double largest_moment(double dt, std::span<const BodyBefore> before,
+                                        const btVector3& gravity) const;
+    [[nodiscard]] bool is_plain() const;
     void finish_steps(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
     [[nodiscard]] static int segment_at(const Member& member, std::size_t piece,
                                         const JointFrame<double>& pose,
                                         const Vector3<double>& point);
 
-    Member* member_;
+    Member& member_;
     std::vector<PieceStep> steps_;
     std::vector<Touch> touches_;
     std::vector<MemberLoad> loads_;
     MemberStrike strike_;
     double sum_ = 0; ///< of impulses [N s]
+    double own_about_x_ = 0, own_inertia_ = 0; ///< of its segments, each about its middle [kg m²]
 };
 
 } // namespace ductile::bullet

@@ -8,45 +8,185 @@
 #include <limits>
 #include <utility>
 
+#include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/member_tick.hpp"
 
 namespace ductile::bullet {
 
+DUCTILE_INLINE std::span<const PieceBody> MemberTick::pieces() const { return member_.pieces_; }
+DUCTILE_INLINE bool MemberTick::whole() const { return member_.whole(); }
+DUCTILE_INLINE bool MemberTick::idle() const {
+    return member_.whole() && member_.course_.member().clamped() && member_.attachments_.empty();
+}
+DUCTILE_INLINE void MemberTick::require_possible() const { member_.require_possible(); }
+DUCTILE_INLINE void MemberTick::leave() { member_.leave(); }
+DUCTILE_INLINE double MemberTick::closed_work() const { return member_.course_.closed_work(); }
+DUCTILE_INLINE double MemberTick::unmissed_work() const { return member_.course_.unmissed_work(); }
+
+DUCTILE_INLINE const void* MemberTick::key_of(const PlasticConstraint& joint, int& section) const {
+    for (const Member::OpenSection& open : member_.joints_) {
+        if (open.hinge.get() != &joint) continue;
+        section = open.section;
+        return &member_;
+    }
+    return nullptr;
+}
+
+DUCTILE_INLINE void MemberTick::apply_forces() {
+    for (const Member::Force& force : member_.forces_) {
+        btRigidBody& body = member_.body_of(force.segment);
+        if (body.isStaticObject()) continue;
+        const btTransform pose = member_.pose(force.segment);
+        body.applyForce(to_bullet(force.force),
+                        pose * to_bullet(force.in_segment) - body.getCenterOfMassPosition());
+    }
+}
+DUCTILE_INLINE void MemberTick::drop_forces() { member_.forces_.clear(); }
+
+DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::vector<int>& sections) {
+    sections = member_.course_.beyond(steps_, loads_, dt);
+}
+DUCTILE_INLINE void MemberTick::begin_blow() { member_.course_.begin_blow(); }
+DUCTILE_INLINE void MemberTick::find_struck(std::vector<int>& sections) {
+    if (!(strike_.energy > 0)) return;
+    const int section = member_.course_.struck(steps_, loads_, strike_);
+    if (section != no_section) sections.push_back(section);
+}
+DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, const ForceShare& share,
+                                     std::vector<DivisionChange>& told) {
+    member_.open(sections, share);
+    for (const int section : sections) told.push_back({&member_, section});
+}
+DUCTILE_INLINE bool MemberTick::close_held(const ForceShare& share,
+                                           std::vector<DivisionChange>& told) {
+    if (member_.joints_.empty()) return false;
+    member_.note_sections();
+    const std::vector<int> held = member_.course_.held();
+    if (held.empty()) return false;
+    member_.close(held, share);
+    for (const int section : held) told.push_back({&member_, section});
+    return true;
+}
+
+DUCTILE_INLINE MemberTick::MemberTick(Member& member) : member_(member) {
+    const ductile::Member& of = member.description();
+    for (int k = 0; k < of.segments(); ++k) {
+        own_about_x_ += of.segment(k).inertia[0];
+        for (int i = 0; i < 3; ++i) own_inertia_ += of.segment(k).inertia[i];
+    }
+}
+
 DUCTILE_INLINE void MemberTick::begin() {
     touches_.clear();
     sum_ = 0;
-    steps_.resize(member_->pieces_.size());
-    for (std::size_t i = 0; i < steps_.size(); ++i) steps_[i].pose = member_->frame_of(i);
 }
 
 DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> before,
                                      const btVector3& gravity) {
     loads_.clear();
     strike_ = {};
+    steps_.resize(member_.pieces_.size());
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const btRigidBody& body = *member_.pieces_[i].body;
+        if (member_.course_.pieces()[i].held) {
+            steps_[i].pose = member_.held_;
+            continue;
+        }
+        const JointFrame<double> pose =
+            to_core(before[std::size_t(body.getWorldArrayIndex())].pose);
+        steps_[i].pose =
+            &body == &member_.user_ ? placed(pose, member_.maker_->whole_in_body()) : pose;
+    }
     for (const Touch& touch : touches_) read_contact(*touch.manifold, touch.of_a, before);
     read_constraints(dt, true);
     read_forces(dt, true);
     finish_steps(dt, before, gravity);
 }
 
-/// Whatever the arms of what acted on it: those of impulses and of the masses that they move.
+/// Whatever the arms of what acted on it: those of impulses and of the masses that they move. Where
+/// that says too little, along the member's axes.
 DUCTILE_INLINE bool MemberTick::may_be_beyond(double dt, std::span<const BodyBefore> before,
                                               const btVector3& gravity) const {
     constexpr double arms = 4; // of its length
-    const MemberCourse& of = member_->course_;
+    const MemberCourse& of = member_.course_;
     const double length = of.member().length();
     double all = sum_;
     bool solved = of.member().clamped();
     if (solved) all += of.member().mass() * double(gravity.length()) * dt;
-    for (const PieceBody& piece : member_->pieces_) {
+    for (const PieceBody& piece : member_.pieces_) {
         const btRigidBody& body = *piece.body;
         if (body.isStaticObject() || !body.isActive()) continue;
         solved = true;
         const BodyBefore& was = before[std::size_t(body.getWorldArrayIndex())];
         all += double(body.getMass()) * double(was.spin.length2()) * length * dt;
     }
-    return solved && arms * all * length > of.least_strength() * dt;
+    if (!solved || arms * all * length <= of.least_strength() * dt) return false;
+    return !is_plain() || largest_moment(dt, before, gravity) > of.least_strength() * dt;
+}
+
+DUCTILE_INLINE bool MemberTick::is_plain() const {
+    return member_.whole() && member_.course_.is_straight() && member_.attachments_.empty() &&
+           member_.forces_.empty();
+}
+
+/// Every arm is the largest that it can be; where the body is now it may be off from where it was
+/// solved by what it moved in the tick.
+DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const BodyBefore> before,
+                                                 const btVector3& gravity) const {
+    const ductile::Member& of = member_.description();
+    const MemberPiece& whole = member_.course_.pieces().front();
+    const btRigidBody& body = member_.user_;
+    const double length = of.length();
+    const JointFrame<double> pose = member_.frame_of(0);
+    // a straight piece has the axes of its segments
+    const Vector3<double> y = column(pose.axes, 1), z = column(pose.axes, 2);
+    const double before_start = whole.segments.front().origin[2] - of.segment(0).length / 2;
+    const Vector3<double> start = sum(pose.origin, scaled(before_start, z));
+    double moved = 0, turned = 0, sum = 0;
+    const double half_arm = of.mass() * length / 2;
+    if (of.clamped()) {
+        sum += half_arm * dt * std::abs(dot(to_core(gravity), y));
+    } else {
+        const BodyBefore& was = before[std::size_t(body.getWorldArrayIndex())];
+        const Vector3<double> spin = to_core(body.getAngularVelocity()),
+                              before_spin = to_core(was.spin),
+                              velocity = to_core(body.getLinearVelocity());
+        const double fastest = std::max(norm(spin), norm(before_spin));
+        moved = dt * norm(velocity);
+        turned = dt * fastest;
+        const Vector3<double> change =
+            difference(difference(velocity, to_core(was.velocity)),
+                       scaled(dt, to_core(body.getGravity())));
+        const btVector3& inverse = body.getInvInertiaDiagLocal();
+        const double least = double(std::min({inverse.x(), inverse.y(), inverse.z()}));
+        // the user's inertia may be another than the member's
+        const double around_user = norm(difference(spin, before_spin)) / least;
+        const double damped = double(body.getLinearDamping()) * norm(velocity) * 2 * dt,
+                     spin_damped = double(body.getAngularDamping()) * fastest * 2 * dt;
+        const double across = std::abs(dot(change, y)) + norm(change) * turned + damped;
+        const double around = around_user / whole.inertia[0] + spin_damped;
+        sum += half_arm * (across + length / 2 * around + dt * fastest * fastest * length) +
+               own_about_x_ * around + own_inertia_ * dt * fastest * fastest;
+    }
+    for (const Touch& touch : touches_) {
+        for (int k = 0; k < touch.manifold->getNumContacts(); ++k) {
+            const btManifoldPoint& point = touch.manifold->getContactPoint(k);
+            const Vector3<double> impulse = to_core(
+                point.m_appliedImpulse * point.m_normalWorldOnB +
+                point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2);
+            const Vector3<double> arm = difference(
+                to_core(touch.of_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB()),
+                start);
+            const double along = std::abs(dot(arm, z)), off = std::abs(dot(arm, y));
+            const double reach = std::max(along, length);
+            sum += std::abs(dot(impulse, z)) * off + std::abs(dot(impulse, y)) * reach +
+                   norm(impulse) * (moved + turned * (2 * reach + off));
+        }
+    }
+    constexpr double hair = 1e-6; // by which a straight member may be bent
+    return sum * (1 + hair);
 }
 
 DUCTILE_INLINE int MemberTick::segment_at(const Member& member, std::size_t piece,
@@ -72,39 +212,21 @@ DUCTILE_INLINE int MemberTick::segment_at(const Member& member, std::size_t piec
 DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifold, bool of_a,
                                              std::span<const BodyBefore> before) {
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
-    const Member& member = *member_;
+    const Member& member = member_;
     std::size_t piece = 0;
     while (piece + 1 < member.pieces_.size() && member.pieces_[piece].body != (of_a ? &a : &b)) {
         ++piece;
     }
-    const auto velocities = [before](const btCollisionObject& object, const btVector3& point) {
-        const btRigidBody* body = btRigidBody::upcast(&object);
-        std::pair<btVector3, btVector3> result{{0, 0, 0}, {0, 0, 0}};
-        if (body == nullptr || body->isStaticObject()) return result;
-        const BodyBefore& was = before[std::size_t(object.getWorldArrayIndex())];
-        const btVector3 arm = point - body->getCenterOfMassPosition();
-        result.first = was.velocity + was.spin.cross(arm);
-        result.second = body->getVelocityInLocalPoint(arm);
-        return result;
-    };
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
-        const btManifoldPoint& point = manifold.getContactPoint(k);
-        const btVector3 impulse = point.m_appliedImpulse * point.m_normalWorldOnB +
-                                  point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                                  point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
-        if (impulse.isZero()) continue;
-        const btVector3 at = of_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB();
+        const ContactLoad contact = contact_load(manifold, manifold.getContactPoint(k), of_a, before);
+        if (contact.impulse.isZero()) continue;
         MemberLoad& load = loads_.emplace_back();
-        load.segment = segment_at(member, piece, steps_[piece].pose, to_core(at));
-        load.point = to_core(at);
-        load.impulse = to_core(of_a ? impulse : -impulse);
-        const auto [a_before, a_after] = velocities(a, at);
-        const auto [b_before, b_after] = velocities(b, at);
-        const auto closing = double(point.m_normalWorldOnB.dot(a_before - b_before));
-        const auto after = double(point.m_normalWorldOnB.dot(a_after - b_after));
-        strike_.energy -= double(point.m_appliedImpulse) * (closing + after) / 2;
-        if (-closing > strike_.speed) {
-            strike_.speed = -closing;
+        load.point = to_core(contact.at);
+        load.segment = segment_at(member, piece, steps_[piece].pose, load.point);
+        load.impulse = to_core(contact.impulse);
+        strike_.energy += contact.energy;
+        if (contact.closing > strike_.speed) {
+            strike_.speed = contact.closing;
             strike_.segment = load.segment;
         }
     }
@@ -112,7 +234,7 @@ DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifol
 
 /// Of attachments and of its own joints.
 DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
-    const Member& member = *member_;
+    const Member& member = member_;
     const auto add = [&](const btTypedConstraint& constraint, std::size_t piece, int segment) {
         const btRigidBody* body = member.pieces_[piece].body;
         const btJointFeedback& told = *constraint.getJointFeedback();
@@ -145,7 +267,7 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
 }
 
 DUCTILE_INLINE void MemberTick::read_forces(double dt, bool lists) {
-    const Member& member = *member_;
+    const Member& member = member_;
     for (const Member::Force& force : member.forces_) {
         sum_ += dt * norm(force.force);
         if (!lists) continue;
@@ -162,7 +284,7 @@ DUCTILE_INLINE void MemberTick::read_forces(double dt, bool lists) {
 /// How its pieces went through the tick.
 DUCTILE_INLINE void MemberTick::finish_steps(double dt, std::span<const BodyBefore> before,
                                              const btVector3& gravity) {
-    const Member& member = *member_;
+    const Member& member = member_;
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         PieceStep& step = steps_[i];
         const btRigidBody& body = *member.pieces_[i].body;
@@ -173,16 +295,11 @@ DUCTILE_INLINE void MemberTick::finish_steps(double dt, std::span<const BodyBefo
             step.change = {scaled(-dt, to_core(gravity)), Vector3<double>::Zero()};
             continue;
         }
-        const BodyBefore& was = before[std::size_t(body.getWorldArrayIndex())];
-        const double keeps = std::pow(1 - double(body.getLinearDamping()), dt);
-        const double keeps_spin = std::pow(1 - double(body.getAngularDamping()), dt);
-        const Vector3<double> free =
-            sum(scaled(keeps, to_core(was.velocity)), scaled(dt, to_core(body.getGravity())));
-        step.spin = scaled(keeps_spin, to_core(was.spin));
-        step.change.velocity = difference(to_core(body.getLinearVelocity()), free);
-        step.change.spin = difference(to_core(body.getAngularVelocity()), step.spin);
-        const bool turns = (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) != 0;
-        if (turns) step.dt = dt;
+        const BodyChange went =
+            body_change(body, before[std::size_t(body.getWorldArrayIndex())], dt);
+        step.change = went.change;
+        step.spin = went.spin;
+        if (went.turns) step.dt = dt;
         if (&body == &member.user_) {
             // its inertia is the user's
             const Vector3<double> about =

@@ -14,8 +14,9 @@
 // open nothing.
 //
 // Read are the impulses of contact points, the joint feedback of what holds on to a member, its own
-// forces and gravity. A member that these could not load beyond its strength, whatever their arms,
-// is not looked at more closely: that costs some hundred instructions a body.
+// forces and gravity. A member that these could not load beyond its strength with the largest arms
+// that they can have is not looked at more closely. A clamped one that is whole is not looked at at
+// all where nothing touched it, once gravity alone did not yield it.
 //
 // Not thread-safe.
 #pragma once
@@ -24,8 +25,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "ductile/bullet/divisible.hpp"
 #include "ductile/bullet/member_tick.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -35,12 +40,12 @@ namespace ductile::bullet {
 
 class Members {
   public:
-    /// A section opened or closed: of whom, which, what happened.
-    using Tell = std::function<void(const Member&, int section, EventKind kind)>;
+    /// A section opened or closed: whose reports tell of it, which, what happened.
+    using Tell = std::function<void(const void* key, int section, EventKind kind)>;
 
     explicit Members(btDiscreteDynamicsWorld& world) : world_(world) {}
     ~Members() {
-        for (Course& course : members_) course.tick.member().leave();
+        for (Course& course : members_) course.of->leave();
     }
     Members(const Members&) = delete;
     Members& operator=(const Members&) = delete;
@@ -48,6 +53,10 @@ class Members {
     /// @throws as World::add.
     void add(Member& member, std::function<void()> ends);
     void remove(Member& member);
+    /// It enters and leaves the world by itself.
+    void add(Divisible& structure);
+    void remove(Divisible& structure);
+    void rearranged(const Divisible& structure);
     /// Bodies whose islands are solved at once.
     [[nodiscard]] const DirectBodies& direct() const noexcept { return direct_; }
     [[nodiscard]] bool empty() const noexcept { return members_.empty(); }
@@ -55,16 +64,15 @@ class Members {
     [[nodiscard]] JointReport<double> report(const Member& member) const { return member.report(); }
     /// How the forces of joints act in the coming ticks.
     void set_share(const ForceShare& share) noexcept { share_ = share; }
-    /// Whose joint it is, and of which section; null: no member's.
-    [[nodiscard]] const Member* owner(const PlasticConstraint& joint, int& section) const;
+    /// Under which a joint is reported, and of which section it is; null: no member's.
+    [[nodiscard]] const void* key_of(const PlasticConstraint& joint, int& section) const;
     /// Of sections that are closed [J].
     [[nodiscard]] double closed_work() const;
     /// As PartMotion::closed_work.
     [[nodiscard]] double unmissed_work() const;
-    /// Bodies may have come and gone since.
-    void number_bodies();
-    /// As last numbered.
-    [[nodiscard]] bool is_member(const btCollisionObject& object) const;
+    [[nodiscard]] bool is_member(const btCollisionObject& object) const {
+        return owners_.contains(&object);
+    }
 
     /// Forces that were applied to members act in the coming tick, too.
     void apply_forces();
@@ -79,30 +87,51 @@ class Members {
     [[nodiscard]] bool close_held();
     /// What opened and closed since the last call.
     void tell(const Tell& tell);
+    /// Whose reports may change without being touched, or not any more, since the last call.
+    using TellIdle = std::function<void(const void* key, bool idle)>;
+    void tell_idle(const TellIdle& tell);
 
   private:
     struct Course {
-        MemberTick tick;
+        Divisible* of;
+        const Member* member;              ///< null: a structure
+        std::unique_ptr<MemberTick> tick{}; ///< of a member
         std::vector<int> found{};
-        int direct = 0; ///< ticks for which it is still solved at once
+        std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
+        int direct = 0;      ///< ticks for which it is still solved at once
+        bool watched = false; ///< in every tick
+        bool here = false;    ///< in this one
     };
     struct Happened {
-        const Member* member;
-        int section;
+        DivisionChange what;
         EventKind kind;
     };
+    void happened(EventKind kind);
     [[nodiscard]] Course* course_of(const btCollisionObject& object);
+    void add(Course course);
+    void remove(std::size_t course);
+    /// What is known of its bodies is of now.
+    void note_bodies(std::size_t course);
+    /// It is looked at in this tick.
+    void list(Course& course);
     void read_sums(double dt);
     /// False where it has to be solved for at once first.
-    [[nodiscard]] static bool is_decided(Course& course);
+    [[nodiscard]] bool is_decided(Course& course);
 
     btDiscreteDynamicsWorld& world_;
     ForceShare share_;
     std::vector<Course> members_;
-    std::vector<int> number_;        ///< of the member, by the body's place in the world
+    std::unordered_map<const btCollisionObject*, std::size_t> owners_;
+    std::vector<std::size_t> watched_; ///< that may change without being touched
+    std::vector<Course*> here_;        ///< that are looked at in this tick
+    std::vector<Member*> pushed_;      ///< with forces
+    btVector3 gravity_{0, 0, 0};       ///< of the last look
+    bool look_at_all_ = true;
+    std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world
     DirectBodies direct_;
     std::vector<Happened> happened_;
+    std::vector<DivisionChange> changes_;
 };
 
 } // namespace ductile::bullet

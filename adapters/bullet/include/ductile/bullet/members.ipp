@@ -12,114 +12,173 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/members.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
 
+DUCTILE_INLINE void Members::add(Course course) {
+    members_.push_back(std::move(course));
+    look_at_all_ = true;
+    const Course& added = members_.back();
+    if (added.member != nullptr && added.of->idle()) idle_changes_.emplace_back(added.member, true);
+    note_bodies(members_.size() - 1);
+}
 DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
     member.enter(world_);
     member.ends_ = std::move(ends);
-    members_.push_back({.tick = MemberTick(member), .found = {}});
+    member.pushed_ = &pushed_;
+    if (!member.forces_.empty()) pushed_.push_back(&member);
+    auto tick = std::make_unique<MemberTick>(member);
+    Divisible* of = tick.get();
+    add({.of = of, .member = &member, .tick = std::move(tick)});
+}
+DUCTILE_INLINE void Members::add(Divisible& structure) {
+    add({.of = &structure, .member = nullptr});
 }
 
+/// The last one takes its place.
+DUCTILE_INLINE void Members::remove(std::size_t i) {
+    here_.clear();
+    for (Course& course : members_) course.here = false;
+    const std::size_t last = members_.size() - 1;
+    for (const std::size_t leaves : {i, last}) {
+        Course& course = members_[leaves];
+        for (const btCollisionObject* body : course.bodies) owners_.erase(body);
+        course.bodies.clear();
+        if (std::exchange(course.watched, false)) std::erase(watched_, leaves);
+    }
+    if (i != last) members_[i] = std::move(members_[last]);
+    members_.pop_back();
+    if (i != last) note_bodies(i);
+}
 DUCTILE_INLINE void Members::remove(Member& member) {
-    std::erase_if(members_, [&](const Course& course) { return &course.tick.member() == &member; });
-    std::erase_if(happened_, [&](const Happened& entry) { return entry.member == &member; });
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        if (members_[i].member != &member) continue;
+        remove(i);
+        break;
+    }
+    std::erase_if(happened_, [&](const Happened& entry) { return entry.what.key == &member; });
+    std::erase_if(idle_changes_, [&](const auto& entry) { return entry.first == &member; });
     member.leave();
+}
+DUCTILE_INLINE void Members::remove(Divisible& structure) {
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        if (members_[i].of != &structure) continue;
+        remove(i);
+        break;
+    }
+}
+
+DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        if (members_[i].of == &structure) note_bodies(i);
+    }
+}
+
+DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
+    Course& course = members_[i];
+    for (const btCollisionObject* body : course.bodies) owners_.erase(body);
+    course.bodies.clear();
+    for (const PieceBody& piece : course.of->pieces()) {
+        if (piece.body == &btTypedConstraint::getFixedBody()) continue;
+        course.bodies.push_back(piece.body);
+        owners_[piece.body] = i;
+    }
+    const bool watched = !course.of->idle() || course.direct > 0;
+    if (watched == course.watched) return;
+    course.watched = watched;
+    if (course.member != nullptr) idle_changes_.emplace_back(course.member, !watched);
+    if (watched) {
+        watched_.push_back(i);
+    } else {
+        std::erase(watched_, i);
+    }
 }
 
 DUCTILE_INLINE bool Members::has(const Member& member) const noexcept {
     return std::any_of(members_.begin(), members_.end(),
-                       [&](const Course& course) { return &course.tick.member() == &member; });
+                       [&](const Course& course) { return course.member == &member; });
 }
 
-DUCTILE_INLINE const Member* Members::owner(const PlasticConstraint& joint, int& section) const {
+DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
     for (const Course& course : members_) {
-        for (const Member::OpenSection& open : course.tick.member().joints_) {
-            if (open.hinge.get() != &joint) continue;
-            section = open.section;
-            return &course.tick.member();
-        }
+        if (const void* key = course.of->key_of(joint, section)) return key;
     }
     return nullptr;
 }
 
 DUCTILE_INLINE double Members::closed_work() const {
     double sum = 0;
-    for (const Course& course : members_) sum += course.tick.member().course_.closed_work();
+    for (const Course& course : members_) sum += course.of->closed_work();
     return sum;
 }
 
 DUCTILE_INLINE double Members::unmissed_work() const {
     double least = 0;
     for (const Course& course : members_) {
-        const double work = course.tick.member().course_.unmissed_work();
+        const double work = course.of->unmissed_work();
         if (least == 0 || (work > 0 && work < least)) least = work;
     }
     return least;
 }
 
-DUCTILE_INLINE bool Members::is_member(const btCollisionObject& object) const {
-    const int place = object.getWorldArrayIndex();
-    return place >= 0 && place < int(number_.size()) && number_[std::size_t(place)] >= 0;
-}
-
 DUCTILE_INLINE void Members::apply_forces() {
     for (Course& course : members_) {
-        for (const Member::Force& force : course.tick.member().forces_) {
-            btRigidBody& body = course.tick.member().body_of(force.segment);
-            if (body.isStaticObject()) continue;
-            const btTransform pose = course.tick.member().pose(force.segment);
-            body.applyForce(to_bullet(force.force),
-                            pose * to_bullet(force.in_segment) - body.getCenterOfMassPosition());
-        }
+        if (course.member == nullptr) course.of->apply_forces();
     }
+    for (Member* member : pushed_) members_[owners_[member->pieces_.back().body]].of->apply_forces();
 }
 DUCTILE_INLINE void Members::drop_forces() {
-    for (Course& course : members_) course.tick.member().forces_.clear();
+    for (Course& course : members_) {
+        if (course.member == nullptr) course.of->drop_forces();
+    }
+    for (Member* member : pushed_) members_[owners_[member->pieces_.back().body]].of->drop_forces();
+    pushed_.clear();
 }
 
 // ---- before the solve
 
-DUCTILE_INLINE void Members::number_bodies() {
-    const auto& objects = world_.getCollisionObjectArray();
-    number_.assign(std::size_t(objects.size()), -1);
-    for (std::size_t i = 0; i < members_.size(); ++i) {
-        for (const PieceBody& piece : members_[i].tick.member().pieces_) {
-            const int place = piece.body->getWorldArrayIndex();
-            if (place < 0 || place >= objects.size() || objects[place] != piece.body) continue;
-            number_[std::size_t(place)] = int(i);
-        }
-    }
+DUCTILE_INLINE auto Members::course_of(const btCollisionObject& object) -> Course* {
+    const auto found = owners_.find(&object);
+    return found != owners_.end() ? &members_[found->second] : nullptr;
 }
 
-DUCTILE_INLINE auto Members::course_of(const btCollisionObject& object) -> Course* {
-    const int place = object.getWorldArrayIndex();
-    if (place < 0 || place >= int(number_.size())) return nullptr;
-    const int number = number_[std::size_t(place)];
-    return number >= 0 ? &members_[std::size_t(number)] : nullptr;
+DUCTILE_INLINE void Members::list(Course& course) {
+    if (course.here) return;
+    course.here = true;
+    here_.push_back(&course);
+    course.of->begin();
 }
 
 DUCTILE_INLINE void Members::before_solve() {
-    number_bodies();
-    const auto& objects = world_.getCollisionObjectArray();
-    before_.resize(std::size_t(objects.size()));
-    for (int i = 0; i < objects.size(); ++i) {
-        const btRigidBody* body = btRigidBody::upcast(objects[i]);
-        if (body == nullptr) continue;
-        before_[std::size_t(i)] = {body->getLinearVelocity(), body->getAngularVelocity()};
+    if (members_.empty()) return;
+    before_.resize(std::size_t(world_.getNumCollisionObjects()));
+    const auto& moving = MovingBodies::of(world_);
+    for (int i = 0; i < moving.size(); ++i) {
+        const btRigidBody& body = *moving[i];
+        before_[std::size_t(body.getWorldArrayIndex())] = {body.getCenterOfMassTransform(),
+                                                           body.getLinearVelocity(),
+                                                           body.getAngularVelocity()};
     }
+    for (Course* course : here_) course->here = false;
+    here_.clear();
+    if (world_.getGravity() != gravity_) look_at_all_ = true;
+    gravity_ = world_.getGravity();
+    if (look_at_all_) {
+        for (Course& course : members_) list(course);
+    }
+    for (const std::size_t i : watched_) list(members_[i]);
+    for (const Member* member : pushed_) list(members_[owners_[member->pieces_.back().body]]);
     direct_.any = false;
-    direct_.by_place.assign(std::size_t(objects.size()), 0);
-    for (Course& course : members_) {
-        const Member& member = course.tick.member();
-        member.require_possible();
-        if (course.direct > 0) {
-            direct_.any = true;
-            for (const btRigidBody* body : member.pieces()) {
-                direct_.by_place[std::size_t(body->getWorldArrayIndex())] = 1;
-            }
+    for (Course& course : members_) course.of->require_possible();
+    for (const Course* course : here_) {
+        if (course->direct == 0) continue;
+        if (!direct_.any) direct_.by_place.assign(before_.size(), 0);
+        direct_.any = true;
+        for (const PieceBody& piece : course->of->pieces()) {
+            const int place = piece.body->getWorldArrayIndex();
+            if (place >= 0) direct_.by_place[std::size_t(place)] = 1;
         }
-        course.tick.begin();
     }
 }
 
@@ -147,16 +206,19 @@ DUCTILE_INLINE void Members::read_sums(double dt) {
         if (!(sum > 0)) continue;
         for (const bool side_a : {true, false}) {
             Course* course = side_a ? of_a : of_b;
-            if (course != nullptr) course->tick.touch(manifold, side_a, sum);
+            if (course == nullptr) continue;
+            list(*course);
+            course->of->touch(manifold, side_a, sum);
         }
     }
-    for (Course& course : members_) course.tick.sum_up(dt);
+    for (Course* course : here_) course->of->sum_up(dt);
 }
 
 DUCTILE_INLINE bool Members::is_decided(Course& course) {
     constexpr int ticks = 60;
-    const bool was_direct = course.direct > 0 || !course.tick.member().whole();
+    const bool was_direct = course.direct > 0 || !course.of->whole();
     course.direct = ticks;
+    note_bodies(std::size_t(&course - members_.data()));
     return was_direct;
 }
 
@@ -165,24 +227,26 @@ DUCTILE_INLINE bool Members::look(double dt) {
     read_sums(dt);
     const btVector3 gravity = world_.getGravity();
     bool any = false;
-    for (Course& course : members_) {
-        course.found.clear();
-        if (!course.tick.may_be_beyond(dt, before_, gravity)) {
-            course.direct = std::max(0, course.direct - 1);
+    for (Course* course : here_) {
+        course->found.clear();
+        if (!course->of->may_be_beyond(dt, before_, gravity)) {
+            if (course->direct > 0 && --course->direct == 0) {
+                note_bodies(std::size_t(course - members_.data()));
+            }
             continue;
         }
-        course.tick.read(dt, before_, gravity);
-        course.found =
-            course.tick.member().course_.beyond(course.tick.steps(), course.tick.loads(), dt);
-        if (course.found.empty()) continue;
+        course->of->read(dt, before_, gravity);
+        course->of->find_beyond(dt, course->found);
+        if (course->found.empty()) continue;
         any = true;
-        if (!is_decided(course)) course.found.clear();
+        if (!is_decided(*course)) course->found.clear();
     }
+    if (!any) look_at_all_ = false;
     return any;
 }
 
 DUCTILE_INLINE void Members::begin_blow() {
-    for (Course& course : members_) course.tick.member().course_.begin_blow();
+    for (Course& course : members_) course.of->begin_blow();
 }
 
 DUCTILE_INLINE bool Members::look_blow(double dt) {
@@ -190,51 +254,51 @@ DUCTILE_INLINE bool Members::look_blow(double dt) {
     read_sums(dt);
     const btVector3 gravity = world_.getGravity();
     bool any = false;
-    for (Course& course : members_) {
-        course.found.clear();
-        if (!course.tick.touched()) continue;
-        course.tick.read(dt, before_, gravity);
-        if (!(course.tick.strike().energy > 0)) continue;
-        const int section = course.tick.member().course_.struck(
-            course.tick.steps(), course.tick.loads(), course.tick.strike());
-        if (section == no_section) continue;
+    for (Course* course : here_) {
+        course->found.clear();
+        if (!course->of->touched()) continue;
+        course->of->read(dt, before_, gravity);
+        course->of->find_struck(course->found);
+        if (course->found.empty()) continue;
         any = true;
-        if (is_decided(course)) course.found.push_back(section);
+        if (!is_decided(*course)) course->found.clear();
     }
     return any;
 }
 
+DUCTILE_INLINE void Members::happened(EventKind kind) {
+    for (const DivisionChange& change : changes_) happened_.push_back({change, kind});
+    changes_.clear();
+}
+
 DUCTILE_INLINE void Members::open_found() {
-    for (Course& course : members_) {
-        if (course.found.empty()) continue;
-        course.tick.member().open(course.found, share_);
-        for (const int section : course.found) {
-            happened_.push_back({&course.tick.member(), section, EventKind::split});
-        }
-        course.found.clear();
+    for (Course* course : here_) {
+        if (course->found.empty()) continue;
+        course->of->open(course->found, share_, changes_);
+        course->found.clear();
+        note_bodies(std::size_t(course - members_.data()));
     }
+    happened(EventKind::split);
 }
 
 DUCTILE_INLINE bool Members::close_held() {
     bool changed = false;
-    for (Course& course : members_) {
-        Member& member = course.tick.member();
-        if (member.joints_.empty()) continue;
-        member.note_sections();
-        const std::vector<int> held = member.course_.held();
-        if (held.empty()) continue;
-        member.close(held, share_);
-        for (const int section : held) {
-            happened_.push_back({&member, section, EventKind::fused});
-        }
+    for (Course* course : here_) {
+        if (!course->of->close_held(share_, changes_)) continue;
         changed = true;
+        note_bodies(std::size_t(course - members_.data()));
     }
+    happened(EventKind::fused);
     return changed;
+}
+
+DUCTILE_INLINE void Members::tell_idle(const TellIdle& tell) {
+    for (const auto& [key, idle] : std::exchange(idle_changes_, {})) tell(key, idle);
 }
 
 DUCTILE_INLINE void Members::tell(const Tell& tell) {
     for (const Happened& entry : std::exchange(happened_, {})) {
-        tell(*entry.member, entry.section, entry.kind);
+        tell(entry.what.key, entry.what.section, entry.kind);
     }
 }
 

@@ -24,6 +24,10 @@ struct MemberBox {
     double half_width = 0, half_height = 0;
 };
 
+/// Friction, restitution, damping, factors, flags and the user's pointers of one body for another.
+void copy_manners(const btRigidBody& from, btRigidBody& body);
+void set_motion(btRigidBody& body, const BodyMotion& motion);
+
 struct PieceBody {
     btRigidBody* body = nullptr;
     std::unique_ptr<btCompoundShape> shape; ///< ends after the body
@@ -62,9 +66,7 @@ class PieceMaker {
 
   private:
     [[nodiscard]] std::unique_ptr<btCompoundShape> make_shape(const MemberPiece& piece);
-    void copy_manners(btRigidBody& body) const;
     void enter_world(btRigidBody& body) const;
-    static void move(btRigidBody& body, const BodyMotion& motion);
 
     btRigidBody& user_;
     const ductile::Member& member_;

@@ -44,30 +44,30 @@ DUCTILE_INLINE PieceBody PieceMaker::make(const PlacedPiece& placed) {
     info.m_startWorldTransform = to_bullet(placed.pose);
     piece.own = std::make_unique<btRigidBody>(info);
     piece.body = piece.own.get();
-    copy_manners(*piece.body);
-    if (!of.held) move(*piece.body, placed.motion);
+    copy_manners(user_, *piece.body);
+    if (!of.held) set_motion(*piece.body, placed.motion);
     enter_world(*piece.body);
     return piece;
 }
 
-DUCTILE_INLINE void PieceMaker::copy_manners(btRigidBody& body) const {
-    body.setFriction(user_.getFriction());
-    body.setRollingFriction(user_.getRollingFriction());
-    body.setSpinningFriction(user_.getSpinningFriction());
-    body.setRestitution(user_.getRestitution());
-    body.setDamping(user_.getLinearDamping(), user_.getAngularDamping());
-    body.setLinearFactor(user_.getLinearFactor());
-    body.setAngularFactor(user_.getAngularFactor());
-    body.setSleepingThresholds(user_.getLinearSleepingThreshold(),
-                               user_.getAngularSleepingThreshold());
-    body.setFlags(user_.getFlags());
-    body.setUserPointer(user_.getUserPointer());
-    body.setUserIndex(user_.getUserIndex());
-    body.setUserIndex2(user_.getUserIndex2());
-    const int manners = user_.getCollisionFlags() & ~(btCollisionObject::CF_STATIC_OBJECT |
+DUCTILE_INLINE void copy_manners(const btRigidBody& from, btRigidBody& body) {
+    body.setFriction(from.getFriction());
+    body.setRollingFriction(from.getRollingFriction());
+    body.setSpinningFriction(from.getSpinningFriction());
+    body.setRestitution(from.getRestitution());
+    body.setDamping(from.getLinearDamping(), from.getAngularDamping());
+    body.setLinearFactor(from.getLinearFactor());
+    body.setAngularFactor(from.getAngularFactor());
+    body.setSleepingThresholds(from.getLinearSleepingThreshold(),
+                               from.getAngularSleepingThreshold());
+    body.setFlags(from.getFlags());
+    body.setUserPointer(from.getUserPointer());
+    body.setUserIndex(from.getUserIndex());
+    body.setUserIndex2(from.getUserIndex2());
+    const int manners = from.getCollisionFlags() & ~(btCollisionObject::CF_STATIC_OBJECT |
                                                       btCollisionObject::CF_KINEMATIC_OBJECT);
     body.setCollisionFlags(body.getCollisionFlags() | manners);
-    if (user_.getActivationState() == DISABLE_DEACTIVATION) {
+    if (from.getActivationState() == DISABLE_DEACTIVATION) {
         body.setActivationState(DISABLE_DEACTIVATION);
     }
 }
@@ -95,7 +95,7 @@ DUCTILE_INLINE void PieceMaker::put_whole(const PlacedPiece& placed, bool straig
         // the moment of momentum is that of the pieces
         const btVector3 about =
             to_bullet(times(whole.inertia_in_world(placed.pose.axes), placed.motion.spin));
-        move(user_, {placed.motion.velocity, to_core(user_.getInvInertiaTensorWorld() * about)});
+        set_motion(user_, {placed.motion.velocity, to_core(user_.getInvInertiaTensorWorld() * about)});
         user_.clearForces();
         user_.activate(true);
     }
@@ -110,7 +110,7 @@ DUCTILE_INLINE void PieceMaker::take_out() {
     world_->removeRigidBody(&user_);
 }
 
-DUCTILE_INLINE void PieceMaker::move(btRigidBody& body, const BodyMotion& motion) {
+DUCTILE_INLINE void set_motion(btRigidBody& body, const BodyMotion& motion) {
     body.setLinearVelocity(to_bullet(motion.velocity));
     body.setAngularVelocity(to_bullet(motion.spin));
     body.setInterpolationLinearVelocity(body.getLinearVelocity());

@@ -33,8 +33,9 @@ class PlasticHinge final : public JointConstraintOf<Joint> {
     /// Frames are in the bodies' centre-of-mass frames, as for btHingeConstraint: origin at the
     /// pivot, z along the hinge. Where the bodies are now is the hinge's rest position.
     PlasticHinge(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
-                 const btTransform& frame_in_b, Joint joint)
-        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Feedback::plastic_row) {}
+                 const btTransform& frame_in_b, Joint joint, Meeting meeting = Meeting::required)
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), {axis}, Feedback::plastic_row,
+               meeting) {}
 
     /// Hinge between a body and the static world.
     PlasticHinge(btRigidBody& a, const btTransform& frame_in_a, Joint joint)

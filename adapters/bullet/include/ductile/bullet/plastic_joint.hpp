@@ -37,8 +37,10 @@ class PlasticJoint final : public JointConstraintOf<Joint> {
     /// centre-of-mass frames. Where the bodies are now is the rest position.
     /// @throws std::invalid_argument where an axis is given twice.
     PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
-                 const btTransform& frame_in_b, Joint joint, const Axes& axes)
-        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), axes, Feedback::all_rows) {}
+                 const btTransform& frame_in_b, Joint joint, const Axes& axes,
+                 Meeting meeting = Meeting::required)
+        : Base(a, b, frame_in_a, frame_in_b, std::move(joint), axes, Feedback::all_rows, meeting) {
+    }
 
     /// All six axes, in the order of JointAxis.
     PlasticJoint(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,

@@ -51,6 +51,7 @@
 #include <optional>
 #include <string>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "ductile/bullet/energy_meter.hpp"
@@ -107,6 +108,12 @@ class World final : public SteppedWorld {
     void add(Member& member, std::string name = {});
     /// Of a member that is open the pieces end, and its body is in no world.
     void remove(Member& member);
+    /// Looks after a structure that opens its joints (structure_in_time.hpp, which calls this).
+    /// @throws as add of a member.
+    void add(Divisible& structure, const std::vector<DivisionReport>& reports);
+    void remove(Divisible& structure, const std::vector<DivisionReport>& reports);
+    /// Its bodies are others than they were, and not by a step.
+    void rearranged(const Divisible& structure) { members_.rearranged(structure); }
     /// Takes a joint out of Bullet's world too. What is not here is left alone.
     void remove(PlasticConstraint& joint);
     void remove(MultiBodyPlasticConstraint& joint);
@@ -116,10 +123,12 @@ class World final : public SteppedWorld {
     /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
     void share(const ForceShare& how);
     void require_leapfrog() const;
+    void require_members() const;
     void part_with_members(double dt, const ForceShare& how);
     template <class Change>
     void rearrange(const Change& change);
     void tell_of_members();
+    void tell_idle(bool after);
     void start_frames(const WorldParameters& parameters);
     [[nodiscard]] bool holds_multibodies() const noexcept;
     [[nodiscard]] btMultiBodyDynamicsWorld& world_of_multibodies() const;
@@ -145,6 +154,7 @@ class World final : public SteppedWorld {
     bool tells_ledger_ = false;
     HeldForces forces_;
     Members members_;
+    std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
     WorldSnapshot snapshot_;           ///< of a step, while there are members
     std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;

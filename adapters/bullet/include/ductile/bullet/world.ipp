@@ -72,8 +72,8 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         world_, *front_, *meter_, members_,
         [this](const PlasticConstraint& joint) {
             int section = 0;
-            const Member* member = members_.owner(joint, section);
-            return supervisor().number(member != nullptr ? member : detail::address(joint));
+            const void* key = members_.key_of(joint, section);
+            return supervisor().number(key != nullptr ? key : detail::address(joint));
         },
         [this](double h) {
             tell_of_members(); // what opened did so as the part began
@@ -82,6 +82,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
 }
 
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
+    tell_idle(true);
     share({.ahead = true});
     members_.set_share({.ahead = true});
     parts_->begin(length);
@@ -114,7 +115,7 @@ DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string na
     keep(joint, [this, &joint] { supervisor().remove(detail::address(joint)); });
 }
 
-DUCTILE_INLINE void World::add(Member& member, std::string name) {
+DUCTILE_INLINE void World::require_members() const {
     if (leapfrogs()) {
         throw std::invalid_argument("World.leapfrog = true: must not be asked for beside members");
     }
@@ -122,6 +123,20 @@ DUCTILE_INLINE void World::add(Member& member, std::string name) {
         throw std::invalid_argument(
             "World.add.member: must not be added to a btMultiBodyDynamicsWorld");
     }
+}
+DUCTILE_INLINE void World::add(Divisible& structure, const std::vector<DivisionReport>& reports) {
+    require_members();
+    front_->set_direct(&members_.direct());
+    members_.add(structure);
+    for (const DivisionReport& one : reports) supervisor().add(one.key, one.name, one.ask);
+}
+DUCTILE_INLINE void World::remove(Divisible& structure,
+                                  const std::vector<DivisionReport>& reports) {
+    members_.remove(structure);
+    for (const DivisionReport& one : reports) supervisor().remove(one.key);
+}
+DUCTILE_INLINE void World::add(Member& member, std::string name) {
+    require_members();
     front_->set_direct(&members_.direct());
     members_.add(member, [this, &member] { remove(member); });
     supervisor().add(&member, std::move(name),
@@ -132,9 +147,23 @@ DUCTILE_INLINE void World::remove(Member& member) {
     supervisor().remove(&member);
     members_.remove(member);
 }
+/// One that is idle from now on still says what became of it in this step: `after` that.
+DUCTILE_INLINE void World::tell_idle(bool after) {
+    if (!after) {
+        members_.tell_idle([this](const void* key, bool idle) {
+            if (!idle) supervisor().set_idle(key, false);
+            idle_.emplace_back(key, idle);
+        });
+        return;
+    }
+    tell_idle(false);
+    for (const auto& [key, idle] : idle_) supervisor().set_idle(key, idle);
+    idle_.clear();
+}
 DUCTILE_INLINE void World::tell_of_members() {
-    members_.tell([this](const Member& member, int section, EventKind kind) {
-        supervisor().tell_section(&member, kind, section);
+    tell_idle(false);
+    members_.tell([this](const void* key, int section, EventKind kind) {
+        supervisor().tell_section(key, kind, section);
     });
 }
 
@@ -223,6 +252,7 @@ void World::rearrange(const Change& change) {
 /// The part, again with more sections open until none that is closed is beyond its strength.
 DUCTILE_INLINE void World::part_with_members(double dt, const ForceShare& how) {
     members_.set_share(how);
+    tell_idle(true);
     for (;;) {
         snapshot_.take(world_, front_->usual());
         if (meter_) meter_->keep();

@@ -173,7 +173,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         const std::size_t first = motion_.rows.size();
         plastic->list_part_rows(number_(*plastic), motion_.rows);
         int section = 0;
-        if (members_.owner(*plastic, section) != nullptr) {
+        if (members_.key_of(*plastic, section) != nullptr) {
             for (std::size_t k = first; k < motion_.rows.size(); ++k) {
                 motion_.rows[k].section = section + 1;
             }

@@ -69,12 +69,14 @@ class WorldSnapshot {
     /// All that there are now, sorted, into `manifolds`.
     static void list_manifolds(btDispatcher& dispatcher, std::vector<Manifold>& manifolds,
                                std::vector<btPersistentManifold*>& in_order);
+    static void sort(std::vector<Manifold>& manifolds);
     void take_manifolds(btDispatcher& dispatcher);
     /// False where one is missing.
     [[nodiscard]] bool write_manifolds(btDispatcher& dispatcher);
 
     std::vector<Body> bodies_;
-    std::vector<Manifold> manifolds_, now_; ///< sorted
+    std::vector<Manifold> manifolds_, now_;
+    bool sorted_ = false; ///< manifolds_, which is not needed before they are put back
     std::vector<btPersistentManifold*> listed_;
     std::vector<btManifoldPoint> points_;
     std::vector<Constraint> constraints_;

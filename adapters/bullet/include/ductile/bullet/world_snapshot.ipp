@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 
@@ -26,10 +28,9 @@ DUCTILE_INLINE bool WorldSnapshot::Manifold::is_before(const Manifold& other) co
 DUCTILE_INLINE void WorldSnapshot::take(btDiscreteDynamicsWorld& world,
                                         btConstraintSolver& solver) {
     bodies_.clear();
-    const auto& objects = world.getCollisionObjectArray();
-    for (int i = 0; i < objects.size(); ++i) {
-        btRigidBody* body = btRigidBody::upcast(objects[i]);
-        if (body == nullptr || body->isStaticObject()) continue;
+    const auto& moving = MovingBodies::of(world);
+    for (int i = 0; i < moving.size(); ++i) {
+        btRigidBody* body = moving[i];
         bodies_.push_back(
             {body, body->getWorldTransform(), body->getInterpolationWorldTransform(),
              body->getLinearVelocity(), body->getAngularVelocity(),
@@ -97,22 +98,28 @@ DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher,
         manifolds.push_back({manifold->getBody0(), manifold->getBody1(), i});
         in_order.push_back(manifold);
     }
+    sort(manifolds);
+}
+
+DUCTILE_INLINE void WorldSnapshot::sort(std::vector<Manifold>& manifolds) {
     const auto before = [](const Manifold& x, const Manifold& y) { return x.is_before(y); };
     std::sort(manifolds.begin(), manifolds.end(), before);
 }
 
 DUCTILE_INLINE void WorldSnapshot::take_manifolds(btDispatcher& dispatcher) {
-    list_manifolds(dispatcher, manifolds_, listed_);
+    manifolds_.clear();
     points_.clear();
-    for (Manifold& kept : manifolds_) {
-        const btPersistentManifold& manifold = *listed_[std::size_t(kept.order)];
-        kept.first = points_.size();
-        kept.count = manifold.getNumContacts();
-        for (int k = 0; k < kept.count; ++k) points_.push_back(manifold.getContactPoint(k));
+    sorted_ = false;
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        const int count = manifold.getNumContacts();
+        manifolds_.push_back({manifold.getBody0(), manifold.getBody1(), i, points_.size(), count});
+        for (int k = 0; k < count; ++k) points_.push_back(manifold.getContactPoint(k));
     }
 }
 
 DUCTILE_INLINE bool WorldSnapshot::write_manifolds(btDispatcher& dispatcher) {
+    if (!std::exchange(sorted_, true)) sort(manifolds_);
     list_manifolds(dispatcher, now_, listed_);
     auto kept = manifolds_.cbegin();
     const std::less<const btCollisionObject*> before;
