@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <string>
@@ -42,6 +43,17 @@ void print(const Run& run) {
                1e3 * run.options().frame, 1e3 * times[times.size() / 2], 1e3 * times.back());
 }
 
+/// Says what is wrong with a text that is no number from `low` to `high`, as nan is none.
+auto within(double low, double high) {
+    return [low, high](const std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool number = end != text.c_str() && *end == '\0';
+        if (number && value >= low && value <= high) return std::string();
+        return fmt::format("{}: must be from {} to {}", text, low, high);
+    };
+}
+
 } // namespace
 
 int main(int argc, char** argv) try {
@@ -65,19 +77,24 @@ int main(int argc, char** argv) try {
         ->check(CLI::IsMember({"bullet", "ode", "both"}))
         ->capture_default_str();
     app.add_option("--frame", options.frame, "[s]")
-        ->check(CLI::Range(1e-5, 0.1))
+        ->check(within(1e-5, 0.1))
         ->capture_default_str();
     app.add_option("--tolerance", options.tolerance, "of frames, 0: steps as they are [-]")
-        ->check(CLI::Range(0.0, 0.5))
+        ->check(within(0, 0.5))
         ->capture_default_str();
     app.add_option("--out", options.out, "folder of the replays and index.html; none: no replays");
     app.require_subcommand(0, int(scenes.size()));
     app.fallthrough();
     for (const auto& scene : scenes) {
-        scene->add_options(*app.add_subcommand(scene->name(), scene->about()));
+        CLI::App& command = *app.add_subcommand(scene->name(), scene->about());
+        scene->add_options(command);
+        for (CLI::Option* option : command.get_options()) {
+            if (option != command.get_help_ptr()) option->check(within(1e-9, 1e9));
+        }
     }
     CLI11_PARSE(app, argc, argv);
 
+    if (!options.out.empty()) write_index({}, options.out); // sooner than after all of them
     bool right = true;
     std::vector<Shown> shown;
     const bool all = app.get_subcommands().empty();

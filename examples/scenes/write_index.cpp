@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 namespace ductile::scenes {
 
@@ -57,6 +58,8 @@ void write_index(const std::vector<Shown>& all, const std::filesystem::path& fol
         page += "</table>\n";
     }
     page += "</body></html>\n";
+    std::error_code none; // the file says whether it is there
+    std::filesystem::create_directories(folder, none);
     std::ofstream file(folder / "index.html");
     if (!(file << page).flush()) {
         throw std::runtime_error((folder / "index.html").string() + ": cannot be written");
