@@ -7,11 +7,10 @@
 #include <ductile/ode/energy_meter.ipp>
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
+#include <ductile/ode/joint_constraint.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>
-#include <ductile/ode/one_axis_constraint.ipp>
-#include <ductile/ode/plastic_hinge.ipp>
-#include <ductile/ode/plastic_joint.ipp>
+#include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/world.ipp>

@@ -155,6 +155,7 @@ class OdeWorld {
         }
         dJointID joint = dJointCreateContact(world_, contacts_, &contact);
         dJointAttach(joint, body(spec.b), body(spec.a));
+        stepper_.add_contact(joint, contact);
     }
 
     /// Initialised once; its complaints about an unsolved LCP would flood the terminal.

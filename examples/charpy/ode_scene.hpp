@@ -351,6 +351,7 @@ class OdeScene {
         dJointID joint = dJointCreateContact(world_, contacts_, &contact);
         dJointAttach(joint, pair.part, pair.striker);
         meter_->add_contact(joint, contact.geom);
+        stepper_->add_contact(joint, contact);
     }
 
     /// How fast the edge closes in on the face at a point of contact [m/s].

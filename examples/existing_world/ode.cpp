@@ -29,7 +29,7 @@ int main() {
         // the static world is null; the frame's z is along the member
         ode::PlasticJoint post(world_id, body, nullptr, {.origin = {0, 0, 0}}, bend);
 
-        ode::World world(world_id, {.effort = {.action = OnUnconverged::split_step}});
+        ode::World world(world_id, ode::WorldParameters{});
         world.add(body); // for the energy ledger
         world.add(post, "lamp post");
         for (int i = 0; i < 100; ++i) {

@@ -145,7 +145,6 @@
 #include "ductile/vocabulary/row.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/vocabulary/vector.hpp"
-#include "ductile/world/effort.hpp"
 #include "ductile/world/island_joint.hpp"
 #include "ductile/world/joint_report.hpp"
 #include "ductile/world/ledger.hpp"

@@ -27,15 +27,12 @@ class WorldRig {
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
-    /// Whatever the solver, the World solves its joints at once.
-    static constexpr bool may_be_iterative = false;
-
-    explicit WorldRig(bool /*iterative*/, EffortParameters effort = {}, Warn warn = nullptr,
+    explicit WorldRig(bool /*iterative*/, Warn warn = nullptr,
                       bool ledger = true, bool leapfrog = false)
         : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
           world_(
               dynamics_,
-              {.effort = effort, .ledger = ledger, .leapfrog = leapfrog, .warn = std::move(warn)}) {
+              {.ledger = ledger, .leapfrog = leapfrog, .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
     ~WorldRig() {
@@ -46,7 +43,6 @@ class WorldRig {
 
     [[nodiscard]] bullet::World& world() { return world_; }
     [[nodiscard]] btDiscreteDynamicsWorld& dynamics() { return dynamics_; }
-    [[nodiscard]] int iterations() { return dynamics_.getSolverInfo().m_numIterations; }
 
     Body body(double mass, const V3& inertia, const V3& at) {
         btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape_,

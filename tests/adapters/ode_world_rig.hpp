@@ -29,12 +29,9 @@ class WorldRig {
     using Body = dBodyID;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
-    static constexpr bool may_be_iterative = true;
-
-    explicit WorldRig(bool iterative, EffortParameters effort = {}, Warn warn = nullptr,
+    explicit WorldRig(bool iterative, Warn warn = nullptr,
                       bool ledger = true, bool leapfrog = false)
         : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,
-                       .effort = effort,
                        .ledger = ledger,
                        .leapfrog = leapfrog,
                        .warn = std::move(warn)}) {
@@ -48,7 +45,6 @@ class WorldRig {
     }
 
     [[nodiscard]] ode::World& world() { return world_; }
-    [[nodiscard]] int iterations() { return dWorldGetQuickStepNumIterations(id_); }
 
     Body body(double mass, const V3& inertia, const V3& at) {
         Body b = dBodyCreate(id_);
@@ -102,18 +98,17 @@ class WorldRig {
         std::array<dReal, 4> turned;
         V3 spin;
         Hinge::State hinge;
-        double position;
         bool operator==(const Saved&) const = default;
     };
     static Saved save(Body b, Hinge& hinge) {
-        Saved saved{{}, spin(b), hinge.joint().state(), hinge.position()};
+        Saved saved{{}, spin(b), hinge.state()};
         std::copy_n(dBodyGetQuaternion(b), 4, saved.turned.begin());
         return saved;
     }
     static void put_back(Body b, Hinge& hinge, const Saved& saved) {
         dBodySetQuaternion(b, saved.turned.data());
         set_spin(b, saved.spin);
-        hinge.restore(saved.hinge, saved.position);
+        hinge.restore(saved.hinge);
     }
     static V3 velocity(Body b) { return ode::linear_velocity(b); }
     static V3 spin(Body b) { return ode::angular_velocity(b); }

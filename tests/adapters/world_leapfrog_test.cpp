@@ -23,7 +23,7 @@ constexpr double round_off = WorldRig::single ? 2e-4 : 1e-9;
 constexpr std::array<double, 5> uneven{1.0 / 60, 1.0 / 240, 1.0 / 500, 1.0 / 120, 1.0 / 60};
 
 struct Rig : WorldRig {
-    Rig() : WorldRig(false, {}, nullptr, true, true) {}
+    Rig() : WorldRig(false, nullptr, true, true) {}
 };
 
 Joint joint(double strength, double limit = unlimited, double stiffness = unlimited) {
@@ -42,7 +42,7 @@ bool coarse(double dt, bool leapfrog) { return !leapfrog && 10 * dt / 2 > 0.04 *
 
 /// Rotation at rest of a rotor of 2 kg m² and 10 rad/s on a hinge of 64 N m.
 double rotation_at_rest(double dt, bool leapfrog) {
-    WorldRig rig(false, {}, nullptr, true, leapfrog);
+    WorldRig rig(false, nullptr, true, leapfrog);
     auto& hinge = rig.hinge(rotor(rig, 10), nullptr, none, joint(64), "hinge");
     while (rig.world().time() < 0.5) rig.world().step(dt);
     CHECK(hinge.absorbed_energy() == Approx(100).epsilon(round_off));
@@ -167,7 +167,7 @@ TEST_CASE("a spring under a sudden load swings to twice its rest", "[leapfrog]")
 TEST_CASE("six axes leapfrog as one does", "[leapfrog]") {
     const auto capacity = Vector6<double>::Constant(64).eval();
     const auto rest = [&capacity](double dt, bool leapfrog) {
-        WorldRig rig(false, {}, nullptr, true, leapfrog);
+        WorldRig rig(false, nullptr, true, leapfrog);
         auto& six = rig.six_axes(rotor(rig, 10), none,
                                  SixAxes(Ellipsoid<double, 6>({.capacity = capacity}),
                                          Perfect<double>({.strength = 64})));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// The World of an adapter: events, names, ledger, certificate, effort, steps that follow the
+// The World of an adapter: events, names, ledger, certificate, steps that follow the
 // motion. Compiled for every engine and precision (RIG_HEADER).
 #include RIG_HEADER
 
@@ -90,56 +90,40 @@ struct Cantilever {
 struct Struck {
     double tip_error = 0;    ///< share of the exact deflection
     double energy_error = 0; ///< share of the energy after the blow
-    Effort most;             ///< that was ever made
-    Effort last;
     std::vector<std::string> warnings;
-    std::vector<std::string> suspects; ///< joints that were ever unreliable
     std::size_t unreliable_steps = 0;
     double worst = 0;
-    std::string worst_name;
 };
 
-/// With an iterative solver of ten iterations.
-Struck strike(const EffortParameters& effort, int segments, int calm_steps = 0) {
+/// With an engine's iterative solver, in place of which the World solves.
+Struck strike(int segments) {
     const ParkesCase& c = parkes_cases[0];
     const ParkesAnswer& exact =
         *std::find_if(c.answers.begin(), c.answers.end(),
                       [segments](const ParkesAnswer& a) { return a.segments == segments; });
     Struck result;
-    WorldRig rig(true, effort,
-                 [&result](const std::string& line) { result.warnings.push_back(line); });
+    WorldRig rig(true, [&result](const std::string& line) { result.warnings.push_back(line); });
     Cantilever beam(rig, c, exact);
     const double dt = exact.stop / 800;
-    const int steps = int(1.3 * exact.stop / dt) + calm_steps;
-    for (int i = 0; i < steps; ++i) {
-        rig.world().step(dt);
-        const Effort& now = rig.world().effort();
-        result.most.iterations = std::max(result.most.iterations, now.iterations);
-        result.most.parts = std::max(result.most.parts, now.parts);
-        result.most.direct = result.most.direct || now.direct;
-    }
+    const int steps = int(1.3 * exact.stop / dt);
+    for (int i = 0; i < steps; ++i) rig.world().step(dt);
     double absorbed = 0;
     for (auto* hinge : beam.hinges) absorbed += hinge->absorbed_energy();
     result.tip_error = std::abs(beam.tip() / exact.tip - 1);
     result.energy_error = std::abs(absorbed / exact.struck_energy - 1);
-    result.last = rig.world().effort();
     const Watch<double>& watch = rig.world().watch();
     for (std::size_t i = 0; i < beam.hinges.size(); ++i) {
         result.unreliable_steps += watch.unreliable_steps(i);
-        if (watch.unreliable_steps(i) > 0) result.suspects.push_back(watch.name(i));
     }
     result.worst = watch.worst_ever().residual;
-    result.worst_name = watch.name(watch.worst_ever().joint);
     return result;
 }
 
 std::string to_text(const Struck& s) {
     std::string text = "tip off by " + std::to_string(100 * s.tip_error) + " %, energy by " +
-                       std::to_string(100 * s.energy_error) + " %; most iterations " +
-                       std::to_string(s.most.iterations) + ", parts " +
-                       std::to_string(s.most.parts) + (s.most.direct ? ", direct" : "") + "; " +
+                       std::to_string(100 * s.energy_error) + " %; " +
                        std::to_string(s.unreliable_steps) + " unreliable, worst " +
-                       std::to_string(s.worst) + " at " + s.worst_name;
+                       std::to_string(s.worst);
     for (const std::string& line : s.warnings) text += "\n  " + line;
     return text;
 }
@@ -211,12 +195,11 @@ TEST_CASE("the ledger of a world closes", "[world]") {
     CHECK(ledger.held().kinetic == Approx(4).epsilon(round_off));
     CHECK(std::abs(ledger.unexplained()) < round_off * 100);
 
-    WorldRig silent(false, {}, nullptr, false);
+    WorldRig silent(false, nullptr, false);
     CHECK_THROWS_AS(silent.world().ledger(), std::logic_error);
 }
 
 TEST_CASE("the worst certificate names the joint that has it", "[world]") {
-    if (!WorldRig::may_be_iterative) return; // solved at once
     WorldRig rig(true);
     Cantilever beam(rig, parkes_cases[0], parkes_cases[0].answers[4]);
     double most_ever = 0;
@@ -237,11 +220,10 @@ TEST_CASE("the worst certificate names the joint that has it", "[world]") {
     CHECK(rig.world().watch().worst_ever().residual == most_ever);
 }
 
-TEST_CASE("a struck chain is right with the engine's default solver where the World solves it",
+TEST_CASE("a struck chain is right whatever the engine's solver, as the World solves it",
           "[world]") {
-    if (WorldRig::may_be_iterative) return;
     for (const int segments : {5, 10}) {
-        const Struck struck = strike({}, segments);
+        const Struck struck = strike(segments);
         INFO(to_text(struck));
         CHECK(struck.tip_error < 0.01);
         CHECK(struck.energy_error < 0.005);
@@ -250,82 +232,6 @@ TEST_CASE("a struck chain is right with the engine's default solver where the Wo
             CHECK(line.find("unsolved") == std::string::npos);
         }
     }
-}
-
-TEST_CASE("a chain that ten iterations get wrong is told in few lines, by the worst joint's name",
-          "[world]") {
-    if (!WorldRig::may_be_iterative) return; // solved at once
-    const Struck struck = strike({}, 10);
-    INFO(to_text(struck));
-    CHECK(struck.tip_error > 0.5);
-    CHECK(struck.most == Effort{});
-    CHECK(struck.suspects.size() >= 5);
-    REQUIRE_FALSE(struck.warnings.empty());
-    CHECK(struck.warnings[0].find(" s (off by ") != std::string::npos);
-    CHECK(struck.warnings.size() <= 5); // 1, 2, 4 and 8 joints, and the steps
-}
-
-TEST_CASE("effort makes the chain right and is lowered when all is calm", "[world]") {
-    if (!WorldRig::may_be_iterative) return; // solved at once
-    // calm: 7 times 120 steps at rest
-    constexpr int calm = 7 * 120;
-    SECTION("more iterations") {
-        const Struck struck = strike({.action = OnUnconverged::raise_iterations}, 5, calm);
-        INFO(to_text(struck));
-        CHECK(strike({}, 5).energy_error > 0.03);
-        CHECK(struck.tip_error < 0.005);
-        CHECK(struck.energy_error < 0.002);
-        CHECK(struck.most == Effort{.iterations = 64});
-        CHECK(struck.last == Effort{});
-        // ten segments want more than 64 times as many, but are no longer wrong in kind
-        CHECK(strike({.action = OnUnconverged::raise_iterations}, 10).tip_error < 0.02);
-    }
-    SECTION("parts of a step") {
-        // ten segments are beyond this: they creep on for ever, and say so
-        const Struck unhelped = strike({}, 5);
-        const Struck struck = strike({.action = OnUnconverged::split_step}, 5);
-        INFO(to_text(struck));
-        CHECK(unhelped.energy_error > 0.03);
-        CHECK(struck.energy_error < 0.005);
-        CHECK(struck.tip_error < 0.01);
-        CHECK(struck.most == Effort{.parts = 16});
-        const Struck calmed = strike({.action = OnUnconverged::split_step}, 3, calm);
-        CHECK(calmed.most == Effort{.parts = 16});
-        CHECK(calmed.last == Effort{});
-    }
-    SECTION("a direct solver") {
-        const Struck struck = strike({.action = OnUnconverged::direct_solver}, 10, calm);
-        INFO(to_text(struck));
-        // in float Dantzig's method gives some steps back to the iterations, which are reported
-        CHECK(struck.tip_error < (WorldRig::single ? 0.05 : 0.01));
-        CHECK(struck.energy_error < (WorldRig::single ? 0.02 : 0.005));
-        CHECK(struck.most == Effort{.direct = true});
-        CHECK(struck.last == Effort{});
-        CHECK(struck.unreliable_steps < strike({}, 10).unreliable_steps / 20);
-    }
-}
-
-TEST_CASE("what the user set and applied is his again after a step of more effort", "[world]") {
-    if (!WorldRig::may_be_iterative) return; // solved at once
-    const auto action = GENERATE(OnUnconverged::raise_iterations, OnUnconverged::split_step);
-    WorldRig rig(true, {.action = action});
-    Cantilever beam(rig, parkes_cases[0], parkes_cases[0].answers[6]);
-    const auto free = rig.body(2, V3::Constant(1), {0, 50, 0});
-    const int iterations = rig.iterations();
-    constexpr double dt = 1e-4;
-    const auto strained = [&rig] {
-        return rig.world().effort().parts >= 4 || rig.world().effort().iterations >= 4;
-    };
-    for (int i = 0; i < 100 && !strained(); ++i) rig.world().step(dt);
-    REQUIRE(strained());
-    WorldRig::apply_force(free, {30, 0, 0});
-    rig.world().step(dt);
-    CHECK(WorldRig::velocity(free).x() == Approx(15 * dt).epsilon(round_off));
-    rig.world().step(dt); // the force was for one step
-    CHECK(WorldRig::velocity(free).x() == Approx(15 * dt).epsilon(round_off));
-    CHECK(rig.iterations() == iterations);
-    const Ledger<double>& ledger = rig.world().ledger();
-    CHECK(std::abs(ledger.unexplained()) < round_off * ledger.opened().total() + round_off * 10);
 }
 
 TEST_CASE("steps that follow the motion end on time and turn no hinge too far", "[world]") {
@@ -396,9 +302,7 @@ TEST_CASE("joints without a name are told by their number", "[world]") {
 }
 
 TEST_CASE("two runs of a world are equal bit for bit", "[world]") {
-    const auto action = GENERATE(OnUnconverged::raise_iterations, OnUnconverged::split_step,
-                                 OnUnconverged::direct_solver);
-    const Struck one = strike({.action = action}, 5), two = strike({.action = action}, 5);
+    const Struck one = strike(5), two = strike(5);
     CHECK(one.tip_error == two.tip_error);
     CHECK(one.energy_error == two.energy_error);
     CHECK(one.unreliable_steps == two.unreliable_steps);
@@ -407,8 +311,6 @@ TEST_CASE("two runs of a world are equal bit for bit", "[world]") {
 }
 
 TEST_CASE("a world names what it is given wrongly", "[world]") {
-    CHECK(message_of([] { WorldRig(false, {.calm_steps = 0}); }) ==
-          "Effort.calm_steps = 0: must be >= 1");
     WorldRig rig(false);
     auto& hinge = rig.hinge(rotor(rig, none, 1), nullptr, none, joint(64), "post");
     CHECK(message_of([&] { rig.world().add(hinge, "again"); }) ==

@@ -33,7 +33,7 @@ namespace ductile {
     return line.str();
 }
 inline constexpr const char* unreliable_advice =
-    "take shorter steps, or let the World do so (effort.action)";
+    "take shorter steps, or let the World do so (tolerance)";
 
 [[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
     std::ostringstream line;

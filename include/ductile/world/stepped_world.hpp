@@ -3,11 +3,8 @@
 // What the World of every adapter is: the course of a step and what is told after it. An adapter
 // derives from it, knows its engine's joints and bodies, and says how that engine
 //
-//   goes one part of a step            do_part
-//   raises its number of iterations    set_iterations
-//   keeps the forces applied for a step, and applies them again for its next part
-//
-// A step is one part, or `effort().parts` equal ones.
+//   goes one step            do_step
+//   goes the parts of one    begin_frame
 //
 // Not thread-safe.
 #pragma once
@@ -46,7 +43,7 @@ class SteppedWorld : private JointKeeper {
         if (frames_) {
             do_frame(dt, time() + dt);
         } else {
-            do_step(dt, time() + dt);
+            go(dt, time() + dt);
         }
     }
 
@@ -57,7 +54,7 @@ class SteppedWorld : private JointKeeper {
     void advance(double duration, StepControl<double>& control,
                  const std::function<SceneMotion<double>()>& scene = {}) {
         supervisor_.advance(duration, control, scene,
-                            [this](double dt, double end) { do_step(dt, end); });
+                            [this](double dt, double end) { go(dt, end); });
     }
 
     /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody
@@ -111,12 +108,9 @@ class SteppedWorld : private JointKeeper {
     [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
     /// True where parts may have passed through each other unseen in the last step().
     [[nodiscard]] bool may_miss_contact() const noexcept { return supervisor_.may_miss_contact(); }
-    /// With what the next step is done.
-    [[nodiscard]] const Effort& effort() const noexcept { return supervisor_.effort(); }
 
   protected:
-    SteppedWorld(const EffortParameters& effort, Warn warn)
-        : supervisor_(effort, std::move(warn)) {}
+    explicit SteppedWorld(Warn warn) : supervisor_(std::move(warn)) {}
     ~SteppedWorld() = default;
 
     [[nodiscard]] Supervisor& supervisor() noexcept { return supervisor_; }
@@ -130,7 +124,7 @@ class SteppedWorld : private JointKeeper {
     void start_in_frames(const FrameParameters& parameters) { frames_.emplace(parameters); }
     /// A part of `h` [s], or a blow of none, stands.
     void part_stands(double h) {
-        supervisor_.look(time() + h, [this](const void* joint) { suspect(joint); });
+        supervisor_.look(time() + h);
         look_at_structures();
     }
     [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
@@ -138,46 +132,22 @@ class SteppedWorld : private JointKeeper {
   private:
     // ---- the engine's
 
-    /// Called before each part of `dt` [s], and before its forces are applied again.
+    /// Called before each step of `dt` [s].
     /// @throws what makes it impossible; nothing has changed then.
     virtual void require_possible(double dt) = 0;
-    virtual void do_part(double dt, const ForceShare& share, const Effort& effort) = 0;
+    virtual void do_step(double dt, const ForceShare& share) = 0;
     /// A frame of `length` [s] begins, with the bodies and the forces on them as they are. Asked
     /// for where start_in_frames was called.
     [[nodiscard]] virtual PartEngine& begin_frame(double /*length*/) {
         throw std::logic_error("World.tolerance: must not be asked of this engine");
     }
     virtual void end_frame() {}
-    virtual void hold_forces() = 0;
-    virtual void apply_held_forces() = 0;
-    [[nodiscard]] virtual int iterations() const = 0;
-    virtual void set_iterations(int iterations) = 0;
-    /// The last part left `joint` (as the supervisor knows it) unsolved.
-    virtual void suspect(const void* /*joint*/) {}
-    /// The step ended; the next one is done with `effort`.
-    virtual void finish(const Effort& effort) = 0;
     /// True where a body of this address is known to be in the engine's world; null is not.
     [[nodiscard]] virtual bool has_body(const void* body) const = 0;
     /// Null: none is kept.
     [[nodiscard]] virtual const Ledger<double>* kept_ledger() const noexcept = 0;
 
-    /// The engine's number of iterations, raised while this lives.
-    class RaisedIterations {
-      public:
-        RaisedIterations(SteppedWorld& world, int factor)
-            : world_(world), usual_(world.iterations()) {
-            world_.set_iterations(usual_ * factor);
-        }
-        ~RaisedIterations() { world_.set_iterations(usual_); }
-        RaisedIterations(const RaisedIterations&) = delete;
-        RaisedIterations& operator=(const RaisedIterations&) = delete;
-
-      private:
-        SteppedWorld& world_;
-        int usual_;
-    };
-
-    /// A part may throw.
+    /// A step may throw.
     struct Stepping {
         explicit Stepping(bool& flag) : flag_(flag) { flag_ = true; }
         ~Stepping() { flag_ = false; }
@@ -194,23 +164,15 @@ class SteppedWorld : private JointKeeper {
         }
     }
 
-    void do_step(double dt, double end) {
-        const Effort effort = supervisor_.effort();
-        const double start = time(), part = dt / effort.parts;
-        const RaisedIterations raised(*this, effort.iterations);
-        if (effort.parts > 1) hold_forces();
-        for (int i = 1; i <= effort.parts; ++i) {
-            require_possible(part);
-            if (i > 1) apply_held_forces();
-            {
-                const Stepping guard(stepping_);
-                do_part(part, leapfrog_ ? leapfrog_->next(part) : ForceShare{}, effort);
-            }
-            supervisor_.look(i < effort.parts ? start + i * part : end,
-                             [this](const void* joint) { suspect(joint); });
-            look_at_structures();
+    void go(double dt, double end) {
+        require_possible(dt);
+        {
+            const Stepping guard(stepping_);
+            do_step(dt, leapfrog_ ? leapfrog_->next(dt) : ForceShare{});
         }
-        finish(supervisor_.close());
+        supervisor_.look(end);
+        look_at_structures();
+        supervisor_.close();
         tell_of_forgotten();
     }
 
@@ -222,7 +184,7 @@ class SteppedWorld : private JointKeeper {
             end_frame();
         }
         supervisor_.set_time(end);
-        (void)supervisor_.close();
+        supervisor_.close();
         tell_of_forgotten();
     }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The part of an adapter's World that knows no engine: whom it asks after each step, what it tells,
-// with what effort the next step is done, the clock, and steps that follow the motion.
+// the clock, and steps that follow the motion.
 //
-//   every step:  open();  each part: engine's step, look(time, suspect);  close()
+//   every step:  open();  each part: engine's step, look(time);  close()
 //
 // Of a joint it knows an address, a name, and whom to ask for its report.
 //
@@ -24,7 +24,6 @@
 
 #include "ductile/fidelity/step_control.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/world/effort.hpp"
 #include "ductile/world/joint_event.hpp"
 #include "ductile/world/joint_warning.hpp"
 #include "ductile/world/watch.hpp"
@@ -55,9 +54,7 @@ class Supervisor {
     using Listener = Watch<double>::Listener;
 
     /// An empty `warn`: nothing is said.
-    /// @throws std::invalid_argument where a parameter is out of range.
-    Supervisor(const EffortParameters& effort, Warn warn)
-        : effort_(effort), warn_(std::move(warn)) {
+    explicit Supervisor(Warn warn) : warn_(std::move(warn)) {
         watch_.on_event([this](const Event& event) {
             if (event.kind == EventKind::unreliable) unreliable_.add(event);
             if (event.kind == EventKind::coarse) coarse_.add(event);
@@ -110,7 +107,6 @@ class Supervisor {
     [[nodiscard]] const Watch<double>& watch() const noexcept { return watch_; }
     [[nodiscard]] std::span<const Event> events() const noexcept { return watch_.events(); }
     void on_event(Listener listener) { listener_ = std::move(listener); }
-    [[nodiscard]] const Effort& effort() const noexcept { return effort_.effort(); }
     [[nodiscard]] double time() const noexcept { return time_; }
     /// The end of a frame, its parts having summed up to it but for round-off [s].
     void set_time(double time) noexcept { time_ = time; }
@@ -134,22 +130,15 @@ class Supervisor {
     /// Of the last step whose motion was told.
     [[nodiscard]] bool may_miss_contact() const noexcept { return may_miss_contact_; }
 
-    /// Asks all joints after a part of a step that ended at `time` [s]; suspect(joint) is called
-    /// for each that was left unsolved.
-    template <class Suspect>
-    void look(double time, Suspect&& suspect) {
+    /// Asks all joints after a step, or a part of one, that ended at `time` [s].
+    void look(double time) {
         time_ = time;
         watch_.go_on(time);
         const Looking guard(looking_);
         const std::size_t here = joints_.size(); // a listener may add more
         for (std::size_t i = 0; i < here; ++i) {
-            const void* joint = joints_[i].joint;
-            if (joint == nullptr || joints_[i].idle) continue;
+            if (joints_[i].joint == nullptr || joints_[i].idle) continue;
             const Report report = joints_[i].ask();
-            if (report.outcome == Outcome::unreliable) {
-                reliable_ = false;
-                suspect(joint);
-            }
             watch_.see(joints_[i].number, report);
         }
     }
@@ -161,13 +150,12 @@ class Supervisor {
         watch_.tell_section(found->number, kind, section, found->ask());
     }
 
-    /// The effort of the next step, all parts of this one having been looked at.
-    const Effort& close() {
+    /// All parts of the step have been looked at.
+    void close() {
         forget_removed();
         for (JointWarning* warning : {&unreliable_, &coarse_}) {
             if (warning->due() && warn_) warn_(warning->line());
         }
-        return effort_.next(std::exchange(reliable_, true));
     }
 
     /// Steps for `duration` [s] and ends there to the last bit. Before each step `scene` (may be
@@ -238,7 +226,6 @@ class Supervisor {
 
     std::vector<Entry> joints_;
     Watch<double> watch_;
-    EffortControl effort_;
     Warn warn_;
     JointWarning unreliable_{unreliable_warning, unreliable_advice};
     JointWarning coarse_{coarse_warning, coarse_advice};
@@ -247,7 +234,6 @@ class Supervisor {
     std::size_t added_ = 0;
     bool may_miss_contact_ = false;
     bool told_of_contact_ = false;
-    bool reliable_ = true;
     bool looking_ = false;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // One object per Bullet world that steps it and looks after its plastic joints: the ledger, events
-// with names, the worst certificate, a warning where the solver does not converge and what is done
-// about it, and steps that follow the motion.
+// with names, the worst certificate, a warning where rows were left unsolved, and steps that follow
+// the motion.
 //
-//   ductile::bullet::World world(dynamics, {.effort = {.action = OnUnconverged::direct_solver}});
+//   ductile::bullet::World world(dynamics);
 //   world.add(hinge, "lamp post");
 //   world.step(dt);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
@@ -12,9 +12,8 @@
 // The joints need nothing of this: without a World they are as exact. Step through `step` and
 // `advance` alone, else ledger and clock miss something.
 //
-// A part of a step is one internal tick. Of a split step each part has the forces that were applied
-// for the step; a kinematic body moved by hand makes its whole motion in the first part. A step
-// throws std::invalid_argument where it, or its part, is shorter than Bullet steps.
+// A step is one internal tick. It throws std::invalid_argument where it is shorter than Bullet
+// steps.
 //
 // Islands with a plastic joint are solved at once, contacts and friction too (front_solver.hpp),
 // whatever the user's solver is, which gets all others and is in place again when this object ends.
@@ -22,8 +21,8 @@
 // (multibody_solver.hpp); a btDiscreteDynamicsWorldMt with a solver for large islands of its own
 // gives those to that.
 //
-// Of a world with multibodies no ledger is kept, and forces on them are not split: what their
-// solve does to energies that depend on their pose cannot be told from outside.
+// Of a world with multibodies no ledger is kept: what their solve does to energies that depend on
+// their pose cannot be told from outside.
 //
 // tolerance: a step is a frame, done in as many parts as the tolerance needs (world_parts.hpp):
 //
@@ -55,7 +54,6 @@
 #include <vector>
 
 #include "ductile/bullet/energy_meter.hpp"
-#include "ductile/bullet/held_forces.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
@@ -69,9 +67,8 @@ class FrontHold;
 class WorldParts;
 
 struct WorldParameters {
-    EffortParameters effort{}; ///< what is done where the solver did not converge
-    bool ledger = true;        ///< whether the energy account is kept; not with multibodies
-    bool leapfrog = false;     ///< whether positions are of second order in the step
+    bool ledger = true;    ///< whether the energy account is kept; not with multibodies
+    bool leapfrog = false; ///< whether positions are of second order in the step
     /// Share of the plastic work that a frame may misplace [-]: a step is then done in as many
     /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
     double tolerance = 0;
@@ -124,7 +121,7 @@ class World final : public SteppedWorld {
     void share(const ForceShare& how);
     void require_leapfrog() const;
     void require_members() const;
-    void part_with_members(double dt, const ForceShare& how);
+    void step_with_members(double dt, const ForceShare& how);
     template <class Change>
     void rearrange(const Change& change);
     void tell_of_members();
@@ -136,15 +133,9 @@ class World final : public SteppedWorld {
     // ---- what SteppedWorld asks of Bullet
 
     DUCTILE_INLINE void require_possible(double dt) override;
-    DUCTILE_INLINE void do_part(double dt, const ForceShare& how, const Effort& effort) override;
-    void hold_forces() override { forces_.hold(world_); }
-    void apply_held_forces() override { forces_.apply(); }
+    DUCTILE_INLINE void do_step(double dt, const ForceShare& how) override;
     [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
     DUCTILE_INLINE void end_frame() override;
-    [[nodiscard]] DUCTILE_INLINE int iterations() const override;
-    DUCTILE_INLINE void set_iterations(int iterations) override;
-    DUCTILE_INLINE void suspect(const void* joint) override;
-    DUCTILE_INLINE void finish(const Effort& effort) override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;
 
@@ -152,7 +143,6 @@ class World final : public SteppedWorld {
     std::unique_ptr<FrontHold> front_; ///< not in a world of multibodies
     std::optional<EnergyMeter> meter_;
     bool tells_ledger_ = false;
-    HeldForces forces_;
     Members members_;
     std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
     WorldSnapshot snapshot_;           ///< of a step, while there are members

@@ -41,7 +41,7 @@ void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Re
 } // namespace detail
 
 DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
-    : SteppedWorld(parameters.effort, std::move(parameters.warn)), world_(world), members_(world) {
+    : SteppedWorld(std::move(parameters.warn)), world_(world), members_(world) {
     require_matching_precision();
     if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
@@ -228,9 +228,9 @@ DUCTILE_INLINE void World::require_possible(double dt) {
     }
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
 }
-DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& /*effort*/) {
+DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
     if (!members_.empty()) {
-        part_with_members(dt, how);
+        step_with_members(dt, how);
         return;
     }
     const bool keeps_ledger = meter_ && !holds_multibodies();
@@ -249,8 +249,8 @@ void World::rearrange(const Change& change) {
     if (change() && meter_) meter_->bodies_rearranged(before);
 }
 
-/// The part, again with more sections open until none that is closed is beyond its strength.
-DUCTILE_INLINE void World::part_with_members(double dt, const ForceShare& how) {
+/// The step, again with more sections open until none that is closed is beyond its strength.
+DUCTILE_INLINE void World::step_with_members(double dt, const ForceShare& how) {
     members_.set_share(how);
     tell_idle(true);
     for (;;) {
@@ -271,14 +271,9 @@ DUCTILE_INLINE void World::part_with_members(double dt, const ForceShare& how) {
     if (meter_) meter_->after_step(double(btScalar(dt)), how.value);
     rearrange([this] { return members_.close_held(); });
     tell_of_members();
+    members_.drop_forces();
 }
 
-DUCTILE_INLINE int World::iterations() const { return world_.getSolverInfo().m_numIterations; }
-DUCTILE_INLINE void World::set_iterations(int iterations) {
-    world_.getSolverInfo().m_numIterations = iterations;
-}
-DUCTILE_INLINE void World::suspect(const void* /*joint*/) {} // solved directly already
-DUCTILE_INLINE void World::finish(const Effort& /*effort*/) { members_.drop_forces(); }
 DUCTILE_INLINE bool World::has_body(const void* body) const {
     const auto& objects = world_.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {

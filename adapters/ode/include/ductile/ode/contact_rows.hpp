@@ -40,6 +40,7 @@ class ContactRows {
     Vector3<double> arm_a_, arm_b_ = Vector3<double>::Zero(); ///< world [m]
     std::array<Vector3<double>, 3> along_;                    ///< of each row, force on A, world
     int first_ = 0, count_ = 0;
+    double softness_ = 0; ///< of its own effect; 0: the least there is [-]
 };
 
 } // namespace ductile::ode

@@ -52,7 +52,7 @@ DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat
     solve::IslandRow& row =
         ductile::add_row(island, a, b, arm_a_, arm_b_, along, Vector3<double>::Zero(), target);
     row.compliance = cfm / dt;
-    row.softness = solve::contact_softness * own_effect(island, row);
+    row.softness = softness_ * own_effect(island, row);
     along_[std::size_t(count_++)] = along;
 }
 
@@ -76,6 +76,9 @@ DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island
             closing, sum(linear_velocity(bodies.b), cross(angular_velocity(bodies.b), arm_b_)));
     }
     const auto usual_cfm = double(dWorldGetCFM(world));
+    // only friction needs it: of a light body before a heavy one it is a share of the whole blow
+    const bool rubs = surface.mu > 0 || (has(dContactMu2) && surface.mu2 > 0);
+    softness_ = rubs ? solve::contact_softness : 0;
     add_row(island, a, b, normal,
             detail::wanted_velocity(world, contact, -dot(normal, closing), dt),
             has(dContactSoftCFM) ? double(surface.soft_cfm) : usual_cfm, dt);

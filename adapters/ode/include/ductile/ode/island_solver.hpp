@@ -3,9 +3,9 @@
 // Stands before ODE's step: an island whose rows are all known is solved at once
 // (solve/island_solver.hpp), and ODE gets the answer as forces on the bodies. World calls it.
 //
-//   known      six-axis plastic joints, which state their rows themselves, and contacts that were
-//              named with what they were made of; sliding friction, no rolling
-//   not known  any other joint of ODE's, also a PlasticHinge, and contacts that nobody named: the
+//   known      plastic joints, which state their rows themselves, and contacts that were named with
+//              what they were made of; sliding friction, no rolling
+//   not known  a joint of ODE's own, also a PlasticMotor's, and contacts that nobody named: the
 //              island is ODE's then, whichever solver steps it
 //
 // In the step the plastic joints have no row in ODE and the contacts are disabled; bodies of the
@@ -26,6 +26,7 @@
 
 #include <cstddef>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "ductile/ode/contact_rows.hpp"
@@ -89,8 +90,9 @@ class IslandSolver {
     bool awake_ = false;
 
     // ---- until the end of the step
-    std::vector<dJointID> disabled_;  ///< contacts
-    std::vector<dBodyID> kept_awake_; ///< that would put themselves to sleep
+    std::vector<dJointID> disabled_; ///< contacts
+    /// Bodies that would put themselves to sleep, and from how many samples they would tell.
+    std::vector<std::pair<dBodyID, int>> kept_awake_;
 };
 
 } // namespace ductile::ode

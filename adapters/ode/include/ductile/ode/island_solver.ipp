@@ -69,7 +69,9 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
 
 DUCTILE_INLINE void IslandSolver::after_step() {
     for (const dJointID contact : std::exchange(disabled_, {})) dJointEnable(contact);
-    for (const dBodyID body : std::exchange(kept_awake_, {})) dBodySetAutoDisableFlag(body, 1);
+    for (const auto& [body, samples] : std::exchange(kept_awake_, {})) {
+        dBodySetAutoDisableAverageSamplesCount(body, unsigned(samples));
+    }
 }
 
 /// All that hangs together with a body; false where not all of it is known.
@@ -172,9 +174,11 @@ DUCTILE_INLINE void IslandSolver::set_aside(const std::vector<NamedContact>& con
     }
     for (const dBodyID body : bodies_) {
         if (dBodyIsEnabled(body) == 0) dBodyEnable(body);
-        if (dBodyGetAutoDisableFlag(body) == 0) continue;
-        dBodySetAutoDisableFlag(body, 0);
-        kept_awake_.push_back(body);
+        const int samples = dBodyGetAutoDisableAverageSamplesCount(body);
+        if (dBodyGetAutoDisableFlag(body) == 0 || samples == 0) continue;
+        // not by its flag, with which ODE forgets the body's own steps and time
+        dBodySetAutoDisableAverageSamplesCount(body, 0);
+        kept_awake_.emplace_back(body, samples);
     }
 }
 

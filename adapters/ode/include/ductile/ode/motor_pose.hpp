@@ -9,9 +9,6 @@
 
 #include <ode/ode.h>
 
-#include <algorithm>
-#include <array>
-
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/vector.hpp"
@@ -21,10 +18,6 @@ namespace ductile::ode {
 class MotorPose {
   public:
     void look(const MotorAxis& row);
-    /// True where neither body has moved since, to the last bit.
-    [[nodiscard]] bool is_now(const MotorAxis& row) const {
-        return seen_a_.is(row.bodies().a) && seen_b_.is(row.bodies().b);
-    }
 
     [[nodiscard]] const Vector3<double>& axis() const noexcept { return axis_; }
     /// Of all motors of the joint, as MotorAxis::axes.
@@ -42,28 +35,6 @@ class MotorPose {
     [[nodiscard]] double velocity(const MotorAxis& row) const;
 
   private:
-    /// A body's place; that of the static world is never looked at.
-    struct Place {
-        std::array<dReal, 3> position{};
-        std::array<dReal, 4> quaternion{}; ///< of no body
-
-        explicit Place(dBodyID body = nullptr) {
-            if (body == nullptr) return;
-            std::copy_n(dBodyGetPosition(body), 3, position.begin());
-            std::copy_n(dBodyGetQuaternion(body), 4, quaternion.begin());
-        }
-        [[nodiscard]] bool is_turned_as(dBodyID body) const {
-            return body == nullptr ||
-                   std::equal(quaternion.begin(), quaternion.end(), dBodyGetQuaternion(body));
-        }
-        [[nodiscard]] bool is(dBodyID body) const {
-            return body == nullptr ||
-                   (std::equal(position.begin(), position.end(), dBodyGetPosition(body)) &&
-                    is_turned_as(body));
-        }
-    };
-
-    Place seen_a_, seen_b_;
     Placement placement_;
     Matrix3<double> axes_ = Matrix3<double>::Zero();
     Vector3<double> axis_ = Vector3<double>::Zero();

@@ -10,8 +10,6 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE void MotorPose::look(const MotorAxis& row) {
-    seen_a_ = Place(row.bodies().a);
-    seen_b_ = Place(row.bodies().b);
     point_ = row.point();
     axes_ = row.axes();
     axis_ = column(axes_, row.number());

@@ -7,8 +7,6 @@
 
 #include <array>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/island_rows.hpp"
@@ -62,29 +60,5 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     /// Null: its rows are a joint's of ODE.
     [[nodiscard]] virtual IslandRows* island_rows() noexcept { return nullptr; }
 };
-
-/// What happens to ODE's joint when its plastic row breaks.
-enum class AtBreak {
-    disable_joint, ///< the whole joint lets go: it is disabled, and attached to nothing
-    release_axis   ///< only the row does: its motor is switched off
-};
-
-/// @throws std::invalid_argument where the first body of a `kind` is null, or both are one or not
-/// of this world.
-inline void require_bodies(const char* kind, dWorldID world, dBodyID a, dBodyID b) {
-    const auto require = [kind](bool right, const char* what) {
-        if (!right) throw std::invalid_argument(kind + std::string(what));
-    };
-    require(a != nullptr, ".a = null: must be a body (only b may be the static world)");
-    require(a != b, ".b: must not be body a itself");
-    require(dBodyGetWorld(a) == world, ".a: must be a body of the joint's world");
-    require(b == nullptr || dBodyGetWorld(b) == world, ".b: must be a body of the joint's world");
-}
-
-/// @throws std::invalid_argument where it has no length, or is not finite.
-inline void require_direction(const char* field, const Vector3<double>& direction) {
-    if (is_finite(direction) && norm(direction) > 0) return;
-    throw std::invalid_argument(std::string(field) + ": must be finite and of a length > 0");
-}
 
 } // namespace ductile::ode

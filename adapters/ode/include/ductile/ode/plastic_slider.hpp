@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A bar that holds its length below its axial strength, stretches or shortens at it, keeps the
-// change and breaks: ODE's slider with its motor as the plastic row. See one_axis_constraint.hpp
-// for signs and ODE's traps.
+// A bar that holds its length below its axial strength, rigidly or by its stiffness, stretches or
+// shortens at it, keeps the change and breaks: five rigid rows and one plastic row along the axis.
+// See joint_constraint.hpp for who solves, life in a world and ODE's traps.
 #pragma once
 
 #include <ode/ode.h>
@@ -11,40 +11,45 @@
 
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"
-#include "ductile/ode/joint_axes.hpp"
-#include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/ode/joint_constraint.hpp"
 
 namespace ductile::ode {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticSlider final : public AxisConstraint<Joint, OneAxisConstraint> {
-    using Base = AxisConstraint<Joint, OneAxisConstraint>;
+class PlasticSlider final : public LinkJoint<Joint, JointConstraint> {
+    using Base = LinkJoint<Joint, JointConstraint>;
 
   public:
-    /// Bar along `axis` (world, any length > 0). `b` null: between body `a` and the static world.
-    /// Where the bodies are now is the bar's rest position.
+    static constexpr JointAxis axis = JointAxis::axial; ///< along the bar
+
+    /// Bar along `along` (world, any length > 0), through the middle between the centres of mass, or
+    /// where `b` is null, the static world, through that of `a`. Where the bodies are now is the
+    /// bar's rest position.
     /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
-    /// or the axis is not finite or has no length.
-    PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis, Joint joint)
-        : Base(std::move(joint), slider_axis(make(world, a, b, axis)), AtBreak::disable_joint,
-               true) {}
+    /// or `along` is not finite or has no length.
+    PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& along,
+                  Joint joint)
+        : PlasticSlider(std::move(joint), world,
+                        Base::require_bodies("PlasticSlider", world, a, b), b,
+                        Base::frame_along("PlasticSlider", along, Base::midway(a, b))) {}
 
     /// Change of length: A's displacement along the axis relative to B [m].
-    [[nodiscard]] double elongation() const { return Base::position(); }
+    [[nodiscard]] double elongation() const { return Base::position(axis); }
+    /// Velocity of that after the last step's solve [m/s].
+    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
+    /// Geometric rest elongation q_p [m].
+    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
     /// Accumulated plastic elongation p, work-conjugate [m].
     [[nodiscard]] double plastic_elongation() const { return Base::plastic_travel(); }
     /// Force along the axis in the last step, positive where it pushes A along +axis [N].
-    [[nodiscard]] double force() const { return Base::reaction(); }
+    [[nodiscard]] double force() const { return Base::force(axis); }
 
   private:
-    static dJointID make(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& axis) {
-        require_bodies("PlasticSlider", world, a, b);
-        require_direction("PlasticSlider.axis", axis);
-        const dJointID id = dJointCreateSlider(world, nullptr);
-        dJointAttach(id, a, b);
-        dJointSetSliderAxis(id, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
-        return id;
-    }
+    PlasticSlider(Joint joint, dWorldID world, dBodyID a, dBodyID b,
+                  const JointFrame<double>& in_world)
+        : Base(Link<Joint>(std::move(joint), {axis}, Base::frame_in(a, in_world),
+                           Base::frame_in(b, in_world)),
+               world, a, b) {}
 };
 
 #ifdef DUCTILE_COMPILED

@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
 // One object per ODE world that steps it and the plastic constraints in it, and looks after them:
-// the ledger, events with names, the worst certificate, a warning where the solver does not
-// converge and what is done about it, and steps that follow the motion. ODE calls nothing back at
-// the end of a step, so the step has to go through here: one call in place of dWorldStep or
-// dWorldQuickStep.
+// the ledger, events with names, the worst certificate, a warning where rows were left unsolved,
+// and steps that follow the motion. ODE calls nothing back at the end of a step, so the step has to
+// go through here: one call in place of dWorldStep or dWorldQuickStep.
 //
-//   ductile::ode::World world(id, {.solver = ode::Solver::quick,
-//                                  .effort = {.action = OnUnconverged::direct_solver}});
+//   ductile::ode::World world(id, {.solver = ode::Solver::quick});
 //   world.add(body);                                    // every dynamic body: for the ledger
 //   world.add(hinge, "lamp post");
 //   world.step(dt);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
 //
-// Islands of six-axis joints and of contacts that were named by add_contact are solved at once,
-// before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's.
+// Islands of plastic joints and of contacts that were named by add_contact are solved at once,
+// before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's, also
+// those with a PlasticMotor.
 //
-// Of a split step each part has the forces that were applied for the step to the bodies added here,
-// and the same contact joints. A step throws what a constraint's check() throws, and
-// std::invalid_argument where it leapfrogs and a joint's body was not added.
-//
-// OnUnconverged::direct_solver: ODE has no solver per island, so the whole world's step goes to
-// dWorldStep while a joint is suspect. OnUnconverged::raise_iterations is for dWorldQuickStep;
-// dWorldStep has none to raise.
+// A step throws what a constraint's check() throws, and std::invalid_argument where it leapfrogs
+// and a joint's body was not added.
 //
 // leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be
 // all that move. Velocities are then those in the middle of the last step, and so is the joints'
@@ -39,7 +33,6 @@
 #include <vector>
 
 #include "ductile/ode/energy_meter.hpp"
-#include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
@@ -53,9 +46,8 @@ enum class Solver { direct, quick };
 
 struct WorldParameters {
     Solver solver = Solver::direct;
-    EffortParameters effort{};  ///< what is done where the solver did not converge
-    bool ledger = true;         ///< whether the energy account is kept
-    bool leapfrog = false;      ///< whether positions are of second order in the step
+    bool ledger = true;    ///< whether the energy account is kept
+    bool leapfrog = false; ///< whether positions are of second order in the step
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
@@ -96,16 +88,7 @@ class World final : public SteppedWorld {
     // ---- what SteppedWorld asks of ODE
 
     DUCTILE_INLINE void require_possible(double dt) override;
-    DUCTILE_INLINE void do_part(double dt, const ForceShare& how, const Effort& effort) override;
-    void hold_forces() override { forces_.hold(bodies_); }
-    void apply_held_forces() override { forces_.apply(); }
-    [[nodiscard]] int iterations() const override {
-        return dWorldGetQuickStepNumIterations(world_);
-    }
-    void set_iterations(int iterations) override {
-        dWorldSetQuickStepNumIterations(world_, iterations);
-    }
-    void finish(const Effort&) override { contacts_.clear(); }
+    DUCTILE_INLINE void do_step(double dt, const ForceShare& how) override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
         return meter_ ? &meter_->ledger() : nullptr;
@@ -120,7 +103,6 @@ class World final : public SteppedWorld {
     dWorldID world_;
     Solver solver_;
     std::optional<EnergyMeter> meter_;
-    HeldForces forces_;
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;

@@ -17,7 +17,7 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
-    : SteppedWorld(parameters.effort, std::move(parameters.warn)),
+    : SteppedWorld(std::move(parameters.warn)),
       world_(world),
       solver_(parameters.solver) {
     require_matching_precision();
@@ -86,7 +86,7 @@ DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
     if (leapfrogs() && !bodies_known_) require_bodies();
 }
-DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effort& effort) {
+DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
     if (meter_) {
         for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();
@@ -94,7 +94,7 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
     if (leapfrogs()) share_forces(bodies_, constraints_, how);
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
     islands_.before_step(contacts_, dt);
-    if (effort.direct || solver_ == Solver::direct) {
+    if (solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {
         dWorldQuickStep(world_, dReal(dt));
@@ -104,6 +104,7 @@ DUCTILE_INLINE void World::do_part(double dt, const ForceShare& how, const Effor
     share_work(std::span<PlasticConstraint* const>(plastic_), [this] { return islands(); });
     for (SteppedConstraint* constraint : constraints_) constraint->finish();
     if (meter_) meter_->after_step(dt, how.value);
+    contacts_.clear();
 }
 
 DUCTILE_INLINE bool World::has_body(const void* body) const {

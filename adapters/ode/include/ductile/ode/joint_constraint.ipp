@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of plastic_joint.hpp.
+// Bodies of joint_constraint.hpp.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "ductile/ode/convert.hpp"
-#include "ductile/ode/plastic_joint.hpp"
+#include "ductile/ode/joint_constraint.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
@@ -33,7 +35,7 @@ DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<doub
 
 } // namespace detail
 
-DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
+DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
                                               dBodyID b)
     : LinkQueries(link), a_(a), b_(b), life_(WorldLife::of(world)), forces_(world) {
     require_matching_precision();
@@ -46,28 +48,62 @@ DUCTILE_INLINE LinkConstraint::LinkConstraint(AnyLink<double>& link, dWorldID wo
     wait_for_world(a_, b_);
 }
 
-DUCTILE_INLINE LinkConstraint::~LinkConstraint() {
+DUCTILE_INLINE JointConstraint::~JointConstraint() {
     if (life_->goes_on()) dJointDestroy(id_);
 }
 
-DUCTILE_INLINE dBodyID LinkConstraint::require_bodies(dWorldID world, dBodyID a, dBodyID b) {
-    ductile::ode::require_bodies("PlasticJoint", world, a, b);
+DUCTILE_INLINE dBodyID JointConstraint::require_bodies(const char* kind, dWorldID world, dBodyID a,
+                                                       dBodyID b) {
+    const auto require = [kind](bool right, const char* what) {
+        if (!right) throw std::invalid_argument(kind + std::string(what));
+    };
+    require(a != nullptr, ".a = null: must be a body (only b may be the static world)");
+    require(a != b, ".b: must not be body a itself");
+    require(dBodyGetWorld(a) == world, ".a: must be a body of the joint's world");
+    require(b == nullptr || dBodyGetWorld(b) == world, ".b: must be a body of the joint's world");
     return a;
 }
 
-DUCTILE_INLINE const JointFrame<double>& LinkConstraint::require_frame(const char* name,
+DUCTILE_INLINE const JointFrame<double>& JointConstraint::require_frame(const char* name,
                                                                        const Frame& frame) {
     constexpr double round_off = 1e-9;
     return ductile::require_frame(std::string("PlasticJoint.") + name, frame, round_off);
 }
 
-DUCTILE_INLINE JointFrame<double> LinkConstraint::frame_in(dBodyID body, const Frame& world) {
+DUCTILE_INLINE JointFrame<double> JointConstraint::frame_along(const std::string& kind,
+                                                               const Vector3<double>& axis,
+                                                               const Vector3<double>& origin) {
+    if (!is_finite(axis) || !(norm(axis) > 0)) {
+        throw std::invalid_argument(kind + ".axis: must be finite and of a length > 0");
+    }
+    if (!is_finite(origin)) throw std::invalid_argument(kind + ".anchor: must be finite [m]");
+    constexpr double aside = 0.8;
+    const Vector3<double> z = scaled(1 / norm(axis), axis);
+    const Vector3<double> other = std::abs(z.x()) < aside ? Vector3<double>(1, 0, 0)
+                                                          : Vector3<double>(0, 1, 0);
+    const Vector3<double> across = cross(z, other), y = scaled(1 / norm(across), across),
+                          x = cross(y, z);
+    JointFrame<double> frame{.origin = origin};
+    for (int i = 0; i < 3; ++i) {
+        frame.axes(i, 0) = x[i];
+        frame.axes(i, 1) = y[i];
+        frame.axes(i, 2) = z[i];
+    }
+    return frame;
+}
+
+DUCTILE_INLINE Vector3<double> JointConstraint::midway(dBodyID a, dBodyID b) {
+    const Vector3<double> of_a = body_motion(a).position;
+    return b == nullptr ? of_a : scaled(0.5, sum(of_a, body_motion(b).position));
+}
+
+DUCTILE_INLINE JointFrame<double> JointConstraint::frame_in(dBodyID body, const Frame& world) {
     const BodyState<double> at = body_motion(body);
     return {.origin = transposed_times(at.orientation, difference(world.origin, at.position)),
             .axes = transposed_times(at.orientation, world.axes)};
 }
 
-DUCTILE_INLINE void LinkConstraint::restored(bool was_broken) {
+DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
     put_back_ = true;
     driven_.forget();
     silent_ = link_.broken();
@@ -81,30 +117,30 @@ DUCTILE_INLINE void LinkConstraint::restored(bool was_broken) {
 
 // ---- life
 
-DUCTILE_INLINE bool LinkConstraint::detached() const {
+DUCTILE_INLINE bool JointConstraint::detached() const {
     return !link_.broken() && (dJointGetBody(id_, 0) != a_ || dJointGetBody(id_, 1) != b_);
 }
-DUCTILE_INLINE bool LinkConstraint::may_act() const {
+DUCTILE_INLINE bool JointConstraint::may_act() const {
     return !detached() && dJointIsEnabled(id_) != 0 && (can_move(a_) || can_move(b_));
 }
-DUCTILE_INLINE bool LinkConstraint::solved() const {
+DUCTILE_INLINE bool JointConstraint::solved() const {
     return dBodyIsEnabled(a_) != 0 || (b_ != nullptr && dBodyIsEnabled(b_) != 0);
 }
-DUCTILE_INLINE Vector6<double> LinkConstraint::velocities() const {
+DUCTILE_INLINE Vector6<double> JointConstraint::velocities() const {
     if (detached() || dJointIsEnabled(id_) == 0) return Vector6<double>::Zero();
     return link_.velocities(body_motion(a_), body_motion(b_));
 }
 
 // ---- a structure's side
 
-DUCTILE_INLINE bool LinkConstraint::is_awake_member() const { return may_act() && solved(); }
-DUCTILE_INLINE std::array<const void*, 2> LinkConstraint::moving_bodies() const {
+DUCTILE_INLINE bool JointConstraint::is_awake_member() const { return may_act() && solved(); }
+DUCTILE_INLINE std::array<const void*, 2> JointConstraint::moving_bodies() const {
     if (detached()) return {};
     const auto moving = [](dBodyID body) { return can_move(body) ? body : nullptr; };
     return {moving(a_), moving(b_)};
 }
 /// ODE begins to count anew.
-DUCTILE_INLINE void LinkConstraint::keep_awake() {
+DUCTILE_INLINE void JointConstraint::keep_awake() {
     for (const dBodyID body : {a_, b_}) {
         if (can_move(body) && dBodyIsEnabled(body) != 0) dBodyEnable(body);
     }
@@ -112,7 +148,7 @@ DUCTILE_INLINE void LinkConstraint::keep_awake() {
 
 // ---- a step
 
-DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
+DUCTILE_INLINE void JointConstraint::prepare(double dt) {
     acting_ = false;
     outside_ = {};
     if (link_.broken() || !may_act()) {
@@ -134,12 +170,12 @@ DUCTILE_INLINE void LinkConstraint::prepare(double dt) {
     moments_ = {}; // ODE leaves it alone where the motor has no row
 }
 
-DUCTILE_INLINE void LinkConstraint::open_rows(solve::Island& island, const IslandSeat& a,
+DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const IslandSeat& a,
                                               const IslandSeat& b, double dt) {
     first_row_ = add_rows(island, link_, a, b, force_share_.value * dt);
 }
 
-DUCTILE_INLINE void LinkConstraint::close_rows(const solve::Island& island, double dt) {
+DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
     const Vector6<double> forces = forces_of(island, first_row_, dt);
     const LinkPose<double>& pose = link_.pose();
     centre_ = {.force = times(pose.axes(), linear(forces)),
@@ -148,7 +184,7 @@ DUCTILE_INLINE void LinkConstraint::close_rows(const solve::Island& island, doub
     add_centre(1);
 }
 
-DUCTILE_INLINE void LinkConstraint::make_rows(double dt) {
+DUCTILE_INLINE void JointConstraint::make_rows(double dt) {
     const BodyState<double> a = body_state(a_), b = body_state(b_);
     std::array<PointRow, 3> force_rows, moment_rows;
     const Vector6<double> stiffness = link_.section_stiffness();
@@ -172,7 +208,7 @@ DUCTILE_INLINE void LinkConstraint::make_rows(double dt) {
     add_centre(1);
 }
 
-DUCTILE_INLINE void LinkConstraint::commit(double dt) {
+DUCTILE_INLINE void JointConstraint::commit(double dt) {
     if (!acting_) return;
     if (!solved()) {
         // ODE keeps what was applied for the step
@@ -202,13 +238,13 @@ DUCTILE_INLINE void LinkConstraint::commit(double dt) {
     booked_ = true;
 }
 
-DUCTILE_INLINE void LinkConstraint::finish() {
+DUCTILE_INLINE void JointConstraint::finish() {
     if (!std::exchange(booked_, false) || !link_.broken()) return;
     hand_back();
     let_go();
 }
 
-DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment, bool on) {
+DUCTILE_INLINE void JointConstraint::set_motor(int number, const PointRow& moment, bool on) {
     constexpr int in_world = 0;
     const Vector3<double>& axis = moment.direction;
     dJointSetAMotorAxis(id_, number, in_world, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
@@ -218,14 +254,14 @@ DUCTILE_INLINE void LinkConstraint::set_motor(int number, const PointRow& moment
     dJointSetAMotorParam(id_, dParamCFM + group, dReal(moment.row.cfm));
 }
 
-DUCTILE_INLINE void LinkConstraint::rest_motor() {
+DUCTILE_INLINE void JointConstraint::rest_motor() {
     if (!std::exchange(motor_on_, false)) return;
     for (int i = 0; i < 3; ++i) {
         dJointSetAMotorParam(id_, dParamFMax + dParamGroup * i, 0);
     }
 }
 
-DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {
+DUCTILE_INLINE void JointConstraint::add_centre(double sign) {
     const Vector3<double> force = scaled(sign, centre_.force);
     const Vector3<double> moment = scaled(sign, centre_.moment);
     add_force(a_, force, sum(cross(arm_a_, force), moment));
@@ -233,12 +269,12 @@ DUCTILE_INLINE void LinkConstraint::add_centre(double sign) {
     add_force(b_, scaled(-1, force), scaled(-1, sum(cross(arm_b_, force), moment)));
 }
 
-DUCTILE_INLINE void LinkConstraint::let_go() {
+DUCTILE_INLINE void JointConstraint::let_go() {
     dJointDisable(id_);
     dJointAttach(id_, nullptr, nullptr);
 }
 
-DUCTILE_INLINE void LinkConstraint::hand_back() {
+DUCTILE_INLINE void JointConstraint::hand_back() {
     release_ = link_.release(body_state(a_), body_state(b_));
     if (can_move(a_)) apply(a_, release_.a);
     if (can_move(b_)) apply(b_, release_.b);

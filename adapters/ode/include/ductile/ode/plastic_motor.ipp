@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of one_axis_constraint.hpp.
+// Bodies of plastic_motor.hpp.
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "ductile/ode/convert.hpp"
-#include "ductile/ode/one_axis_constraint.hpp"
+#include "ductile/ode/plastic_motor.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -19,19 +18,18 @@ namespace ductile::ode {
 namespace detail {
 
 inline constexpr const char* stop_refused =
-    "OneAxisConstraint.row: the axis has a stop (dParamLoStop or dParamHiStop is "
-    "finite): ODE applies a motor at its stop as an outside force, so no row can be "
-    "plastic there; set both to infinity";
+    "PlasticMotor.axis: has a stop (dParamLoStop or dParamHiStop is finite): ODE applies a motor "
+    "at its stop as an outside force, so no row can be plastic there; set both to infinity";
 
 } // namespace detail
 
-DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const MotorAxis& row,
-                                                    AtBreak at_break, bool owned)
+DUCTILE_INLINE MotorConstraint::MotorConstraint(AxisJoint& joint, const MotorAxis& row,
+                                                AtBreak at_break)
     : AxisQueries(joint),
       row_(row),
       life_(WorldLife::of(dBodyGetWorld(row.bodies().a))),
       at_break_(at_break),
-      owned_(owned) {
+      users_{row.get(dParamVel), row.get(dParamFMax), row.get(dParamCFM)} {
     require_matching_precision();
     if (has_stop(row_)) throw std::invalid_argument(detail::stop_refused);
     position_ = row_.measure(0);
@@ -39,54 +37,55 @@ DUCTILE_INLINE OneAxisConstraint::OneAxisConstraint(AxisJoint& joint, const Moto
     wait_for_world(row_.bodies().a, row_.bodies().b);
 }
 
-DUCTILE_INLINE OneAxisConstraint::~OneAxisConstraint() {
-    if (!world_goes_on()) return;
+DUCTILE_INLINE MotorConstraint::~MotorConstraint() {
+    if (!life_->goes_on()) return;
     if (dJointGetFeedback(row_.joint()) == &feedback_) dJointSetFeedback(row_.joint(), nullptr);
-    if (owned_) dJointDestroy(row_.joint());
+    row_.set(dParamVel, users_.velocity);
+    row_.set(dParamFMax, joint_.broken() ? 0 : users_.strength);
+    row_.set(dParamCFM, users_.cfm);
 }
 
-DUCTILE_INLINE void OneAxisConstraint::restored(double position) {
+DUCTILE_INLINE void MotorConstraint::restored(double position) {
     position_ = position;
     restored_ = true;
     driven_.forget();
     if (joint_.broken()) part(); // broken is broken, also when it was saved
 }
 
-DUCTILE_INLINE void OneAxisConstraint::add_speeds(JointReport<double>& report) const {
+DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) const {
     if (!row_.attached() || dJointIsEnabled(id()) == 0) return;
-    const double velocity = is_where_left() ? pose_.velocity(row_) : row_.velocity();
-    (row_.turns() ? report.rotation_rate : report.elongation_rate) = std::abs(velocity);
+    (row_.turns() ? report.rotation_rate : report.elongation_rate) = std::abs(row_.velocity());
 }
 
 // ---- life
 
-DUCTILE_INLINE bool OneAxisConstraint::has_stop(const MotorAxis& row) {
+DUCTILE_INLINE bool MotorConstraint::has_stop(const MotorAxis& row) {
     return std::isfinite(row.get(dParamLoStop)) || std::isfinite(row.get(dParamHiStop));
 }
 
-DUCTILE_INLINE void OneAxisConstraint::check() const {
+DUCTILE_INLINE void MotorConstraint::check() const {
     if (joint_.broken() || !row_.attached() || !has_stop(row_)) return;
     throw std::logic_error(detail::stop_refused);
 }
 
-DUCTILE_INLINE bool OneAxisConstraint::may_act() const {
+DUCTILE_INLINE bool MotorConstraint::may_act() const {
     const auto& [a, b, reversed] = row_.bodies();
     return !detached_ && dJointIsEnabled(id()) != 0 && (can_move(a) || can_move(b));
 }
 
-DUCTILE_INLINE bool OneAxisConstraint::solved() const {
+DUCTILE_INLINE bool MotorConstraint::solved() const {
     const auto& [a, b, reversed] = row_.bodies();
     return dBodyIsEnabled(a) != 0 || (b != nullptr && dBodyIsEnabled(b) != 0);
 }
 
-DUCTILE_INLINE void OneAxisConstraint::suspend() {
+DUCTILE_INLINE void MotorConstraint::suspend() {
     joint_.pause();
     driven_.forget();
     rigid_residual_ = unseen_turn_ = 0;
     rigid_unsolved_ = false;
 }
 
-DUCTILE_INLINE double OneAxisConstraint::follow_teleport() {
+DUCTILE_INLINE double MotorConstraint::follow_teleport() {
     const double now = row_.measure(position_);
     if (!std::isfinite(now)) return now;
     if (now != position_ && !restored_) {
@@ -96,7 +95,7 @@ DUCTILE_INLINE double OneAxisConstraint::follow_teleport() {
     return position_ = now;
 }
 
-DUCTILE_INLINE void OneAxisConstraint::part() {
+DUCTILE_INLINE void MotorConstraint::part() {
     row_.set(dParamFMax, 0);
     if (at_break_ != AtBreak::disable_joint) return;
     dJointDisable(id());
@@ -105,7 +104,7 @@ DUCTILE_INLINE void OneAxisConstraint::part() {
 
 // ---- a step
 
-DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
+DUCTILE_INLINE void MotorConstraint::prepare(double dt) {
     acting_ = false;
     outside_ = {};
     detached_ = !joint_.broken() && !row_.attached();
@@ -120,18 +119,15 @@ DUCTILE_INLINE void OneAxisConstraint::prepare(double dt) {
         return;
     }
     acting_ = true;
-    double position = position_;
-    if (restored_ || !is_where_left()) {
-        pose_.look(row_);
-        position = follow_teleport();
-    }
-    Motion<double> motion{position, start_velocity(dt), 0, force_share_.midway};
+    pose_.look(row_);
+    Motion<double> motion{follow_teleport(), start_velocity(dt), 0, force_share_.midway};
     if (!joint_.rigid()) motion.mass = mass();
     set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
-    rigid_target_ = rigid_target(dt);
+    const auto erp = double(dWorldGetERP(dBodyGetWorld(row_.bodies().a)));
+    pin_target_ = scaled(erp / dt, row_.pin_error(pose_.point()));
 }
 
-DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
+DUCTILE_INLINE void MotorConstraint::commit(double dt) {
     if (!acting_) return;
     if (!solved()) {
         take_back();
@@ -142,7 +138,7 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     const double velocity = pose_.along(row_, twist);
     driven_.booked(0, row_.bodies().a, dt);
     driven_.booked(1, row_.bodies().b, dt);
-    certify_rigid_rows(twist);
+    certify_pin(linear(twist));
     const double force = row_force();
     const double position =
         row_.measured()
@@ -156,7 +152,7 @@ DUCTILE_INLINE void OneAxisConstraint::commit(double dt) {
     booked_ = true;
 }
 
-DUCTILE_INLINE void OneAxisConstraint::finish() {
+DUCTILE_INLINE void MotorConstraint::finish() {
     if (!std::exchange(booked_, false) || !joint_.broken()) return;
     if (joint_.last().release > 0) hand_back(joint_.last().release);
     part();
@@ -164,29 +160,19 @@ DUCTILE_INLINE void OneAxisConstraint::finish() {
 
 // ---- the row
 
-DUCTILE_INLINE double OneAxisConstraint::erp() const {
-    return double(dWorldGetERP(dBodyGetWorld(row_.bodies().a)));
-}
-
-DUCTILE_INLINE Vector6<double> OneAxisConstraint::rigid_target(double dt) const {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    return twist_of(scaled(erp() / dt, row_.pin_error(pose_.point())),
-                    Vector3<double>(unknown, unknown, unknown));
-}
-
-DUCTILE_INLINE Vector6<double> OneAxisConstraint::direction() const {
+DUCTILE_INLINE Vector6<double> MotorConstraint::direction() const {
     const Vector3<double> none(0, 0, 0);
     return row_.turns() ? twist_of(none, pose_.axis()) : twist_of(pose_.axis(), none);
 }
 
-DUCTILE_INLINE double OneAxisConstraint::mass() const {
+DUCTILE_INLINE double MotorConstraint::mass() const {
     const Vector6<double> response = row_.response(at_joint(row_.bodies().a, pose_.point()),
                                                    at_joint(row_.bodies().b, pose_.point()));
     const double result = dot(direction(), response);
     return std::isfinite(result) ? result : 0;
 }
 
-DUCTILE_INLINE double OneAxisConstraint::start_velocity(double dt) const {
+DUCTILE_INLINE double MotorConstraint::start_velocity(double dt) const {
     double velocity = pose_.velocity(row_);
     for (const int side : {0, 1}) {
         const dBodyID body = side == 0 ? row_.bodies().a : row_.bodies().b;
@@ -201,7 +187,7 @@ DUCTILE_INLINE double OneAxisConstraint::start_velocity(double dt) const {
     return velocity;
 }
 
-DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits, double dt) {
+DUCTILE_INLINE void MotorConstraint::set_motor(const RowLimits<double>& limits, double dt) {
     const SymmetricRow row = symmetric_row(limits, dt, force_share_.value);
     centre_ = row.centre;
     strength_ = row.strength;
@@ -212,7 +198,7 @@ DUCTILE_INLINE void OneAxisConstraint::set_motor(const RowLimits<double>& limits
     if (centre_ != 0) apply_centre();
 }
 
-DUCTILE_INLINE void OneAxisConstraint::apply_centre() {
+DUCTILE_INLINE void MotorConstraint::apply_centre() {
     if (row_.turns()) {
         outside_.torque_a = scaled(centre_, pose_.axis());
         outside_.torque_b = scaled(-1, outside_.torque_a);
@@ -224,48 +210,39 @@ DUCTILE_INLINE void OneAxisConstraint::apply_centre() {
     add_outside(1);
 }
 
-DUCTILE_INLINE void OneAxisConstraint::take_back() {
+DUCTILE_INLINE void MotorConstraint::take_back() {
     if (centre_ != 0) add_outside(-1);
     outside_ = {};
 }
 
-DUCTILE_INLINE void OneAxisConstraint::add_outside(double sign) {
+DUCTILE_INLINE void MotorConstraint::add_outside(double sign) {
     const auto& [a, b, reversed] = row_.bodies();
     add_force(a, scaled(sign, outside_.force), scaled(sign, outside_.torque_a));
     if (b != nullptr) add_force(b, scaled(-sign, outside_.force), scaled(sign, outside_.torque_b));
 }
 
-DUCTILE_INLINE void OneAxisConstraint::certify_rigid_rows(const Vector6<double>& twist) {
-    const Vector3<double>& axis = pose_.axis();
-    const auto off = [&](const Vector3<double>& is, const Vector3<double>& wanted, bool of_row) {
-        if (!is_finite(wanted)) return Vector3<double>(0, 0, 0); // not known
-        const Vector3<double> whole = difference(is, wanted);
-        return of_row ? difference(whole, scaled(dot(axis, whole), axis)) : whole;
-    };
-    const Vector3<double> moving = off(linear(twist), linear(rigid_target_), !row_.turns());
-    const Vector3<double> turning = off(angular(twist), angular(rigid_target_), row_.turns());
+DUCTILE_INLINE void MotorConstraint::certify_pin(const Vector3<double>& apart) {
     rigid_residual_ = 0;
-    for (int i = 0; i < 3; ++i) {
-        rigid_residual_ = worse(rigid_residual_, worse(std::abs(moving[i]), std::abs(turning[i])));
-    }
-
-    const double speed = norm(moving), spin = norm(turning);
     rigid_unsolved_ = false;
-    if (worse(speed, spin) <= joint_.allowed_residual(0)) return;
+    if (!is_finite(pin_target_)) return; // not known
+    const Vector3<double> off = difference(apart, pin_target_);
+    for (int i = 0; i < 3; ++i) rigid_residual_ = worse(rigid_residual_, std::abs(off[i]));
+
+    const double speed = norm(off);
+    if (speed <= joint_.allowed_residual(0)) return;
     const dBodyID a = row_.bodies().a;
-    const Vector3<double> w = angular_velocity(a);
-    const Vector3<double> v = sum(linear_velocity(a), cross(w, pose_.arm_a()));
-    rigid_unsolved_ =
-        !(speed <= joint_.allowed_residual(norm(v)) && spin <= joint_.allowed_residual(norm(w)));
+    const Vector3<double> v =
+        sum(linear_velocity(a), cross(angular_velocity(a), pose_.arm_a()));
+    rigid_unsolved_ = !(speed <= joint_.allowed_residual(norm(v)));
 }
 
-DUCTILE_INLINE double OneAxisConstraint::row_force() const {
+DUCTILE_INLINE double MotorConstraint::row_force() const {
     const dJointFeedback* feedback = dJointGetFeedback(id());
     if (!(strength_ > 0) || feedback == nullptr) return centre_ / force_share_.value;
     return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / force_share_.value;
 }
 
-DUCTILE_INLINE void OneAxisConstraint::hand_back(double energy) {
+DUCTILE_INLINE void MotorConstraint::hand_back(double energy) {
     const auto a = at_joint(row_.bodies().a, pose_.point());
     const auto b = at_joint(row_.bodies().b, pose_.point());
     release_ = break_release(
