@@ -13,7 +13,9 @@
 //   clamped    the same posts, static
 //   struck     P13a: 1 kg at 4 m/s sticks to the tip of a clamped bar of 2 kg, 20 segments; steps
 //              of 0.1 ms, 600 of them
-//   truck      1000 clamped posts, 3.5 t at 15 m/s through thirty of them; frames of 1/60 s
+//   truck      1000 clamped posts of P34's section, 2 m, 16 segments; the bumper of 24 t at 15 m/s,
+//              0.5 m over the ground and guided along x, goes through thirty of them; steps of
+//              1/240 s, frames of 1/60 s
 // Methods
 //   plain      Bullet alone; of `struck` one rigid body that nothing bends
 //   world      a World, no members
@@ -21,8 +23,9 @@
 //   jointed    each segment a body, a plastic hinge between each and the next
 //
 // Columns of the CSV: scene,method,posts,part,median_us,ratio,most_open,absorbed_joule,tip_m. Times
-// are CPU times of whole steps, methods taking theirs in turn; ratio: to `plain` of the same scene.
-// part: of `truck`, before it strikes, while posts are open, after.
+// are CPU times of whole steps, methods taking theirs in turn; ratio: to `plain` of the same scene,
+// by post. part: of `truck`, before it strikes, while posts are open, after; its last column counts
+// the posts that were bent.
 #include <btBulletDynamicsCommon.h>
 #include <fmt/core.h>
 
@@ -46,24 +49,26 @@ namespace {
 using namespace ductile;
 using Hinge = bullet::PlasticHinge<UsualAxisJoint>;
 
-constexpr double length = 2, half = 0.05, mass = 24;
+constexpr double length = 2, half = 0.05, mass = 24.1152;
 constexpr int usual = btBroadphaseProxy::DefaultFilter, everything = btBroadphaseProxy::AllFilter;
 
-/// Segments of P13a (`bar`), or of a post of mild steel that 500 N m bend.
+/// Segments of P13a (`bar`), or of a box of S355, 100 x 100 x 4 mm.
 Member description(int segments, bool clamped, bool bar) {
-    const double weight = bar ? 2 : mass, reach = bar ? 1 : length, strength = bar ? 100 : 500;
+    const double weight = bar ? 2 : mass, reach = bar ? 1 : length,
+                 strength = bar ? 100 : 19641.44;
     MemberParameters p;
     p.segments = lumped_segments(reach, weight, segments, {1e-4, 1e-4, 2e-4});
     if (clamped) p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
     p.sections.assign(p.segments.size() - 1,
                       UsualAxisJoint(Perfect<double>({.strength = strength})));
+    if (!bar) p.bending_stiffness = 496312.32; // [N m²]
     return Member(p);
 }
 
 struct Settings {
     std::string scene, method;
     int posts = 1000;
-    int segments = 8;
+    int segments = 16;
 };
 
 class Site {
@@ -86,6 +91,7 @@ class Site {
         }
         ground();
         for (int i = 0; i < settings.posts; ++i) post(i);
+        for (btRigidBody* of : posts_) make_member(*of);
         if (settings.scene == "truck") truck();
     }
     ~Site() {
@@ -161,7 +167,11 @@ class Site {
         if (!clamped) box_->calculateLocalInertia(btScalar(mass), inertia);
         btRigidBody& of =
             body(clamped ? 0 : mass, inertia, foot(i) + btVector3(0, 0, btScalar(length / 2)), box_);
-        if (settings_.method == "plain" || settings_.method == "world") return;
+        // members are made once all bodies are, so that these lie together in memory as without
+        if (settings_.method != "plain" && settings_.method != "world") posts_.push_back(&of);
+    }
+    void make_member(btRigidBody& of) {
+        const bool clamped = settings_.scene != "standing";
         // it bends about y, so that a truck along x may bend it
         const btTransform start(btMatrix3x3(0, 1, 0, -1, 0, 0, 0, 0, 1),
                                 btVector3(0, 0, btScalar(-length / 2)));
@@ -239,14 +249,13 @@ class Site {
     }
 
     void truck() {
-        constexpr double kilograms = 3500;
-        auto* shape = keep(std::make_unique<btBoxShape>(btVector3(2, btScalar(0.9), btScalar(0.6))));
+        constexpr double kilograms = 24000;
+        auto* shape = keep(std::make_unique<btBoxShape>(btVector3(btScalar(0.1), 1, btScalar(0.1))));
         btVector3 inertia;
         shape->calculateLocalInertia(btScalar(kilograms), inertia);
-        striker_ = &body(kilograms, inertia, {-6, 0, btScalar(0.9)}, shape);
+        striker_ = &body(kilograms, inertia, {-4, 0, btScalar(0.5)}, shape);
         striker_->setLinearVelocity({15, 0, 0});
         striker_->setFriction(0);
-        // it stays on its wheels
         striker_->setLinearFactor({1, 0, 0});
         striker_->setAngularFactor({0, 0, 0});
     }
@@ -263,6 +272,7 @@ class Site {
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
     std::unique_ptr<bullet::World> world_;
+    std::vector<btRigidBody*> posts_;
     std::vector<std::unique_ptr<bullet::Member>> members_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
 };
@@ -369,8 +379,11 @@ void truck(Table& table, bool quick) {
         Site site({.scene = "truck", .method = method, .posts = posts});
         std::vector<double> before, open, after;
         int most = 0;
-        for (int i = 0; i < (quick ? 60 : 360); ++i) {
-            const double time = timed_step(site, 1.0 / 60);
+        // Bullet's own steps of 1/60 s are a quarter of a metre: it would miss most of the posts
+        const double dt = method == "frames" ? 1.0 / 60 : 1.0 / 240;
+        const int enough = quick ? 2 : 30;
+        for (int i = 0; i < int(7 / dt) && site.bent() < enough; ++i) {
+            const double time = timed_step(site, dt);
             most = std::max(most, site.open());
             (site.open() > 0 ? open : site.bent() > 0 ? after : before).push_back(time);
         }

@@ -34,11 +34,11 @@ cmake/install-packages.sh
 cmake --preset release -DDUCTILE_BENCH=ON >/dev/null
 cmake --build --preset release --target \
     {pareto,scaling,joint_cost,structures,detail,instructions}-{bullet-double,bullet-float,ode-double} \
-    frames-{bullet-double,bullet-float}
+    {frames,members}-{bullet-double,bullet-float}
 out=${out:-bench/results/$name}
 mkdir -p "$out"
 # the interpreter for which Debian packages matplotlib
-for question in frames detail pareto cost instructions; do
+for question in frames detail pareto cost instructions members; do
     /usr/bin/python3 bench/$question.py --bin build/release/bin --build build/release --out "$out" \
         ${quick[@]+"${quick[@]}"}
 done

@@ -177,6 +177,18 @@ def structures(path):
                  [line(scene, joints) for scene, joints in each(rows.values(), "scene", "joints")])
 
 
+def members(path):
+    """Posts that nothing strikes, the bar that is struck, the truck: cost beside Bullet alone, and what they absorb."""
+    def line(row):
+        counted = row["instruction_ratio"]
+        return [row["scene"] + (f", {row['part']}" if row["part"] else ""), row["method"], row["posts"],
+                f"{float(row['median_us']):.4g}", f"{float(row['ratio']):.3g}",
+                f"{float(counted):.3f}" if counted else "-", row["most_open"], f"{float(row['absorbed_joule']):.7g}"]
+
+    return table(["scene", "method", "posts", "step [µs]", "/ plain", "instructions / plain", "most open", "absorbed [J]"],
+                 [line(row) for row in rows_of(path)])
+
+
 def detail(path):
     """The choices that keep their tolerance, and their cost beside the cheapest model that does."""
     chosen = [row for row in rows_of(path) if row["chosen"] == "1"]

@@ -14,6 +14,7 @@
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/member.ipp>
+#include <ductile/bullet/member_snapshot.ipp>
 #include <ductile/bullet/member_tick.ipp>
 #include <ductile/bullet/members.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>

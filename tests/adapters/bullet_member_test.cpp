@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/member/strips.hpp"
@@ -636,4 +637,95 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
         CHECK(rig.engine.getNumCollisionObjects() == 1);
         rig.engine.stepSimulation(btScalar(1e-3), 0);
     }
+}
+
+TEST_CASE("a member that was saved goes on bit for bit, open, half-way and whole again",
+          "[bullet][member]") {
+    const Member of = strip(10);
+    for (const int before : {0, 4, 40, 900}) {
+        Struck scene(of, true);
+        scene.strike(4);
+        for (int i = 0; i < before; ++i) scene.world.step(1e-4);
+        CAPTURE(before);
+        CHECK(scene.member->whole() == (before == 0 || before == 900));
+        const btTransform pose = scene.mass->getWorldTransform();
+        const btVector3 velocity = scene.mass->getLinearVelocity() + btVector3(0, 0.1F, 0),
+                        spin = scene.mass->getAngularVelocity();
+        const bullet::MemberSnapshot saved(*scene.member);
+        std::vector<double> runs[3];
+        for (auto& run : runs) {
+            saved.put_back(*scene.member);
+            scene.mass->setCenterOfMassTransform(pose);
+            scene.mass->setInterpolationWorldTransform(pose);
+            scene.mass->setLinearVelocity(velocity);
+            scene.mass->setAngularVelocity(spin);
+            scene.mass->setInterpolationLinearVelocity(velocity);
+            scene.mass->setInterpolationAngularVelocity(spin);
+            for (int i = 0; i < 100; ++i) {
+                scene.world.step(1e-4);
+                run.push_back(double(scene.mass->getLinearVelocity().y()));
+                run.push_back(scene.member->absorbed_energy());
+                run.push_back(scene.member->open_sections());
+                for (int k = 0; k < of.segments(); ++k) {
+                    run.push_back(double(scene.member->pose(k).getOrigin().y()));
+                }
+            }
+        }
+        const auto differs = [&](const std::vector<double>& run) {
+            return std::mismatch(run.begin(), run.end(), runs[0].begin()).first - run.begin();
+        };
+        CHECK(differs(runs[1]) == int(runs[0].size()));
+        CHECK(differs(runs[2]) == int(runs[0].size()));
+    }
+}
+
+TEST_CASE("a bent member that is given its straight state has its own body again",
+          "[bullet][member]") {
+    BallOnPost scene(heavy_post(), 100, 2);
+    btRigidBody& body = *scene.post->pieces().front();
+    const btCollisionShape* own = body.getCollisionShape();
+    const bullet::MemberSnapshot straight_one(*scene.post);
+    scene.go(1, 1.0 / 240);
+    REQUIRE(scene.post->whole());
+    CHECK(body.getCollisionShape() != own);
+    const bullet::MemberSnapshot bent(*scene.post);
+    const btVector3 end = scene.post->pose(10).getOrigin();
+    straight_one.put_back(*scene.post);
+    CHECK(body.getCollisionShape() == own);
+    CHECK(scene.post->absorbed_energy() == 0);
+    CHECK(scene.post->pose(10).getOrigin().y() == 0);
+    bent.put_back(*scene.post);
+    CHECK((scene.post->pose(10).getOrigin() - end).length() < 1e-6);
+    CHECK(scene.post->absorbed_energy() > 10);
+}
+
+TEST_CASE("what is done to a member in a world that it cannot bear is said, and nothing is lost",
+          "[bullet][member]") {
+    Struck scene(strip(5), true);
+    btRigidBody& body = *scene.member->pieces().front();
+    Struck other(strip(4), true);
+    const bullet::MemberSnapshot of_other(*other.member);
+    CHECK(message_of([&] { of_other.put_back(*scene.member); }) ==
+          "MemberSnapshot.member.sections = 5: must be 4, as of the member that was saved");
+    // a constraint that came after the member: its body must not leave the world with it
+    btPoint2PointConstraint pin(body, {0, 0, 0});
+    scene.rig.engine.addConstraint(&pin);
+    scene.strike(4);
+    std::string said;
+    for (int i = 0; i < 20 && said.empty(); ++i) {
+        said = message_of([&] { scene.world.step(1e-3); });
+    }
+    CHECK(said.find("Member::attach") != std::string::npos);
+    CHECK(scene.member->whole());
+    CHECK(body.getBroadphaseHandle() != nullptr);
+    scene.rig.engine.removeConstraint(&pin);
+    for (int i = 0; i < 100; ++i) scene.world.step(1e-3);
+    CHECK(scene.member->absorbed_energy() > 5);
+    // a body that was taken out of the world
+    CHECK(scene.member->whole());
+    scene.rig.engine.removeRigidBody(&body);
+    CHECK_THROWS_WITH(scene.world.step(1e-3),
+                      "Member.body: must be in the world: addRigidBody it");
+    scene.rig.engine.addRigidBody(&body);
+    scene.world.step(1e-3);
 }

@@ -135,6 +135,11 @@ class MemberCourse {
         }
         return found_;
     }
+    /// As it was; the bodies have to be those of `state`.
+    void restore(const MemberState& state) {
+        state_ = state;
+        make_pieces();
+    }
     /// Closes sections, `bend` of their states being what they are bent by now.
     std::vector<PlacedPiece> close(std::span<const int> sections,
                                    std::span<const PlacedPiece> bodies) {

@@ -15,6 +15,7 @@
 #include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/member.hpp"
 #include "ductile/bullet/member_book.hpp"
+#include "ductile/bullet/member_snapshot.hpp"
 #include "ductile/bullet/member_tick.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"

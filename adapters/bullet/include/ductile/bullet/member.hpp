@@ -74,6 +74,7 @@ class Member {
     [[nodiscard]] double plastic_rotation(int section) const;
     [[nodiscard]] double bend(int section) const;
     [[nodiscard]] double absorbed_energy() const; ///< by all sections [J]
+    /// All of it: member_snapshot.hpp.
     [[nodiscard]] MemberState state() const;
     /// Largest share of what acted on it that was left over in the last step that was looked at
     /// closely (internal_forces.hpp): impulses that it does not know of.
@@ -89,6 +90,7 @@ class Member {
 
   private:
     friend class Members;
+    friend class MemberSnapshot;
     friend class MemberTick;
     using Hinge = PlasticHinge<UsualAxisJoint>;
     struct OpenSection {
@@ -115,6 +117,7 @@ class Member {
     [[nodiscard]] JointReport<double> report() const;
     void require_place(const char* name, double place) const;
     void require_possible() const;
+    void require_free(const btDiscreteDynamicsWorld& world) const;
     void enter(btDiscreteDynamicsWorld& world);
     void leave();
     void note_sections();
@@ -132,7 +135,8 @@ class Member {
     JointFrame<double> held_; ///< where a held segment is
     btDiscreteDynamicsWorld* world_ = nullptr;
     std::function<void()> ends_;    ///< tells the World that it was added to
-    std::vector<Member*>* pushed_ = nullptr; ///< that World's, of members with forces
+    std::function<void()> pushed_;  ///< tells it that a force was applied, the first one
+    std::function<void()> rearranged_; ///< that its bodies are others
     std::vector<PieceBody> pieces_; ///< by piece
     std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;

@@ -166,7 +166,7 @@ DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
     const int segment = description().segment_at(place);
     const double middle = (segment > 0 ? description().place(segment - 1) : 0) +
                           description().segment(segment).length / 2;
-    if (forces_.empty() && pushed_ != nullptr) pushed_->push_back(this);
+    if (forces_.empty() && pushed_) pushed_();
     forces_.push_back({to_core(force), segment, {0, 0, place - middle}});
     body_of(segment).activate();
 }
@@ -174,6 +174,23 @@ DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
 DUCTILE_INLINE void Member::require_possible() const {
     if (whole() && user_.getBroadphaseHandle() == nullptr) {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
+    }
+}
+
+/// Of a member that is whole.
+DUCTILE_INLINE void Member::require_free(const btDiscreteDynamicsWorld& world) const {
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        const btTypedConstraint& constraint = *world.getConstraint(i);
+        if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
+            continue;
+        }
+        const bool own = std::any_of(
+            attachments_.begin(), attachments_.end(),
+            [&](const Attachment& attachment) { return attachment.constraint.get() == &constraint; });
+        if (own) continue;
+        throw std::invalid_argument(
+            "World.add.member: no constraint of the world may hold its body but by "
+            "Member::attach, as Bullet's constraints cannot change their bodies");
     }
 }
 
@@ -188,15 +205,7 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
         throw std::invalid_argument(
             "World.add.member: its body must be in the world before: addRigidBody it");
     }
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world.getConstraint(i);
-        if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
-            continue;
-        }
-        throw std::invalid_argument(
-            "World.add.member: no constraint of the world may hold its body but by "
-            "Member::attach, as Bullet's constraints cannot change their bodies");
-    }
+    require_free(world);
     world_ = &world;
     maker_->enter(world);
     make_attachments();
@@ -205,8 +214,7 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
 /// Bodies of pieces stay, so that what it says stays.
 DUCTILE_INLINE void Member::leave() {
     if (world_ == nullptr) return;
-    if (pushed_ != nullptr) std::erase(*pushed_, this);
-    pushed_ = nullptr;
+    pushed_ = rearranged_ = nullptr;
     ends_ = nullptr;
     for (Attachment& attachment : attachments_) drop_attachment(attachment);
     note_sections();
@@ -255,6 +263,7 @@ DUCTILE_INLINE void Member::note_sections() {
 }
 
 DUCTILE_INLINE void Member::open(std::span<const int> sections, const ForceShare& share) {
+    if (whole()) require_free(*world_);
     note_sections();
     become(course_.open(sections, placed_pieces()), share);
 }

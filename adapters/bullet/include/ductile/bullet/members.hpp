@@ -56,6 +56,7 @@ class Members {
     /// It enters and leaves the world by itself.
     void add(Divisible& structure);
     void remove(Divisible& structure);
+    /// Its bodies are others than they were, and not by a step.
     void rearranged(const Divisible& structure);
     /// Bodies whose islands are solved at once.
     [[nodiscard]] const DirectBodies& direct() const noexcept { return direct_; }
@@ -98,10 +99,11 @@ class Members {
         std::unique_ptr<MemberTick> tick{}; ///< of a member
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
-        int direct = 0;      ///< ticks for which it is still solved at once
+        int direct = 0;       ///< ticks for which it is still solved at once
         bool watched = false; ///< in every tick
         bool here = false;    ///< in this one
     };
+    static constexpr int direct_ticks = 60;
     struct Happened {
         DivisionChange what;
         EventKind kind;
@@ -127,6 +129,7 @@ class Members {
     std::vector<Member*> pushed_;      ///< with forces
     btVector3 gravity_{0, 0, 0};       ///< of the last look
     bool look_at_all_ = true;
+    int objects_ = 0;                  ///< of the world, in the last tick
     std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world
     DirectBodies direct_;

@@ -26,7 +26,15 @@ DUCTILE_INLINE void Members::add(Course course) {
 DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
     member.enter(world_);
     member.ends_ = std::move(ends);
-    member.pushed_ = &pushed_;
+    member.pushed_ = [this, &member] { pushed_.push_back(&member); };
+    member.rearranged_ = [this, &member] {
+        look_at_all_ = true;
+        for (std::size_t i = 0; i < members_.size(); ++i) {
+            if (members_[i].member != &member) continue;
+            members_[i].direct = direct_ticks; // whatever went before
+            note_bodies(i);
+        }
+    };
     if (!member.forces_.empty()) pushed_.push_back(&member);
     auto tick = std::make_unique<MemberTick>(member);
     Divisible* of = tick.get();
@@ -59,6 +67,7 @@ DUCTILE_INLINE void Members::remove(Member& member) {
     }
     std::erase_if(happened_, [&](const Happened& entry) { return entry.what.key == &member; });
     std::erase_if(idle_changes_, [&](const auto& entry) { return entry.first == &member; });
+    std::erase(pushed_, &member);
     member.leave();
 }
 DUCTILE_INLINE void Members::remove(Divisible& structure) {
@@ -74,7 +83,6 @@ DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
         if (members_[i].of == &structure) note_bodies(i);
     }
 }
-
 DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
@@ -170,7 +178,11 @@ DUCTILE_INLINE void Members::before_solve() {
     for (const std::size_t i : watched_) list(members_[i]);
     for (const Member* member : pushed_) list(members_[owners_[member->pieces_.back().body]]);
     direct_.any = false;
-    for (Course& course : members_) course.of->require_possible();
+    for (Course* course : here_) course->of->require_possible();
+    if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
+        for (Course& course : members_) course.of->require_possible();
+        objects_ = world_.getNumCollisionObjects();
+    }
     for (const Course* course : here_) {
         if (course->direct == 0) continue;
         if (!direct_.any) direct_.by_place.assign(before_.size(), 0);
@@ -215,9 +227,8 @@ DUCTILE_INLINE void Members::read_sums(double dt) {
 }
 
 DUCTILE_INLINE bool Members::is_decided(Course& course) {
-    constexpr int ticks = 60;
     const bool was_direct = course.direct > 0 || !course.of->whole();
-    course.direct = ticks;
+    course.direct = direct_ticks;
     note_bodies(std::size_t(&course - members_.data()));
     return was_direct;
 }

@@ -44,7 +44,12 @@ class PieceMaker {
           member_(member),
           box_(box),
           whole_in_body_(whole_in_body),
-          straight_(user.getCollisionShape()) {}
+          first_in_body_(whole_in_body),
+          straight_(user.getCollisionShape()),
+          mass_(user.getMass()) {
+        const btVector3& inverse = user.getInvInertiaDiagLocal();
+        for (int i = 0; i < 3; ++i) inertia_[i] = inverse[i] > 0 ? 1 / inverse[i] : btScalar(0);
+    }
     /// The user's body has its own shape again.
     ~PieceMaker() {
         if (user_.getCollisionShape() == bent_.get()) user_.setCollisionShape(straight_);
@@ -55,6 +60,10 @@ class PieceMaker {
     void enter(btDiscreteDynamicsWorld& world) noexcept { world_ = &world; }
     [[nodiscard]] const JointFrame<double>& whole_in_body() const noexcept {
         return whole_in_body_;
+    }
+    /// The same of a straight member.
+    [[nodiscard]] const JointFrame<double>& first_in_body() const noexcept {
+        return first_in_body_;
     }
 
     /// The user's body leaves the world.
@@ -71,13 +80,15 @@ class PieceMaker {
     btRigidBody& user_;
     const ductile::Member& member_;
     MemberBox box_;
-    JointFrame<double> whole_in_body_;
+    JointFrame<double> whole_in_body_, first_in_body_;
     btDiscreteDynamicsWorld* world_ = nullptr;
     int group_ = 0, mask_ = 0; ///< of the user's body
     btVector3 gravity_{0, 0, 0};
     std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by segment
     btCollisionShape* straight_;                     ///< the user's
-    std::unique_ptr<btCompoundShape> bent_;          ///< of the user's body, once it is bent
+    btScalar mass_;                                  ///< as the user made it
+    btVector3 inertia_{0, 0, 0};
+    std::unique_ptr<btCompoundShape> bent_; ///< of the user's body, once it is bent
 };
 
 } // namespace ductile::bullet

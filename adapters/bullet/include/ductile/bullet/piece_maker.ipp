@@ -80,8 +80,13 @@ DUCTILE_INLINE void PieceMaker::enter_world(btRigidBody& body) const {
 
 DUCTILE_INLINE void PieceMaker::put_whole(const PlacedPiece& placed, bool straight) {
     const MemberPiece& whole = *placed.piece;
-    if (!straight) {
-        bent_ = make_shape(whole);
+    if (straight) {
+        if (user_.getCollisionShape() != straight_) user_.setCollisionShape(straight_);
+        if (!whole.held && bent_ != nullptr) user_.setMassProps(mass_, inertia_);
+        bent_.reset();
+        whole_in_body_ = first_in_body_;
+    } else {
+        const auto before = std::exchange(bent_, make_shape(whole));
         if (bent_->getNumChildShapes() > 0) user_.setCollisionShape(bent_.get());
         // the frame of a piece is that of its centre and main axes
         whole_in_body_ = {};
