@@ -82,7 +82,7 @@ class BulletScene {
         return wall.count();
     }
 
-    [[nodiscard]] ductile::SceneMotion<double> motion() const {
+    [[nodiscard]] BlowMotion motion() const {
         return blow_motion(
             s_, double(nose_tip().x()) - front(), nose_speed() + middle_speed(), parts_,
             [](const btRigidBody* part) { return double(part->getAngularVelocity().y()); });

@@ -7,32 +7,25 @@
 #include <cmath>
 #include <string>
 
-#include "ductile/fidelity/step_control.hpp"
 #include "simulation.hpp"
+#include "step_control.hpp"
 
 namespace charpy {
 
 /// How long a run goes on, and how its history is thinned.
 struct DriveLimits {
-    double swing_time = 5.0;      ///< give up where nothing was struck by then [s]
-    double after_strike = 0.020;  ///< [s]
-    double nose_travel = 0.040;   ///< the nose is this far past the specimen's front [m]
+    double swing_time = 5.0;       ///< give up where nothing was struck by then [s]
+    double after_strike = 0.020;   ///< [s]
+    double nose_travel = 0.040;    ///< the nose is this far past the specimen's front [m]
     double swing_interval = 1e-2;  ///< between samples of the history, before the strike [s]
     double sample_interval = 2e-5; ///< and after it [s]
 };
-
-[[nodiscard]] inline ductile::StepControl<double> step_control(const Scenario& s) {
-    ductile::StepControlParameters<double> p;
-    p.max_step = s.dt;
-    p.min_step = std::min(p.min_step, s.dt);
-    return ductile::StepControl<double>(p);
-}
 
 template <Simulation T>
 Result drive(const Scenario& scenario, Method method, const std::string& solver,
              const DriveLimits& limits = {}) {
     T scene(scenario, method, solver);
-    auto control = step_control(scenario);
+    StepControl control(scenario.dt);
     Result r;
     r.engine = T::engine;
     r.precision = T::precision;

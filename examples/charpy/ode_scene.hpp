@@ -4,8 +4,8 @@
 // still apart gets a target velocity that lets it close the gap in this step and no more, one that
 // rebounds the velocity at which it parts. Bodies do not collide otherwise.
 //
-// The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of the
-// blow gravity would move it by 0.1 mm.
+// The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of
+// the blow gravity would move it by 0.1 mm.
 //
 // ODE's joints neither break by themselves nor have Bullet's second kind of spring. zero-limits is
 // here what its users do: a hinge stopped at zero, whose feedback is read after the step and which
@@ -38,7 +38,8 @@ class OdeScene {
 
   public:
     static constexpr std::string_view engine = "ode";
-    static constexpr std::string_view precision = sizeof(dReal) == sizeof(double) ? "double" : "float";
+    static constexpr std::string_view precision =
+        sizeof(dReal) == sizeof(double) ? "double" : "float";
 
     OdeScene(const Scenario& scenario, Method method, const std::string& solver)
         : s_(scenario), method_(method) {
@@ -46,8 +47,9 @@ class OdeScene {
             throw std::invalid_argument("--solver = " + solver + ": must be " +
                                         std::string(ode_solvers) + " with --engine ode");
         }
-        stepper_ = std::make_unique<ductile::ode::World>(
-            world_, solver == "direct" ? ductile::ode::Solver::direct : ductile::ode::Solver::quick);
+        stepper_ = std::make_unique<ductile::ode::World>(world_, solver == "direct"
+                                                                     ? ductile::ode::Solver::direct
+                                                                     : ductile::ode::Solver::quick);
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetGravity(world_, 0, dReal(-s_.gravity), 0);
         dWorldSetQuickStepNumIterations(world_, s_.iterations);
@@ -81,7 +83,7 @@ class OdeScene {
         return wall.count();
     }
 
-    [[nodiscard]] ductile::SceneMotion<double> motion() const {
+    [[nodiscard]] BlowMotion motion() const {
         return blow_motion(s_, nose_tip().x() - front(), nose_speed() + middle_speed(), parts_,
                            [](dBodyID part) { return ductile::ode::angular_velocity(part).y(); });
     }
@@ -149,7 +151,8 @@ class OdeScene {
         const Vector v = ductile::ode::linear_velocity(body);
         const Vector w = ductile::ode::angular_velocity(body);
         return (ductile::ode::mass(body) * v.squaredNorm() +
-                w.dot(ductile::ode::inertia(body) * w)) / 2;
+                w.dot(ductile::ode::inertia(body) * w)) /
+               2;
     }
 
     dBodyID add_body(double mass, const Vector& inertia, const Vector& at) {
@@ -171,8 +174,8 @@ class OdeScene {
         nose_local_ = Vector(-s_.hammer_width / 2 - s_.nose_length, centre - s_.swing_radius, 0);
         const Vector pivot(s_.pivot_x(), s_.pivot_y(), 0);
         const Eigen::AngleAxisd raised(s_.start_angle, Vector::UnitZ());
-        hammer_ = add_body(mass, Vector::Constant(about_centre),
-                           pivot + raised * Vector(0, -centre, 0));
+        hammer_ =
+            add_body(mass, Vector::Constant(about_centre), pivot + raised * Vector(0, -centre, 0));
         dMatrix3 rotation;
         dRFromAxisAndAngle(rotation, 0, 0, 1, dReal(s_.start_angle));
         dBodySetRotation(hammer_, rotation);
@@ -191,8 +194,8 @@ class OdeScene {
         const Vector inertia = mass / 12 * (Vector::Constant(square.sum()) - square);
         for (int i = 0; i < count; ++i) {
             const double z = -s_.length / 2 + (i + 0.5) * length;
-            parts_.push_back(add_body(
-                mass, inertia, Vector(s_.height / 2, s_.specimen_bottom + s_.width / 2, z)));
+            parts_.push_back(add_body(mass, inertia,
+                                      Vector(s_.height / 2, s_.specimen_bottom + s_.width / 2, z)));
             dBodySetGravityMode(parts_.back(), 0);
         }
     }
@@ -207,8 +210,8 @@ class OdeScene {
 
     template <template <class> class Constraint, class Frame, class Law>
     void add_plastic(dBodyID a, dBodyID b, const Frame& frame, Law law) {
-        auto& joint = plastic_.add(
-            std::make_unique<Constraint<Law>>(world_, a, b, frame, std::move(law)));
+        auto& joint =
+            plastic_.add(std::make_unique<Constraint<Law>>(world_, a, b, frame, std::move(law)));
         joint.add_to(*stepper_);
         meter_->add(joint);
     }
@@ -221,7 +224,8 @@ class OdeScene {
         const ductile::ode::HingeFrame hinge{.anchor = anchor, .axis = Vector::UnitY()};
         const double moment = notched ? s_.notched_moment() : s_.full_moment();
         switch (method_) {
-            case Method::rigid: return;
+            case Method::rigid:
+                return;
             case Method::plastic_hinge:
                 return add_plastic<PlasticHinge>(a, b, hinge, hinge_law(s_, notched));
             case Method::elastic_plastic:
@@ -266,8 +270,8 @@ class OdeScene {
         dJointSetHingeParam(joint, dParamHiStop, 0);
     }
 
-    /// ODE's spring: a stop with lo = hi and, by its manual, ERP = dt k/(dt k + c) and CFM = 1/(dt k + c)
-    /// with no damping, c = 0.
+    /// ODE's spring: a stop with lo = hi and, by its manual, ERP = dt k/(dt k + c) and CFM = 1/(dt
+    /// k + c) with no damping, c = 0.
     static void set_spring(const Spring& spring, double dt) {
         dJointSetHingeParam(spring.joint, dParamStopERP, 1);
         dJointSetHingeParam(spring.joint, dParamStopCFM, dReal(1 / (dt * spring.stiffness)));
@@ -337,8 +341,8 @@ class OdeScene {
         contact.surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
         contact.surface.soft_cfm = dReal(compliance(s_.restitution));
         contact.surface.mu = dReal(s_.friction);
-        // the direct solver's pivoting stalls where symmetric contacts reach their bound at once: no
-        // two are quite alike
+        // the direct solver's pivoting stalls where symmetric contacts reach their bound at once:
+        // no two are quite alike
         const double unlike = 1e-6 * (1 + 0.37 * contact_count_++);
         const double parting = rebound(s_.restitution, closing_speed(pair, point));
         contact.surface.motionN =
@@ -361,7 +365,9 @@ class OdeScene {
         return (velocity_at(pair.part, point.position) - edge).dot(point.normal);
     }
 
-    [[nodiscard]] Vector nose_tip() const { return position(hammer_) + basis(hammer_) * nose_local_; }
+    [[nodiscard]] Vector nose_tip() const {
+        return position(hammer_) + basis(hammer_) * nose_local_;
+    }
     /// x of the struck face at the middle of the specimen [m].
     [[nodiscard]] double front() const {
         return position(parts_[parts_.size() / 2]).x() + s_.height / 2;

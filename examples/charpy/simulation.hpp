@@ -12,54 +12,54 @@
 #include <string_view>
 #include <vector>
 
-#include "ductile/fidelity/step_control.hpp"
 #include "ductile/world/ledger.hpp"
 #include "scenario.hpp"
+#include "step_control.hpp"
 
 namespace charpy {
 
-/// One engine's scene, built from (Scenario, Method, solver name). Methods the engine lacks make the
-/// constructor throw std::invalid_argument.
+/// One engine's scene, built from (Scenario, Method, solver name). Methods the engine lacks make
+/// the constructor throw std::invalid_argument.
 template <class T>
 concept Simulation = requires(T simulation, const T constant, double dt) {
     { T::engine } -> std::convertible_to<std::string_view>;
     { T::precision } -> std::convertible_to<std::string_view>;
     /// One step; returns the wall time of the engine's step and the joint's commit alone [s].
     { simulation.step(dt) } -> std::same_as<double>;
-    { simulation.motion() } -> std::same_as<ductile::SceneMotion<double>>;
+    { simulation.motion() } -> std::same_as<BlowMotion>;
     { constant.ledger() } -> std::same_as<const ductile::Ledger<double>&>;
-    { constant.hammer_energy() } -> std::same_as<double>;   ///< kinetic + potential [J]
-    { constant.nose_speed() } -> std::same_as<double>;      ///< towards the specimen [m/s]
-    { constant.nose_travel() } -> std::same_as<double>;     ///< past the front at rest [m]
+    { constant.hammer_energy() } -> std::same_as<double>;    ///< kinetic + potential [J]
+    { constant.nose_speed() } -> std::same_as<double>;       ///< towards the specimen [m/s]
+    { constant.nose_travel() } -> std::same_as<double>;      ///< past the front at rest [m]
     { constant.touching() } -> std::same_as<bool>;           ///< the nose has reached the specimen
     { constant.specimen_kinetic() } -> std::same_as<double>; ///< [J]
-    { simulation.joint_work() } -> std::same_as<double>; ///< taken by the specimen's joints [J]
-    { simulation.stored() } -> std::same_as<double>; ///< elastic, in the joints [J]
-    { simulation.joint_travel() } -> std::same_as<double>; ///< plastic rotation, all joints [rad]
-    { constant.rotation() } -> std::same_as<double>;  ///< bend of the specimen's middle [rad]
+    { simulation.joint_work() } -> std::same_as<double>;     ///< taken by the specimen's joints [J]
+    { simulation.stored() } -> std::same_as<double>;         ///< elastic, in the joints [J]
+    { simulation.joint_travel() } -> std::same_as<double>;   ///< plastic rotation, all joints [rad]
+    { constant.rotation() } -> std::same_as<double>; ///< bend of the specimen's middle [rad]
     { simulation.broken() } -> std::same_as<bool>;
     { simulation.unreliable() } -> std::same_as<bool>;
     { simulation.residual_max() } -> std::same_as<double>; ///< certificate [rad/s]
 };
 
-/// Share of a joint's position error that an engine removes in a step [-]: 0.2, the engines' own default,
-/// at steps of 1 ms and more, and in proportion to the step below. A fixed share would turn the drift
-/// left by a long step into a kick in a short one.
+/// Share of a joint's position error that an engine removes in a step [-]: 0.2, the engines' own
+/// default, at steps of 1 ms and more, and in proportion to the step below. A fixed share would
+/// turn the drift left by a long step into a kick in a short one.
 [[nodiscard]] inline double drift_correction(double dt) { return std::min(0.2, dt / 5e-3); }
 
-/// What steps follow: the gap between nose and specimen that closes, and the bending of the specimen.
+/// What steps follow: the gap between nose and specimen that closes, and the bending of the
+/// specimen.
 /// @param gap      from the nose's tip to the struck face at the middle [m]
 /// @param closing  of the two [m/s]
 /// @param parts    of the specimen in order; `spin(part)` about the axis of bending [rad/s]
 template <class Parts, class Spin>
-[[nodiscard]] ductile::SceneMotion<double> blow_motion(const Scenario& scenario, double gap,
-                                                       double closing, const Parts& parts,
-                                                       const Spin& spin) {
-    ductile::SceneMotion<double> motion;
-    motion.thickness = scenario.height;
+[[nodiscard]] BlowMotion blow_motion(const Scenario& scenario, double gap, double closing,
+                                     const Parts& parts, const Spin& spin) {
+    BlowMotion motion;
+    motion.height = scenario.height;
     for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-        motion.plastic_rotation_rate =
-            std::max(motion.plastic_rotation_rate, std::abs(spin(parts[i + 1]) - spin(parts[i])));
+        motion.rotation_rate =
+            std::max(motion.rotation_rate, std::abs(spin(parts[i + 1]) - spin(parts[i])));
     }
     if (gap > 0) {
         motion.gap = gap;

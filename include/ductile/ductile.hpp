@@ -8,7 +8,6 @@
 #include "ductile/fidelity/model_choice.hpp"
 #include "ductile/fidelity/peak_response.hpp"
 #include "ductile/fidelity/rehearsal.hpp"
-#include "ductile/fidelity/step_control.hpp"
 #include "ductile/fidelity/struck_cantilever.hpp"
 #include "ductile/fracture/any_of.hpp"
 #include "ductile/fracture/brittle_force.hpp"

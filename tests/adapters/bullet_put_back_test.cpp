@@ -28,11 +28,12 @@ struct Parted {
     FrontHold front{pile.world};
     EnergyMeter meter{pile.world};
     Members members{pile.world};
-    WorldParts parts{pile.world, front, meter, members,
-                     [](const PlasticConstraint&) { return 0u; }, [](double) {}};
+    WorldParts parts{
+        pile.world,   front, meter, members, [](const PlasticConstraint&) { return 0u; },
+        [](double) {}};
 
     explicit Parted(const Options& options) : pile(options) {
-        for (auto& hinge : pile.hinges) hinge->set_force_share({.ahead = true});
+        for (auto& hinge : pile.hinges) hinge->set_ahead(true);
     }
 };
 

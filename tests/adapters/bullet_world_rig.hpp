@@ -27,12 +27,9 @@ class WorldRig {
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
-    explicit WorldRig(bool /*iterative*/, Warn warn = nullptr,
-                      bool ledger = true, bool leapfrog = false)
+    explicit WorldRig(bool /*iterative*/, Warn warn = nullptr, bool ledger = true)
         : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
-          world_(
-              dynamics_,
-              {.ledger = ledger, .leapfrog = leapfrog, .warn = std::move(warn)}) {
+          world_(dynamics_, {.ledger = ledger, .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
     ~WorldRig() {

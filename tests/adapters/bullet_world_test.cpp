@@ -189,7 +189,7 @@ TEST_CASE("a World and the solver that Bullet's world made itself end in either 
     owner.reset(); // the sanitizers see what is freed twice or not at all
 }
 
-TEST_CASE("a world of multibodies keeps its solver and does not leapfrog", "[bullet][world]") {
+TEST_CASE("a world of multibodies keeps its solver and has no tolerance", "[bullet][world]") {
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
     btDbvtBroadphase broadphase;
@@ -197,8 +197,8 @@ TEST_CASE("a world of multibodies keeps its solver and does not leapfrog", "[bul
     btMultiBodyDynamicsWorld reduced(&dispatcher, &broadphase, &solver, &configuration);
     const bullet::World world(reduced);
     CHECK(reduced.getConstraintSolver() == &solver);
-    CHECK(message_of([&] { bullet::World(reduced, {.leapfrog = true}); }) ==
-          "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
+    CHECK(message_of([&] { bullet::World(reduced, {.tolerance = 0.01}); }) ==
+          "World.tolerance: must not be asked of a btMultiBodyDynamicsWorld");
 }
 
 TEST_CASE("a World over Bullet's world for threads does what it does over that for one",
@@ -280,7 +280,6 @@ TEST_CASE("a motor taken over and a sleeping joint are told of too", "[bullet][w
     bullet::World world(rig.world());
     world.add(motor, "elbow");
     body.setAngularVelocity({0, 0, 10});
-    CHECK(motor.report().rotation_rate == Approx(10));
     world.step(1e-3);
     REQUIRE(world.events().size() == 1);
     CHECK(world.events()[0].name == "elbow");
@@ -317,7 +316,6 @@ TEST_CASE("the joint of a multibody is told of, and refused where the world has 
         OneAxisJoint(Perfect<double>({.strength = 64}), TravelLimit<double>({.limit = 1.5})));
     btMultiBody& moving = body;
     moving.setJointVel(0, 10);
-    CHECK(hinge.report().rotation_rate == Approx(10));
     std::vector<std::string> told;
     {
         bullet::World world(dynamics);
@@ -325,9 +323,7 @@ TEST_CASE("the joint of a multibody is told of, and refused where the world has 
             told.push_back(event.name + " " + std::string(to_string(event.kind)));
         });
         world.add(hinge, "knee");
-        StepControl<double> control({.min_step = 1e-5, .max_step = 1e-2});
-        world.advance(0.3, control);
-        CHECK(world.time() == 0.3);
+        for (int i = 0; i < 30; ++i) world.step(1e-2);
         CHECK_THROWS_AS(world.ledger(), std::logic_error); // whatever it would leave out
         world.remove(hinge);
     }

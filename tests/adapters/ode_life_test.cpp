@@ -146,11 +146,10 @@ TEST_CASE("a joint of six axes takes back what it gave where the bodies fall asl
     Rig rig("direct", none);
     auto rotor = rig.body(1, sphere(2), none, none, none);
     if (pinned) rig.pin(rotor, nullptr, none, z);
-    auto& six = rig.six_axis(
-        rotor, nullptr, JointFrame<double>{},
-        Six(Ellipsoid<double, 6>({.capacity = Vector6<double>::Constant(1e3)}),
-            Perfect<double>({.strength = 1}), TravelLimit<double>(),
-            {.stiffness = Vector6<double>::Constant(200)}));
+    auto& six = rig.six_axis(rotor, nullptr, JointFrame<double>{},
+                             Six(Ellipsoid<double, 6>({.capacity = Vector6<double>::Constant(1e3)}),
+                                 Perfect<double>({.strength = 1}), TravelLimit<double>(),
+                                 {.stiffness = Vector6<double>::Constant(200)}));
     let_sleep(rotor);
     spin(rotor, 0.004); // below the threshold
     for (int i = 0; i < 400; ++i) rig.step(dt);
@@ -479,19 +478,4 @@ TEST_CASE("very light and very heavy bodies hinge as well", "[ode][life]") {
     };
     CHECK(absorbed_per_size(size) == Approx(absorbed_per_size(1)).epsilon(1e-8));
     CHECK(absorbed_per_size(size) > 99);
-}
-
-TEST_CASE("a World that leapfrogs has to know the bodies of its joints", "[ode][world]") {
-    Rig rig("direct", {0, -10, 0});
-    auto bar = rig.body(2, sphere(0.5), {1, 0, 0}, none, none);
-    auto& hinge = rig.hinge_of(bar, nullptr, none, z, joint(30));
-    ode::World world(rig.world(), {.leapfrog = true, .warn = nullptr});
-    world.add(hinge);
-    CHECK(message_of([&] { world.step(dt); }) ==
-          "World.leapfrog = true: the bodies of every joint must have been added");
-    CHECK(dBodyGetLinearVel(bar)[1] == 0); // the world stays as it was
-    world.add(bar);
-    world.step(dt);
-    CHECK(std::abs(hinge.moment()) == Approx(20)); // half of its weight, over half of the step
-    world.remove(hinge);
 }

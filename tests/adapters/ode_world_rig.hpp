@@ -29,11 +29,9 @@ class WorldRig {
     using Body = dBodyID;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
-    explicit WorldRig(bool iterative, Warn warn = nullptr,
-                      bool ledger = true, bool leapfrog = false)
+    explicit WorldRig(bool iterative, Warn warn = nullptr, bool ledger = true)
         : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,
                        .ledger = ledger,
-                       .leapfrog = leapfrog,
                        .warn = std::move(warn)}) {
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetQuickStepNumIterations(id_, 10);

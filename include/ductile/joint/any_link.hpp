@@ -95,20 +95,19 @@ class AnyLink {
     [[nodiscard]] bool reads_mass() const noexcept { return !one_axis_ || !all_rigid_; }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
-    /// per second, >= 0 [1/s]; `midway`, `ahead` as Motion's. A broken joint asks for no force at
+    /// per second, >= 0 [1/s]; `ahead` as Motion's. A broken joint asks for no force at
     /// all, nor does one of a body that is not at a finite place.
     const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
-                          bool midway = false, bool ahead = false) noexcept;
+                          bool ahead = false) noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
-    /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it; `share`:
-    /// dt as a multiple of the time in which the bodies moved since `prepare` saw them. Input that
-    /// is not finite changes no state: Step::residual.
+    /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it. Input
+    /// that is not finite changes no state: Step::residual.
     const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
-                          const JointWrench<S>& wrench, S dt, S share = 1) noexcept;
+                          const JointWrench<S>& wrench, S dt) noexcept;
     /// The same with the forces of the rows, in the order of JointAxis [N | N m].
     const Step<S>& commit_rows(const BodyState<S>& a, const BodyState<S>& b,
-                               const Vector6<S>& forces, S dt, S share = 1) noexcept;
+                               const Vector6<S>& forces, S dt) noexcept;
 
     /// Books the step again, for a share of its flow (work_share.hpp).
     virtual void grant(S share) noexcept = 0;
@@ -289,7 +288,7 @@ class AnyLink {
     /// M of the joint's rows from K of all.
     virtual void take_mass(const Matrix6<S>& k) noexcept = 0;
     /// Writes the limits of the joint's own rows.
-    virtual void prepare_joint(const RowsAtStart& rows, S dt, bool midway, bool ahead) noexcept = 0;
+    virtual void prepare_joint(const RowsAtStart& rows, S dt, bool ahead) noexcept = 0;
     /// Books force_ and `velocity` with the bodies where they are now.
     virtual void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a,
                               const BodyState<S>& b, S dt) noexcept = 0;
@@ -312,7 +311,8 @@ class AnyLink {
     std::optional<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
     RowTurning<S> turning_; ///< between prepare and commit
-    bool sound_ = true; ///< the bodies of the last prepare were somewhere
+    bool ahead_ = false;    ///< they were half a step ahead in it
+    bool sound_ = true;     ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;

@@ -43,12 +43,12 @@ void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept
 
 template <std::floating_point S>
 const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
-                                                       S dt, S rate, bool midway,
-                                                       bool ahead) noexcept {
+                                                       S dt, S rate, bool ahead) noexcept {
     const Vector6<S> last = strain();
     pose_.look(a, b);
     on_surface_ = false;
     sound_ = pose_.finite();
+    ahead_ = ahead;
     const Vector6<S> now = strain();
     const Vector6<S> before = ahead ? last : now;
     turning_ =
@@ -63,25 +63,25 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     if (!sound_) return limits_;
     if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
     start_ = turning_.before(pose_.twist(a, b));
-    prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, midway, ahead);
+    prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, ahead);
     return limits_;
 }
 
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit(const BodyState<S>& a, const BodyState<S>& b,
-                                  const JointWrench<S>& wrench, S dt, S share) noexcept {
-    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt, share);
+                                  const JointWrench<S>& wrench, S dt) noexcept {
+    return commit_rows(a, b, pose_.along_rows(wrench.force, wrench.moment), dt);
 }
 
 template <std::floating_point S>
 const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>& b,
-                                       const Vector6<S>& forces, S dt, S share) noexcept {
+                                       const Vector6<S>& forces, S dt) noexcept {
     // velocities belong to the rows that were solved, positions to where the bodies are now
     const Vector6<S> velocity = pose_.twist(a, b);
     end_ = turning_.after(velocity);
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
-    unseen_turn_ = std::max(pose_.unseen_turn(a, b, dt / share), turned_too_far());
+    unseen_turn_ = std::max(pose_.unseen_turn(a, b, ahead_ ? dt / 2 : dt), turned_too_far());
     pose_.look(a, b);
     if (!broken() && !(sound && pose_.finite())) {
         unseen_turn_ = 0;

@@ -138,8 +138,8 @@ class CoupledJoint {
     /// finite.
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
-    /// Rules them anew for a solver that meets the surface itself, not the bounds. Nothing where that
-    /// cannot be, as the step gives the force of a row.
+    /// Rules them anew for a solver that meets the surface itself, not the bounds. Nothing where
+    /// that cannot be, as the step gives the force of a row.
     [[nodiscard]] std::optional<Rows> meet_surface(Scalar dt) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
@@ -241,8 +241,6 @@ class CoupledJoint {
                 .noise = parameters_.absolute_residual,
                 .elastic = elastic_[i],
                 .offset = state_.plastic_offset[i],
-                .predicted = jumped ? Scalar(0) : predicted_.change[i],
-                .midway = predicted_.midway,
                 .ahead = ahead_,
                 .spring = spring(i, dt),
                 .may_stop = (state_.flowing || jumped) &&
@@ -369,13 +367,12 @@ class CoupledJoint {
     Vector implicit_ = Vector::Ones();                         ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it
     Scalar left_ = 0,
-           share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
-    Scalar cap_ = 0;     ///< γ of a brittle break
-    bool ahead_ = false; ///< Motion::ahead
+           share_ = 1;       ///< travel left before a break; of the strength, what bounds allow
+    Scalar cap_ = 0;         ///< γ of a brittle break
+    bool ahead_ = false;     ///< Motion::ahead
     bool will_flow_ = false; ///< as predicted
     Scalar turning_ = 0, damping_ = 0; ///< Motion's
     Vector drift_ = Vector::Zero();    ///< Motion's
-    Predicted<Vector> predicted_{Vector::Zero()};
 };
 } // namespace ductile
 

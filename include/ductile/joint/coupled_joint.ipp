@@ -41,7 +41,6 @@ requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
     -> Rows {
     start_ = motion.velocity;
-    predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
     ahead_ = motion.ahead;
     turning_ = motion.turning;

@@ -40,8 +40,6 @@ struct OpenRow {
     S noise;             ///< speed below which nothing moves [m/s | rad/s]
     S elastic;           ///< q_e [m | rad]
     S offset;            ///< q_p [m | rad]
-    S predicted;         ///< as RowStep's [m/s | rad/s]
-    bool midway;         ///< as RowStep's
     bool ahead;          ///< as Motion's
     SpringRow<S> spring; ///< of an elastic row
     bool may_stop;       ///< it flowed in the last step or was kicked since, and is not at rest
@@ -134,8 +132,6 @@ struct OpenRow {
                               .start = start,
                               .travel = moved,
                               .dt = dt,
-                              .predicted = predicted,
-                              .midway = midway,
                               .noise = noise,
                               .strength = std::max(upper, -lower) / share,
                               .stiffness = stiffness,

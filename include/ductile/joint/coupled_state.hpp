@@ -25,8 +25,7 @@ struct CoupledMotion {
     /// M, symmetric, positive definite [kg | kg m²]; only its error by factors spoils the
     /// prediction
     Eigen::Matrix<S, N, N> mass = Eigen::Matrix<S, N, N>::Identity();
-    bool midway = false; ///< as Motion's
-    bool ahead = false;  ///< as Motion's
+    bool ahead = false;                                             ///< as Motion's
     Eigen::Matrix<S, N, 1> before = Eigen::Matrix<S, N, 1>::Zero(); ///< as Motion's
     S turning = 0;                                                  ///< as Motion's
     Eigen::Matrix<S, N, 1> drift = Eigen::Matrix<S, N, 1>::Zero();  ///< as Motion's

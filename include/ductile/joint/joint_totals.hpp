@@ -56,7 +56,6 @@ struct JointTotals {
     S lost = 0;           ///< stored energy that the break set free [J]
     S residual_max = 0;   ///< largest residual so far [m/s | rad/s]
     S misplaced = 0;      ///< travel that the steps' length may have misplaced, summed [m | rad]
-    S dt = 0;             ///< of the last step [s]
     double time = 0; ///< sum of dt until now or until the break [s]; a float would stop counting
     bool flowing = false; ///< a row ended the last step at its bound
     bool broken = false;

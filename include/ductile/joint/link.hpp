@@ -190,8 +190,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         }
     }
     void take_mass(const Matrix6<S>& k) noexcept override { mass_ = mass_of_rows(k, axes_); }
-    void prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool midway,
-                       bool ahead) noexcept override;
+    void prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool ahead) noexcept override;
     void commit_joint(const Vector6<S>& velocity, const BodyState<S>& a, const BodyState<S>& b,
                       S dt) noexcept override;
     void leave_unbooked() noexcept override { booked_.leave_unbooked(); }
@@ -265,8 +264,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
 };
 
 template <class Joint>
-void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool midway,
-                                bool ahead) noexcept {
+void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bool ahead) noexcept {
     offset_ = joint_offset();
     const RowTurning<S>& turning = rows.turning;
     const JointVector position = from_rest(rows.strain), before = from_rest(rows.before),
@@ -278,7 +276,6 @@ void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bo
         limits = joint_.prepare({.position = position[0],
                                  .velocity = velocity[0],
                                  .mass = mass_(0, 0),
-                                 .midway = midway,
                                  .ahead = ahead,
                                  .before = before[0],
                                  .turning = speed,
@@ -290,7 +287,6 @@ void Link<Joint>::prepare_joint(const typename Base::RowsAtStart& rows, S dt, bo
         const auto limits = joint_.prepare({.position = position,
                                             .velocity = velocity,
                                             .mass = mass_,
-                                            .midway = midway,
                                             .ahead = ahead,
                                             .before = before,
                                             .turning = speed,

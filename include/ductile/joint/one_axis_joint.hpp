@@ -184,8 +184,6 @@ class OneAxisJoint {
                                    .start = start_,
                                    .travel = taken.travel,
                                    .dt = taken.dt,
-                                   .predicted = jumped() ? Scalar(0) : predicted_.change,
-                                   .midway = predicted_.midway,
                                    .noise = parameters_.absolute_residual,
                                    .strength = flow_.resistance(taken.travel),
                                    .stiffness = parameters_.stiffness,
@@ -339,12 +337,12 @@ class OneAxisJoint {
     State state_;
 
     // between prepare and commit
-    bool sound_ = true;                         ///< the input of `prepare` was finite
-    Scalar bias_ = 0, compliance_ = 0;          ///< b, C
-    Scalar start_ = 0, elastic_ = 0;            ///< u, q_e at the start
-    SpringRow<Scalar> spring_{};                ///< of an elastic row
-    bool given_ = false;                        ///< its force is
-    FlowRange<Scalar> flow_{}; ///< forces along the flow at which it flows back and forth
+    bool sound_ = true;                ///< the input of `prepare` was finite
+    Scalar bias_ = 0, compliance_ = 0; ///< b, C
+    Scalar start_ = 0, elastic_ = 0;   ///< u, q_e at the start
+    SpringRow<Scalar> spring_{};       ///< of an elastic row
+    bool given_ = false;               ///< its force is
+    FlowRange<Scalar> flow_{};         ///< forces along the flow at which it flows back and forth
     Scalar lower_ = 0, upper_ = 0,
            tolerance_ = 0;           ///< bounds of the row's force, how near is at them
     Scalar fade_ = 1, implicit_ = 1; ///< strength factor of the criterion; θ of an elastic row
@@ -352,7 +350,6 @@ class OneAxisJoint {
            share_ = 1;   ///< travel left before a break; of the strength, what bounds allow
     bool ahead_ = false; ///< Motion::ahead
     Scalar turning_ = 0, drift_ = 0; ///< Motion's
-    Predicted<Scalar> predicted_{};
 };
 } // namespace ductile
 

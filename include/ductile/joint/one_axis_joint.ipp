@@ -15,7 +15,6 @@ requires CyclicLaw<typename CyclicForm<Law>::type>
 auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar dt) noexcept
     -> RowLimits<Scalar> {
     start_ = motion.velocity;
-    predicted_ = predict(state_, motion.midway, dt);
     elastic_ = motion.position - state_.plastic_offset;
     ahead_ = motion.ahead;
     turning_ = motion.turning;

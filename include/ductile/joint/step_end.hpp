@@ -88,7 +88,6 @@ void settle(State& state, Step& step, const StepEnd<S, Axes>& end,
     step.first_yield = step.plastic_work > 0 && state.plastic_work == 0;
     step.fracture = state.broken;
     state.time += end.dt;
-    state.dt = end.dt;
     state.plastic_work += step.plastic_work;
     state.stored += step.elastic;
     state.damped += step.damped;

@@ -9,13 +9,6 @@
 // contact begins within a step is as uncertain. The sum, relative to the plastic travel so far, is
 // the step error. It is judged where a flow ends: at its onset the travel so far says nothing yet.
 //
-// Flow in the middle of steps. Where every force acts from the middle of one step to the middle of
-// the next (world/leapfrog.hpp), a force that stays the same misplaces nothing. What is misplaced
-// is where it changes: by up to |Δu - Δu₋| dt, or |Δu| dt where that is less, with the change of
-// speed Δu₋ that the last step predicts. The stop of above is then off by up to 1/(4 n²) of its
-// travel and said to be off by up to 1.5/n². A flow that a contact begins within a step is off by
-// up to u' dt, as here no stop half a step early makes up for half of that.
-//
 // Direction. Rows that share a yield surface flow along its normal as far as their bounds were set
 // around the right force. Plastic work done along another direction is misplaced as well
 // (off_normal_work.hpp).
@@ -43,8 +36,6 @@ struct RowStep {
     S start;      ///< u [m/s | rad/s]
     S travel;     ///< (u + u') dt/2, signed [m | rad]
     S dt;         ///< [s]
-    S predicted;   ///< Δu₋ in the middle of steps, else 0 [m/s | rad/s]
-    bool midway;  ///< velocities are those in the middle of steps
     S noise;      ///< speed below which nothing flows [m/s | rad/s]
     S strength;   ///< R [N | N m]
     S stiffness;  ///< k; infinite: rigid [N/m | N m/rad]
@@ -66,22 +57,6 @@ struct StepError {
     }
 };
 
-/// What the last step says of this one. `Axes` is a number or a vector, one entry per axis.
-template <class Axes>
-struct Predicted {
-    Axes change;         ///< Δu₋ where it flowed, else 0 [m/s | rad/s]
-    bool midway = false; ///< velocities are those in the middle of steps; else Δu₋ is 0
-};
-
-/// For a step of `dt` [s] after the one that left `state`.
-template <class State, std::floating_point S>
-[[nodiscard]] auto predict(const State& state, bool midway, S dt) noexcept {
-    Predicted<decltype(State::velocity)> result{state.velocity, midway};
-    result.change -= state.start_velocity;
-    result.change *= midway && state.flowing ? dt / state.dt : S(0);
-    return result;
-}
-
 template <std::floating_point S>
 [[nodiscard]] StepError<S> step_error(const RowStep<S>& row) noexcept {
     const bool rigid = row.stiffness == std::numeric_limits<S>::infinity();
@@ -90,9 +65,7 @@ template <std::floating_point S>
     if (row.flowed) {
         const bool still =
             std::abs(row.start * row.dt) + std::abs(row.travel) <= row.noise * row.dt;
-        const S unlike = std::abs(row.force * (changed - row.predicted * row.dt / 2));
-        const S misplaced = row.midway ? 2 * std::min(change, unlike) : change;
-        return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * misplaced};
+        return {.flow = still ? S(0) : (rigid ? S(1) : row.implicit) * change};
     }
     // a stiff spring moves by little, and what it does is measured by its force
     if (rigid || row.implicit == 0) return {};

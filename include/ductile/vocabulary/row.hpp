@@ -6,9 +6,9 @@
 //
 //     u' + C λ = b,    lower dt ≤ λ ≤ upper dt
 //
-// A joint rules the numbers of its row before the solve (RowLimits) and books what happened after it
-// (Reaction). Forces and moments cross the seam with dt, never impulses, because engines disagree
-// about impulses.
+// A joint rules the numbers of its row before the solve (RowLimits) and books what happened after
+// it (Reaction). Forces and moments cross the seam with dt, never impulses, because engines
+// disagree about impulses.
 //
 // Symbols
 //   u, u'  relative velocity of the row at the start and end of the step   [m/s | rad/s]
@@ -42,11 +42,9 @@ template <std::floating_point Scalar>
 struct Motion {
     Scalar position = 0; ///< q, not wrapped: a hinge may turn many times [m | rad]
     Scalar velocity = 0; ///< u [m/s | rad/s]
-    /// m = 1/(J M⁻¹ Jᵀ) with the joint's rigid rows holding; read only by rows with an elastic part,
-    /// 0: not known, infinite: driven [kg | kg m²]
+    /// m = 1/(J M⁻¹ Jᵀ) with the joint's rigid rows holding; read only by rows with an elastic
+    /// part, 0: not known, infinite: driven [kg | kg m²]
     Scalar mass = 0;
-    /// Velocities are those in the middle of steps: world/leapfrog.hpp. Only the certificate asks.
-    bool midway = false;
     /// The bodies are half a step ahead (frame/README.md): q is that in the middle of the step, and
     /// they will end it at q + u' dt/2.
     bool ahead = false;
@@ -73,10 +71,14 @@ enum class Outcome { elastic, yielding, broken, unreliable };
 
 [[nodiscard]] constexpr std::string_view to_string(Outcome outcome) noexcept {
     switch (outcome) {
-        case Outcome::elastic: return "elastic";
-        case Outcome::yielding: return "yielding";
-        case Outcome::broken: return "broken";
-        case Outcome::unreliable: return "unreliable";
+        case Outcome::elastic:
+            return "elastic";
+        case Outcome::yielding:
+            return "yielding";
+        case Outcome::broken:
+            return "broken";
+        case Outcome::unreliable:
+            return "unreliable";
     }
     return "unknown";
 }

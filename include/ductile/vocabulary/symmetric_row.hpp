@@ -31,11 +31,11 @@ struct SymmetricRow {
     double cfm = 0;      ///< C dt, "constraint force mixing" in ODE [s/kg | s/(kg m²)]
 };
 
-/// For a step of `dt` > 0 [s], for the share `share` in (0, 1] of which the row's forces act.
-[[nodiscard]] inline SymmetricRow symmetric_row(const RowLimits<double>& limits, double dt,
-                                                double share = 1) noexcept {
-    const double half = share * (limits.upper - limits.lower) / 2;
-    const double centre = std::isfinite(half) ? share * (limits.lower + limits.upper) / 2 : 0;
+/// For a step of `dt` > 0 [s].
+[[nodiscard]] inline SymmetricRow symmetric_row(const RowLimits<double>& limits,
+                                                double dt) noexcept {
+    const double half = (limits.upper - limits.lower) / 2;
+    const double centre = std::isfinite(half) ? (limits.lower + limits.upper) / 2 : 0;
     const double cfm = limits.compliance * dt;
     return {.centre = centre, .strength = half, .velocity = limits.bias - cfm * centre, .cfm = cfm};
 }

@@ -106,10 +106,10 @@ class EnergyMeter {
     /// The bodies were moved half a step ahead since before_step (frame/README.md): rows are solved
     /// where they are now.
     void bodies_ahead();
-    /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
-    /// forces acted (force_share.hpp).
-    void after_step(double dt, double share = 1);
-    /// Between two steps bodies of members were split or made one; `before`: held().total() before [J].
+    /// Books the step of `dt` [s] that was opened by `before_step`.
+    void after_step(double dt);
+    /// Between two steps bodies of members were split or made one; `before`: held().total() before
+    /// [J].
     void bodies_rearranged(double before);
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
@@ -163,7 +163,7 @@ class EnergyMeter {
     [[nodiscard]] const PlasticStart* start_of(const PairQueries* joint) const;
     void take_back(const void* body, const VelocityChange<double>& change);
     void undo_releases();
-    void book_body(const Course& course, const MeteredBody& now, double dt, double share);
+    void book_body(const Course& course, const MeteredBody& now, double dt);
     [[nodiscard]] double work(const void* body, const Vector3<double>& force,
                               const Vector3<double>& torque, double dt);
     void book_joint(const MeteredJoint& joint, double dt);

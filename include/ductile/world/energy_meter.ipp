@@ -106,7 +106,7 @@ DUCTILE_INLINE void EnergyMeter::bodies_ahead() {
     }
 }
 
-DUCTILE_INLINE void EnergyMeter::after_step(double dt, double share) {
+DUCTILE_INLINE void EnergyMeter::after_step(double dt) {
     const HeldEnergy<double> now = held();
     for (const MeteredBody& body : bodies_) {
         Course* course = course_of(body.body);
@@ -122,7 +122,7 @@ DUCTILE_INLINE void EnergyMeter::after_step(double dt, double share) {
     undo_releases();
     for (const MeteredBody& body : bodies_) {
         const Course* course = course_of(body.body);
-        if (course != nullptr) book_body(*course, body, dt, share);
+        if (course != nullptr) book_body(*course, body, dt);
     }
     joints_.clear();
     list_joints(joints_);
@@ -169,8 +169,8 @@ DUCTILE_INLINE void EnergyMeter::undo_releases() {
     }
 }
 
-DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBody& now, double dt,
-                                           double share) {
+DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBody& now,
+                                           double dt) {
     const MeteredBody& start = course.start;
     if (course.asleep_after) {
         if (!start.asleep) {
@@ -180,10 +180,10 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
     }
     const Vector3<double> velocities = sum(start.velocity, course.velocity_after);
     const Vector3<double> spins = sum(start.spin, course.spin_after);
-    ledger_.supply(share * dt * (dot(start.force, velocities) + dot(start.torque, spins)) / 2);
+    ledger_.supply(dt * (dot(start.force, velocities) + dot(start.torque, spins)) / 2);
 
     const Vector3<double> moved = difference(now.position, start.position);
-    const double potential = dot(now.weight, moved) - share * dt * dot(now.weight, velocities) / 2;
+    const double potential = dot(now.weight, moved) - dt * dot(now.weight, velocities) / 2;
     const Vector3<double>& w = course.spin_after;
     const double turning = (dot(w, times(start.inertia, w)) - dot(w, times(now.inertia, w))) / 2;
     const double gyroscopic = -dot(gyroscopic_impulse(start, dt), spins) / 2;

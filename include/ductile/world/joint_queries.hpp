@@ -54,7 +54,6 @@ class JointQueries {
         auto now = joint_report(state_totals(), last_step(), fracture(), last_outcome(),
                                 last_rigid_residual());
         now.unseen_turn = last_unseen_turn();
-        if (!now.fracture) add_speeds(now);
         return acts() ? now : idle_report(now);
     }
 
@@ -82,8 +81,6 @@ class JointQueries {
     [[nodiscard]] virtual double last_utilisation() const = 0;
     /// False where the engine left the joint out of the last step.
     [[nodiscard]] virtual bool acts() const { return true; }
-    /// Of an intact joint: how fast its plastic axes move now.
-    virtual void add_speeds(JointReport<double>& report) const = 0;
 };
 
 /// Of a joint between two bodies.

@@ -25,9 +25,6 @@ struct JointReport {
     S plastic_travel = 0;  ///< p [m | rad]
     S absorbed_energy = 0; ///< D [J]
     S step_error = 0;      ///< share of p that the steps so far may have misplaced [-]
-    /// Speed now of the fastest axis that can flow, 0 once broken, >= 0.
-    S rotation_rate = 0;                        ///< of rotations [rad/s]
-    S elongation_rate = 0;                      ///< of displacements [m/s]
     std::optional<FractureEvent<S>> fracture{}; ///< once it is broken
 };
 

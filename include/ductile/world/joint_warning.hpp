@@ -41,7 +41,8 @@ inline constexpr const char* unreliable_advice =
          << " s: its plastic travel may be off by " << 100 * event.report.step_error << " %";
     return line.str();
 }
-inline constexpr const char* coarse_advice = "take shorter steps, or World::advance";
+inline constexpr const char* coarse_advice =
+    "take shorter steps, or let the World do so (tolerance)";
 
 /// Of one kind of event. Not thread-safe.
 class JointWarning {

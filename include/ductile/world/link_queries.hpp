@@ -43,8 +43,6 @@ class LinkQueries : public PairQueries {
   private:
     /// True while there is no force, as the joint is left alone by its engine.
     [[nodiscard]] virtual bool is_silent() const { return false; }
-    /// Of the link's six rows, with the bodies as they are [m/s | rad/s].
-    [[nodiscard]] virtual Vector6<double> velocities() const = 0;
 
     [[nodiscard]] const JointTotals<double>& state_totals() const final { return link_.totals(); }
     [[nodiscard]] const Step<double>& last_step() const final { return link_.last(); }
@@ -56,13 +54,6 @@ class LinkQueries : public PairQueries {
     [[nodiscard]] double last_unseen_turn() const final { return link_.unseen_turn(); }
     [[nodiscard]] double last_utilisation() const final {
         return is_silent() ? 0 : link_.utilisation();
-    }
-    void add_speeds(JointReport<double>& report) const final {
-        const Vector6<double> now = velocities();
-        for (const JointAxis axis : link_.axes()) {
-            double& rate = turns(axis) ? report.rotation_rate : report.elongation_rate;
-            rate = std::max(rate, std::abs(now[std::ptrdiff_t(index(axis))]));
-        }
     }
 };
 

@@ -20,7 +20,6 @@
 #include "ductile/frame/frame_control.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/kept_joint.hpp"
-#include "ductile/world/leapfrog.hpp"
 #include "ductile/world/ledger.hpp"
 #include "ductile/world/supervisor.hpp"
 
@@ -30,47 +29,18 @@ class SteppedWorld : private JointKeeper {
   public:
     // ---- stepping
 
-    /// One step of `dt` > 0 [s].
-    /// `scene`: what moves beside the joints, as far as known, such as a gap that closes; with it
-    /// the world says where the step is too long for a contact.
+    /// One step of `dt` > 0 [s]; a frame, where the world has a tolerance.
     /// @throws std::invalid_argument where the step is not finite or not positive, or not one that
     /// this engine can do (of its own World). The world stays as it was.
-    void step(double dt, const SceneMotion<double>& scene = {}) {
+    void step(double dt) {
         check::positive("World.step.dt", dt, "s");
         supervisor_.open();
-        supervisor_.look_ahead(scene, dt);
         look_at_structures();
         if (frames_) {
             do_frame(dt, time() + dt);
         } else {
             go(dt, time() + dt);
         }
-    }
-
-    /// Steps for `duration` [s], to its end exactly, as `control` finds from the joints' motion and
-    /// from what `scene` says before each step, such as a gap that closes; `scene` may also apply
-    /// the forces and make the contacts of the step.
-    /// @throws std::invalid_argument where the duration is not positive.
-    void advance(double duration, StepControl<double>& control,
-                 const std::function<SceneMotion<double>()>& scene = {}) {
-        supervisor_.advance(duration, control, scene,
-                            [this](double dt, double end) { go(dt, end); });
-    }
-
-    /// Where it leapfrogs: the bodies' velocities are those of now, as at the start, somebody
-    /// having given them to them.
-    void restart() noexcept {
-        if (leapfrog_) leapfrog_->restart();
-    }
-
-    /// Where it leapfrogs: the last step, to be saved with the bodies and joints of a run [s]; 0
-    /// where the next one is a first one, and where it does not leapfrog.
-    [[nodiscard]] double last_step() const noexcept { return leapfrog_ ? leapfrog_->last() : 0; }
-    /// Goes on from what was saved when last_step() was `last` [s].
-    /// @throws std::invalid_argument where it is negative or not finite.
-    void resume(double last) {
-        check::non_negative("World.resume.last", last, "s");
-        if (leapfrog_) leapfrog_->resume(last);
     }
 
     // ---- frames with a tolerance
@@ -96,18 +66,16 @@ class SteppedWorld : private JointKeeper {
         return *kept;
     }
     [[nodiscard]] bool keeps_ledger() const noexcept { return kept_ledger() != nullptr; }
-    /// Of the last step() or advance(), valid until the next one.
+    /// Of the last step(), valid until the next one.
     [[nodiscard]] std::span<const JointEvent<double>> events() const noexcept {
         return supervisor_.events();
     }
     /// Is called for every event at the end of the step, or its part; it may add and remove joints,
     /// not step.
     void on_event(Supervisor::Listener listener) { supervisor_.on_event(std::move(listener)); }
-    /// Worst certificate of the last step() or advance(); watch().name() says whose.
+    /// Worst certificate of the last step(); watch().name() says whose.
     [[nodiscard]] const WorstCertificate<double>& worst() const noexcept { return watch().worst(); }
     [[nodiscard]] const Watch<double>& watch() const noexcept { return supervisor_.watch(); }
-    /// True where parts may have passed through each other unseen in the last step().
-    [[nodiscard]] bool may_miss_contact() const noexcept { return supervisor_.may_miss_contact(); }
 
   protected:
     explicit SteppedWorld(Warn warn) : supervisor_(std::move(warn)) {}
@@ -118,8 +86,6 @@ class SteppedWorld : private JointKeeper {
     using JointKeeper::keep;
     using JointKeeper::let_go;
     using JointKeeper::set_rest_damping;
-    /// From the next step on forces act from the middle of one step to the middle of the next.
-    void start_leapfrog() { leapfrog_.emplace(); }
     /// From the next step on a step is a frame.
     void start_in_frames(const FrameParameters& parameters) { frames_.emplace(parameters); }
     /// A part of `h` [s], or a blow of none, stands.
@@ -127,7 +93,6 @@ class SteppedWorld : private JointKeeper {
         supervisor_.look(time() + h);
         look_at_structures();
     }
-    [[nodiscard]] bool leapfrogs() const noexcept { return leapfrog_.has_value(); }
 
   private:
     // ---- the engine's
@@ -135,7 +100,7 @@ class SteppedWorld : private JointKeeper {
     /// Called before each step of `dt` [s].
     /// @throws what makes it impossible; nothing has changed then.
     virtual void require_possible(double dt) = 0;
-    virtual void do_step(double dt, const ForceShare& share) = 0;
+    virtual void do_step(double dt) = 0;
     /// A frame of `length` [s] begins, with the bodies and the forces on them as they are. Asked
     /// for where start_in_frames was called.
     [[nodiscard]] virtual PartEngine& begin_frame(double /*length*/) {
@@ -160,7 +125,7 @@ class SteppedWorld : private JointKeeper {
         if (!stepping_ && !told_of_engine_.exchange(true)) {
             supervisor_.say(
                 "ductile: the engine was stepped beside World::step, which clock, events and "
-                "ledger miss; step through World::step or World::advance alone");
+                "ledger miss; step through World::step alone");
         }
     }
 
@@ -168,7 +133,7 @@ class SteppedWorld : private JointKeeper {
         require_possible(dt);
         {
             const Stepping guard(stepping_);
-            do_step(dt, leapfrog_ ? leapfrog_->next(dt) : ForceShare{});
+            do_step(dt);
         }
         supervisor_.look(end);
         look_at_structures();
@@ -204,7 +169,6 @@ class SteppedWorld : private JointKeeper {
     }
 
     Supervisor supervisor_;
-    std::optional<Leapfrog> leapfrog_;
     std::optional<FrameControl> frames_;
     bool stepping_ = false;
     std::atomic<bool> told_of_engine_ = false; ///< that it is stepped by others

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The part of an adapter's World that knows no engine: whom it asks after each step, what it tells,
-// the clock, and steps that follow the motion.
+// and the clock.
 //
 //   every step:  open();  each part: engine's step, look(time);  close()
 //
@@ -16,13 +16,11 @@
 #include <functional>
 #include <limits>
 #include <span>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "ductile/fidelity/step_control.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/joint_event.hpp"
 #include "ductile/world/joint_warning.hpp"
@@ -34,16 +32,6 @@ namespace ductile {
 using Warn = std::function<void(const std::string&)>;
 
 inline void warn_on_stderr(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
-
-/// What a world says of a step in which parts may pass through each other.
-[[nodiscard]] inline std::string missed_contact_warning(const SceneMotion<double>& motion,
-                                                        double dt, double time) {
-    std::ostringstream line;
-    line << "ductile: parts " << motion.thickness << " m thick close by "
-         << motion.closing_speed * dt << " m in the step that starts at t = " << time
-         << " s: their contact may be missed; take shorter steps, or World::advance";
-    return line.str();
-}
 
 /// Not thread-safe.
 class Supervisor {
@@ -120,16 +108,6 @@ class Supervisor {
     /// Forgets the events of the last step.
     void open() noexcept { watch_.open(time_); }
 
-    /// Before a step of `dt` [s] in which something moves beside the joints.
-    void look_ahead(const SceneMotion<double>& motion, double dt) {
-        may_miss_contact_ = may_pass_through(motion, dt);
-        if (may_miss_contact_ && !std::exchange(told_of_contact_, true) && warn_) {
-            warn_(missed_contact_warning(motion, dt, time_));
-        }
-    }
-    /// Of the last step whose motion was told.
-    [[nodiscard]] bool may_miss_contact() const noexcept { return may_miss_contact_; }
-
     /// Asks all joints after a step, or a part of one, that ended at `time` [s].
     void look(double time) {
         time_ = time;
@@ -155,35 +133,6 @@ class Supervisor {
         forget_removed();
         for (JointWarning* warning : {&unreliable_, &coarse_}) {
             if (warning->due() && warn_) warn_(warning->line());
-        }
-    }
-
-    /// Steps for `duration` [s] and ends there to the last bit. Before each step `scene` (may be
-    /// empty) says what moves beside the joints, and may apply forces; do_step(dt, end) does it.
-    /// The last two steps share what is left, so that none is much shorter than the others.
-    /// @throws std::invalid_argument where the duration is not positive or the shortest step does
-    /// not move the clock.
-    template <class DoStep>
-    void advance(double duration, StepControl<double>& control,
-                 const std::function<SceneMotion<double>()>& scene, DoStep&& do_step) {
-        check::positive("World.advance.duration", duration, "s");
-        const double end = time_ + duration;
-        if (!(end - control.parameters().min_step < end)) {
-            check::fail("StepControl.min_step", control.parameters().min_step, "s",
-                        "long enough to move the clock");
-        }
-        open();
-        while (time_ < end) {
-            SceneMotion<double> motion = scene ? scene() : SceneMotion<double>{};
-            add_motion(motion);
-            const double left = end - time_;
-            double dt = control.next(motion);
-            if (dt >= left) {
-                do_step(left, end);
-            } else {
-                dt = std::min(dt, left / 2);
-                do_step(dt, time_ + dt);
-            }
         }
     }
 
@@ -213,17 +162,6 @@ class Supervisor {
                             [joint](const Entry& entry) { return entry.joint == joint; });
     }
 
-    void add_motion(SceneMotion<double>& motion) const {
-        for (const Entry& entry : joints_) {
-            if (entry.joint == nullptr) continue;
-            const Report report = entry.ask();
-            motion.plastic_rotation_rate =
-                std::max(motion.plastic_rotation_rate, report.rotation_rate);
-            motion.plastic_elongation_rate =
-                std::max(motion.plastic_elongation_rate, report.elongation_rate);
-        }
-    }
-
     std::vector<Entry> joints_;
     Watch<double> watch_;
     Warn warn_;
@@ -232,8 +170,6 @@ class Supervisor {
     Listener listener_;
     double time_ = 0;
     std::size_t added_ = 0;
-    bool may_miss_contact_ = false;
-    bool told_of_contact_ = false;
     bool looking_ = false;
 };
 

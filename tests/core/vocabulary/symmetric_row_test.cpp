@@ -73,10 +73,3 @@ TEST_CASE("equal strength both ways needs no force from outside", "[symmetric_ro
     CHECK(row.strength == 7);
     CHECK(row.velocity == 1);
 }
-
-TEST_CASE("a row that acts for a share of the step has that share of the force",
-          "[symmetric_row]") {
-    const SymmetricRow row = symmetric_row({.lower = -2, .upper = 6}, 0.1, 0.5);
-    CHECK(row.centre == 1);
-    CHECK(row.strength == 2);
-}

@@ -20,10 +20,8 @@ using ductile::test::message_of;
 namespace {
 
 struct Scribe final : SteppedWorld {
-    explicit Scribe(bool leapfrog = false, bool ledger = false)
-        : SteppedWorld(nullptr), ledger_kept(ledger) {
+    explicit Scribe(bool ledger = false) : SteppedWorld(nullptr), ledger_kept(ledger) {
         supervisor().add(this, "joint", [] { return JointReport<double>{}; });
-        if (leapfrog) start_leapfrog();
     }
 
     std::vector<std::string> said() { return std::exchange(lines, {}); }
@@ -31,10 +29,8 @@ struct Scribe final : SteppedWorld {
     void require_possible(double dt) override {
         if (dt < shortest) throw std::invalid_argument("too short");
     }
-    void do_step(double dt, const ForceShare& share) override {
-        lines.push_back("step " + std::to_string(int(dt * 1000 + 0.5)) + " ms, share " +
-                        std::to_string(int(share.value * 100 + 0.5)) + " %" +
-                        (share.midway ? ", midway" : ""));
+    void do_step(double dt) override {
+        lines.push_back("step " + std::to_string(int(dt * 1000 + 0.5)) + " ms");
     }
     [[nodiscard]] bool has_body(const void*) const override { return false; }
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
@@ -54,45 +50,25 @@ using Lines = std::vector<std::string>;
 TEST_CASE("a step moves the clock", "[world]") {
     Scribe world;
     world.step(0.01);
-    CHECK(world.said() == Lines{"step 10 ms, share 100 %"});
+    CHECK(world.said() == Lines{"step 10 ms"});
     CHECK(world.time() == 0.01);
-    CHECK(world.last_step() == 0); // it does not leapfrog
-}
-
-TEST_CASE("each step that leapfrogs has its share", "[world]") {
-    Scribe world(true);
-    world.step(0.01);
-    world.step(0.02);
-    CHECK(world.last_step() == 0.02);
-    world.step(0.02);
-    world.restart();
-    CHECK(world.last_step() == 0);
-    world.step(0.02);
-    world.resume(0.01);
-    world.step(0.01);
-    Lines shares;
-    for (const std::string& line : world.said()) shares.push_back(line.substr(line.find("share")));
-    CHECK(shares == Lines{"share 50 %, midway", "share 75 %, midway", "share 100 %, midway",
-                          "share 50 %, midway", "share 100 %, midway"});
 }
 
 TEST_CASE("a step that cannot be is refused and nothing has moved", "[world]") {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    Scribe world(true);
+    Scribe world;
     for (const double dt : {0.0, -1.0, infinity, std::nan("")}) {
         CHECK_THROWS_AS(world.step(dt), std::invalid_argument);
     }
     CHECK(message_of([&] { world.step(-1); }) == "World.step.dt = -1 s: must be finite and > 0");
     world.shortest = 0.1;
     CHECK_THROWS_AS(world.step(0.01), std::invalid_argument);
-    CHECK_THROWS_AS(world.resume(-1), std::invalid_argument);
     CHECK(world.said().empty());
     CHECK(world.time() == 0);
-    CHECK(world.last_step() == 0);
 }
 
 TEST_CASE("a ledger that is not kept cannot be read", "[world]") {
     CHECK_THROWS_AS(Scribe().ledger(), std::logic_error);
-    Scribe kept(false, true);
+    Scribe kept(true);
     CHECK(&kept.ledger() == &kept.book);
 }

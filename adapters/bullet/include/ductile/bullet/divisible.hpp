@@ -13,7 +13,6 @@
 
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/world/joint_report.hpp"
-#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
@@ -84,10 +83,10 @@ class Divisible {
     virtual void find_beyond(double dt, std::vector<int>& sections) = 0;
     virtual void begin_blow() = 0;
     virtual void find_struck(std::vector<int>& sections) = 0;
-    virtual void open(std::span<const int> sections, const ForceShare& share,
+    virtual void open(std::span<const int> sections, bool ahead,
                       std::vector<DivisionChange>& told) = 0;
     /// A tick stands: closes what held, false where nothing did.
-    virtual bool close_held(const ForceShare& share, std::vector<DivisionChange>& told) = 0;
+    virtual bool close_held(bool ahead, std::vector<DivisionChange>& told) = 0;
 };
 
 } // namespace ductile::bullet

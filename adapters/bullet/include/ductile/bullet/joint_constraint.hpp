@@ -131,7 +131,6 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     [[nodiscard]] Reading& reading();
 
     [[nodiscard]] bool acts() const override { return is_awake(); }
-    [[nodiscard]] DUCTILE_INLINE Vector6<double> velocities() const override;
 
     // what every pass over the constraints asks for comes first
     Open open_ = Open::nothing;
@@ -141,12 +140,10 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     bool told_ = false;                                ///< the island said its forces
     Vector6<double> forces_ = Vector6<double>::Zero(); ///< these, in the open tick [N | N m]
     btScalar rigid_erp_ = -1;                          ///< negative: the world's
-    double dt_ = 0;                    ///< for which the rows' forces act in the open tick
-    double tick_share_ = 1;            ///< as a share of the tick
-    bool ahead_ = false;               ///< the bodies are half a step ahead in it
-    std::array<std::size_t, 6> order_; ///< axis of each row
-    std::unique_ptr<Reading> reading_; ///< where Bullet ever solved the rows
-    JointImpulse<double> handed_;      ///< what Open::hand_back gives
+    double dt_ = 0;                                    ///< of the open tick [s]
+    std::array<std::size_t, 6> order_;                 ///< axis of each row
+    std::unique_ptr<Reading> reading_;                 ///< where Bullet ever solved the rows
+    JointImpulse<double> handed_;                      ///< what Open::hand_back gives
     Kept kept_;
 };
 

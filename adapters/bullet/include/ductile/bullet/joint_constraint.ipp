@@ -17,8 +17,7 @@ struct JointConstraint::Reading {
 };
 
 DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, btRigidBody& a,
-                                                btRigidBody& b, Feedback feedback,
-                                                Meeting meeting)
+                                                btRigidBody& b, Feedback feedback, Meeting meeting)
     : PlasticConstraint(a, b),
       LinkQueries(link),
       feedback_(feedback),
@@ -38,10 +37,6 @@ DUCTILE_INLINE JointView JointConstraint::view() const {
         view.plastic_offset[Eigen::Index(index(axis))] = link_.plastic_offset(axis);
     }
     return view;
-}
-
-DUCTILE_INLINE Vector6<double> JointConstraint::velocities() const {
-    return link_.velocities(body_motion(m_rbA), body_motion(m_rbB));
 }
 
 DUCTILE_INLINE void JointConstraint::restored(bool was_broken) {
@@ -102,8 +97,8 @@ DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island) {
     if (m_jointFeedback == nullptr) return;
     const LinkPose<double>& pose = link_.pose();
     write_feedback(*m_jointFeedback, m_rbA, m_rbB, pose.arm_a(), pose.arm_b(),
-                   scaled(tick_share_, times(pose.axes(), linear(forces_))),
-                   scaled(tick_share_, times(pose.moment_axes(), angular(forces_))));
+                   times(pose.axes(), linear(forces_)),
+                   times(pose.moment_axes(), angular(forces_)));
 }
 
 DUCTILE_INLINE void JointConstraint::setParam(int num, btScalar value, int /*axis*/) {
@@ -127,14 +122,11 @@ DUCTILE_INLINE void JointConstraint::prepare(double tick, double erp) {
     require_bodies_in_world();
     came_into_world();
     tell_keepers_of_step();
-    dt_ = force_share_.value * tick;
-    tick_share_ = force_share_.value;
-    ahead_ = force_share_.ahead;
+    dt_ = tick;
     const bool masses = link_.reads_mass();
     const BodyState<double> a = at_start(0, tick, masses), b = at_start(1, tick, masses);
     if (!ahead_) link_.teleport(a, b); // else begin_part has looked
-    link_.prepare(a, b, dt_, (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick,
-                  force_share_.midway, ahead_);
+    link_.prepare(a, b, dt_, (rigid_erp_ < 0 ? erp : double(rigid_erp_)) / tick, ahead_);
     open_ = Open::tick;
 }
 
@@ -165,8 +157,7 @@ DUCTILE_INLINE void JointConstraint::book(bool late) {
     if (was != Open::tick) return;
     const Vector6<double> forces = reaction();
     const BodyState<double> a = at_end(0, late), b = at_end(1, late);
-    // half of a part's way lies before the rows were prepared
-    link_.commit_rows(a, b, forces, dt_, ahead_ ? 2 * tick_share_ : tick_share_);
+    link_.commit_rows(a, b, forces, dt_);
     booked_ = true;
 }
 
@@ -237,7 +228,7 @@ DUCTILE_INLINE Vector6<double> JointConstraint::reaction() {
     if (told_) return forces_;
     Vector6<double> forces = Vector6<double>::Zero();
     if (feedback_ == Feedback::all_rows && m_jointFeedback != nullptr) {
-        forces = forces_of_rows(*m_jointFeedback, reading().arm, link_, tick_share_);
+        forces = forces_of_rows(*m_jointFeedback, reading().arm, link_);
     }
     if (one_axis()) {
         forces[Eigen::Index(order_.back())] = double(internalGetAppliedImpulse()) / dt_;

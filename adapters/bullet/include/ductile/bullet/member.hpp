@@ -121,10 +121,10 @@ class Member {
     void enter(btDiscreteDynamicsWorld& world);
     void leave();
     void note_sections();
-    void open(std::span<const int> sections, const ForceShare& share);
-    void close(std::span<const int> sections, const ForceShare& share);
-    void become(const std::vector<PlacedPiece>& pieces, const ForceShare& share);
-    void make_joints(const ForceShare& share);
+    void open(std::span<const int> sections, bool ahead);
+    void close(std::span<const int> sections, bool ahead);
+    void become(const std::vector<PlacedPiece>& pieces, bool ahead);
+    void make_joints(bool ahead);
     void make_attachments();
     void drop_attachment(Attachment& attachment);
     void let_pieces_pass() const;
@@ -134,10 +134,10 @@ class Member {
     std::unique_ptr<PieceMaker> maker_;
     JointFrame<double> held_; ///< where a held segment is
     btDiscreteDynamicsWorld* world_ = nullptr;
-    std::function<void()> ends_;    ///< tells the World that it was added to
-    std::function<void()> pushed_;  ///< tells it that a force was applied, the first one
+    std::function<void()> ends_;       ///< tells the World that it was added to
+    std::function<void()> pushed_;     ///< tells it that a force was applied, the first one
     std::function<void()> rearranged_; ///< that its bodies are others
-    std::vector<PieceBody> pieces_; ///< by piece
+    std::vector<PieceBody> pieces_;    ///< by piece
     std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;
     std::vector<Force> forces_;

@@ -133,7 +133,6 @@ DUCTILE_INLINE JointReport<double> Member::report() const {
         all.coarse = all.coarse || report.coarse;
         all.residual = std::max(all.residual, report.residual);
         all.step_error = std::max(all.step_error, report.step_error);
-        all.rotation_rate = std::max(all.rotation_rate, report.rotation_rate);
         all.plastic_travel += report.plastic_travel;
         if (int(report.outcome) > int(all.outcome)) all.outcome = report.outcome;
         if (report.fracture) all.fracture = report.fracture;
@@ -184,9 +183,10 @@ DUCTILE_INLINE void Member::require_free(const btDiscreteDynamicsWorld& world) c
         if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
             continue;
         }
-        const bool own = std::any_of(
-            attachments_.begin(), attachments_.end(),
-            [&](const Attachment& attachment) { return attachment.constraint.get() == &constraint; });
+        const bool own = std::any_of(attachments_.begin(), attachments_.end(),
+                                     [&](const Attachment& attachment) {
+                                         return attachment.constraint.get() == &constraint;
+                                     });
         if (own) continue;
         throw std::invalid_argument(
             "World.add.member: no constraint of the world may hold its body but by "
@@ -262,20 +262,19 @@ DUCTILE_INLINE void Member::note_sections() {
     }
 }
 
-DUCTILE_INLINE void Member::open(std::span<const int> sections, const ForceShare& share) {
+DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {
     if (whole()) require_free(*world_);
     note_sections();
-    become(course_.open(sections, placed_pieces()), share);
+    become(course_.open(sections, placed_pieces()), ahead);
 }
 
-DUCTILE_INLINE void Member::close(std::span<const int> sections, const ForceShare& share) {
-    become(course_.close(sections, placed_pieces()), share);
+DUCTILE_INLINE void Member::close(std::span<const int> sections, bool ahead) {
+    become(course_.close(sections, placed_pieces()), ahead);
 }
 
 // ---- its bodies
 
-DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces,
-                                   const ForceShare& share) {
+DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool ahead) {
     if (pieces_.size() == 1) maker_->take_out();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     const auto take_kept = [&old](const MemberRun& run) {
@@ -320,7 +319,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces,
         }
         let_pieces_pass();
     }
-    make_joints(share);
+    make_joints(ahead);
     make_attachments();
 }
 
@@ -334,7 +333,7 @@ DUCTILE_INLINE void Member::let_pieces_pass() const {
     }
 }
 
-DUCTILE_INLINE void Member::make_joints(const ForceShare& share) {
+DUCTILE_INLINE void Member::make_joints(bool ahead) {
     for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
         const int section = pieces_[i].run.last;
         if (std::any_of(joints_.begin(), joints_.end(),
@@ -357,9 +356,9 @@ DUCTILE_INLINE void Member::make_joints(const ForceShare& share) {
         state.joint.plastic_offset = bend;
         hinge.restore(state);
         hinge.setJointFeedback(open.feedback.get());
-        hinge.set_force_share(share);
+        hinge.set_ahead(ahead);
         hinge.add_to(*world_);
-        if (share.ahead) hinge.begin_part();
+        if (ahead) hinge.begin_part();
         joints_.push_back(std::move(open));
     }
 }

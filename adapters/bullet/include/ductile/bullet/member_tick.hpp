@@ -51,10 +51,9 @@ class MemberTick final : public Divisible {
     DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
     DUCTILE_INLINE void begin_blow() override;
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
-    DUCTILE_INLINE void open(std::span<const int> sections, const ForceShare& share,
+    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
-    DUCTILE_INLINE bool close_held(const ForceShare& share,
-                                   std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
 
   private:
     struct Touch {
@@ -82,7 +81,7 @@ class MemberTick final : public Divisible {
     std::vector<Touch> touches_;
     std::vector<MemberLoad> loads_;
     MemberStrike strike_;
-    double sum_ = 0; ///< of impulses [N s]
+    double sum_ = 0;                           ///< of impulses [N s]
     double own_about_x_ = 0, own_inertia_ = 0; ///< of its segments, each about its middle [kg m²]
 };
 

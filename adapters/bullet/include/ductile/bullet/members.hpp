@@ -64,7 +64,7 @@ class Members {
     [[nodiscard]] bool has(const Member& member) const noexcept;
     [[nodiscard]] JointReport<double> report(const Member& member) const { return member.report(); }
     /// How the forces of joints act in the coming ticks.
-    void set_share(const ForceShare& share) noexcept { share_ = share; }
+    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
     /// Under which a joint is reported, and of which section it is; null: no member's.
     [[nodiscard]] const void* key_of(const PlasticConstraint& joint, int& section) const;
     /// Of sections that are closed [J].
@@ -95,7 +95,7 @@ class Members {
   private:
     struct Course {
         Divisible* of;
-        const Member* member;              ///< null: a structure
+        const Member* member;               ///< null: a structure
         std::unique_ptr<MemberTick> tick{}; ///< of a member
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
@@ -121,7 +121,7 @@ class Members {
     [[nodiscard]] bool is_decided(Course& course);
 
     btDiscreteDynamicsWorld& world_;
-    ForceShare share_;
+    bool ahead_ = false; ///< bodies are half a step ahead where rows are solved
     std::vector<Course> members_;
     std::unordered_map<const btCollisionObject*, std::size_t> owners_;
     std::vector<std::size_t> watched_; ///< that may change without being touched
@@ -129,7 +129,7 @@ class Members {
     std::vector<Member*> pushed_;      ///< with forces
     btVector3 gravity_{0, 0, 0};       ///< of the last look
     bool look_at_all_ = true;
-    int objects_ = 0;                  ///< of the world, in the last tick
+    int objects_ = 0; ///< of the world, in the last tick
     std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world
     DirectBodies direct_;

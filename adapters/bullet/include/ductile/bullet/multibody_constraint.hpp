@@ -122,12 +122,7 @@ class MultiBodyPlasticConstraint : protected btMultiBodyConstraint,
     template <class Joint, class JointStep>
     [[nodiscard]] JointReport<double> report_of(const Joint& joint, const JointStep& last,
                                                 Outcome outcome) const noexcept {
-        auto now = joint_report<double>(joint.state(), last, joint.fracture(), outcome, 0.0);
-        if (!broken()) {
-            for (int i = 0; i < m_numRows; ++i) {
-                now.rotation_rate = std::max(now.rotation_rate, std::abs(velocity()[i]));
-            }
-        }
+        const auto now = joint_report<double>(joint.state(), last, joint.fracture(), outcome, 0.0);
         return asleep() ? idle_report(now) : now;
     }
 

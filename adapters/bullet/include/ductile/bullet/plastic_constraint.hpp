@@ -40,7 +40,6 @@
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/kept_joint.hpp"
-#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::bullet {
 
@@ -67,8 +66,8 @@ class PlasticConstraint : public btTypedConstraint,
     /// @throws std::logic_error where a body that can move is in no world. Asked in every tick, and
     /// by World before it.
     void require_bodies_in_world() const;
-    /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
-    void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
+    /// In the coming ticks the bodies are half a step ahead (half_ahead.hpp).
+    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
     // ---- a structure's side (world/structures.hpp)
 
     [[nodiscard]] bool is_awake_member() const override { return is_awake(); }
@@ -111,7 +110,7 @@ class PlasticConstraint : public btTypedConstraint,
     static constexpr double resting_share = 0.01;
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
-    ForceShare force_share_;
+    bool ahead_ = false;               ///< the bodies are half a step ahead where rows are solved
 
   private:
     [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;

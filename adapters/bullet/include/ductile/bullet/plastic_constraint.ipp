@@ -165,7 +165,7 @@ DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double ti
                                                              bool with_mass) {
     const btRigidBody& body = this->body(side);
     std::unique_ptr<DrivenBody>& driven = driven_[std::size_t(side)];
-    if (!body.isKinematicObject() || force_share_.ahead) { // else see driven_ways.hpp
+    if (!body.isKinematicObject() || ahead_) { // else see driven_ways.hpp
         driven.reset();
         return with_mass ? body_state(body) : body_motion(body);
     }

@@ -86,7 +86,6 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void grant(double share) noexcept override { joint_.grant(share); }
     void book(bool late);
     [[nodiscard]] bool acts() const override { return is_awake() && hinge_.isEnabled(); }
-    DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
     /// Columns, world; z about the hinge's axis.
     [[nodiscard]] Matrix3<double> axes() const;
@@ -119,8 +118,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     btScalar velocity_was_, impulse_was_;
     Vector3<double> axis_{0, 0, 1}; ///< of the open tick, world
     RowLimits<double> limits_;      ///< of it
-    double tick_ = 0;               ///< [s]
-    double dt_ = 0;                 ///< for which the row's moment acts in it [s]
+    double dt_ = 0;                 ///< [s]
     bool pending_ = false;
     bool booked_ = false;             ///< and not finished
     bool restored_ = false;           ///< the next position is measured, not compared

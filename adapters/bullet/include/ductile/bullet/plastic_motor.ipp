@@ -51,12 +51,6 @@ DUCTILE_INLINE JointView MotorConstraint::view() const {
     return view;
 }
 
-DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) const {
-    const Vector3<double> spin =
-        difference(to_core(m_rbA.getAngularVelocity()), to_core(m_rbB.getAngularVelocity()));
-    report.rotation_rate = std::abs(dot(column(axes(), 2), spin));
-}
-
 // ---- Bullet's side
 
 DUCTILE_INLINE void MotorConstraint::getInfo1(btConstraintInfo1* info) {
@@ -95,8 +89,7 @@ DUCTILE_INLINE void MotorConstraint::close_rows(const solve::Island& island) {
     moment_ = impulse / dt_;
     if (m_jointFeedback == nullptr) return;
     const Vector3<double> none = Vector3<double>::Zero();
-    write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none,
-                   scaled(impulse / tick_, axis_));
+    write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none, scaled(impulse / dt_, axis_));
 }
 
 // ---- geometry
@@ -135,18 +128,16 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     require_bodies_in_world();
     came_into_world();
     tell_keepers_of_step();
-    tick_ = double(world_->getSolverInfo().m_timeStep);
-    dt_ = force_share_.value * tick_;
-    const BodyState<double> a = at_start(0, tick_, false), b = at_start(1, tick_, false);
+    dt_ = double(world_->getSolverInfo().m_timeStep);
+    const BodyState<double> a = at_start(0, dt_, false), b = at_start(1, dt_, false);
     axis_ = column(times(a.orientation, to_core(hinge_.getAFrame().getBasis())), 2);
     const double now = measure(a, b, position_);
-    if (!force_share_.ahead) take_in_hands(now); // else begin_part did
+    if (!ahead_) take_in_hands(now); // else begin_part did
     keep(now, force_);
     const double mass =
         joint_.rigid() ? 0.0 : mass_of_rows(inverse_mass(), std::array{JointAxis::torsion})(0, 0);
     const double speed = turning(a, b);
-    limits_ = joint_.prepare(
-        {now, speed, mass, force_share_.midway, force_share_.ahead, now - speed * dt_ / 2}, dt_);
+    limits_ = joint_.prepare({now, speed, mass, ahead_, now - speed * dt_ / 2}, dt_);
     pending_ = true;
 }
 
@@ -219,7 +210,7 @@ DUCTILE_INLINE void MotorConstraint::book(bool late) {
     const double speed = turning(a, b);
     const double force = row_ != no_row ? moment_ : double(internalGetAppliedImpulse()) / dt_;
     row_ = no_row;
-    const double moved = force_share_.ahead ? tick_ / 2 : tick_; // since the row was prepared
+    const double moved = ahead_ ? dt_ / 2 : dt_; // since the row was prepared
     const double position = measure(a, b, position_ + speed * moved);
     see_turn(speed, moved, position);
     joint_.commit({force, speed, position}, dt_);

@@ -44,12 +44,10 @@ struct ReactionArm {
     return {from_b, from_b ? arm_b : arm_a};
 }
 
-/// Forces and moments of the link's rows, which acted for the share `share` of the tick, on A
-/// [N | N m].
+/// Forces and moments of the link's rows, on A [N | N m].
 [[nodiscard]] inline Vector6<double> forces_of_rows(const btJointFeedback& feedback,
                                                     const ReactionArm& from,
-                                                    const AnyLink<double>& link,
-                                                    double share) noexcept {
+                                                    const AnyLink<double>& link) noexcept {
     const Vector3<double> force =
         to_core(from.from_b ? -feedback.m_appliedForceBodyB : feedback.m_appliedForceBodyA);
     const Vector3<double> torque =
@@ -61,10 +59,8 @@ struct ReactionArm {
     for (const JointAxis axis : all_joint_axes) {
         const RowLimits<double>& limits = link.limits()[index(axis)];
         double& value = result[Eigen::Index(index(axis))];
-        value /= share;
         const double round_off_of_value =
-            round_off * (turns(axis) ? norm(torque) + norm(arm) * norm(force) : norm(force)) /
-            share;
+            round_off * (turns(axis) ? norm(torque) + norm(arm) * norm(force) : norm(force));
         for (const double bound : {limits.lower, limits.upper}) {
             if (std::abs(value - bound) <= round_off_of_value) value = bound;
         }

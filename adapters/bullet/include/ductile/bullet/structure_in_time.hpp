@@ -43,7 +43,7 @@ namespace ductile::bullet {
 class StructureInTime final : public BuiltStructure, private Divisible {
   public:
     /// @throws std::invalid_argument as make_plan, where the model is elastic, and where the world
-    /// leapfrogs or is a btMultiBodyDynamicsWorld.
+    /// is a btMultiBodyDynamicsWorld.
     StructureInTime(World& world, const StructureModel& model);
     DUCTILE_INLINE ~StructureInTime() override;
 
@@ -77,7 +77,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     };
     [[nodiscard]] static Vector6<double> forces_of(const Joint& joint) {
         Vector6<double> six;
-        for (const JointAxis axis : all_joint_axes) six[Eigen::Index(index(axis))] = joint.force(axis);
+        for (const JointAxis axis : all_joint_axes)
+            six[Eigen::Index(index(axis))] = joint.force(axis);
         return six;
     }
     struct Force {
@@ -92,9 +93,9 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     [[nodiscard]] std::vector<PlacedBody> placed_clusters() const;
     [[nodiscard]] const OpenJoint* open_joint(std::size_t joint) const;
     void note_joints();
-    void become(const StructureCourse::Change& change, const ForceShare& share);
+    void become(const StructureCourse::Change& change, bool ahead);
     [[nodiscard]] PieceBody make_cluster(std::size_t cluster, const btRigidBody* like);
-    void make_joints(const ForceShare& share);
+    void make_joints(bool ahead);
     void let_neighbours_pass();
     [[nodiscard]] JointReport<double> report(std::size_t joint) const;
     void read_contact(const Touch& touch, std::span<const BodyBefore> before);
@@ -149,18 +150,17 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
     DUCTILE_INLINE void begin_blow() override {}
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
-    DUCTILE_INLINE void open(std::span<const int> sections, const ForceShare& share,
+    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
-    DUCTILE_INLINE bool close_held(const ForceShare& share,
-                                   std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
 
     World& world_;
     btVector3 gravity_;
     StructureCourse course_;
     bool left_ = false;
-    std::vector<DivisionReport> reports_;             ///< by joint
-    std::vector<std::unique_ptr<btBoxShape>> boxes_;  ///< by body
-    std::vector<PieceBody> pieces_;                   ///< by cluster
+    std::vector<DivisionReport> reports_;            ///< by joint
+    std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by body
+    std::vector<PieceBody> pieces_;                  ///< by cluster
     std::vector<OpenJoint> joints_;
     std::vector<Force> forces_;
     // a tick

@@ -61,9 +61,8 @@ DUCTILE_INLINE btRigidBody& StructureInTime::body_of(std::string_view member,
 
 DUCTILE_INLINE const StructureInTime::OpenJoint* StructureInTime::open_joint(
     std::size_t joint) const {
-    const auto found = std::find_if(joints_.begin(), joints_.end(), [joint](const auto& open) {
-        return open.joint == joint;
-    });
+    const auto found = std::find_if(joints_.begin(), joints_.end(),
+                                    [joint](const auto& open) { return open.joint == joint; });
     return found != joints_.end() ? &*found : nullptr;
 }
 
@@ -151,8 +150,7 @@ DUCTILE_INLINE PieceBody StructureInTime::make_cluster(std::size_t c, const btRi
     return piece;
 }
 
-DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change,
-                                            const ForceShare& share) {
+DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change, bool ahead) {
     proved_.reset();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     std::vector<const btRigidBody*> now(change.kept.size(), nullptr);
@@ -182,7 +180,7 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
         if (piece.own != nullptr) world_.engine().removeRigidBody(piece.body);
     }
     let_neighbours_pass();
-    make_joints(share);
+    make_joints(ahead);
 }
 
 DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
@@ -194,15 +192,14 @@ DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
     }
 }
 
-DUCTILE_INLINE void StructureInTime::make_joints(const ForceShare& share) {
+DUCTILE_INLINE void StructureInTime::make_joints(bool ahead) {
     for (std::size_t j = 0; j < plan().joints.size(); ++j) {
         const PlanJoint& joint = plan().joints[j];
         if (!course_.joint(j).there || !course_.joint(j).open || open_joint(j) != nullptr) continue;
         const auto side = [&](std::size_t body, const JointFrame<double>& frame) {
             const std::size_t c = course_.cluster_of(body);
             return std::pair<btRigidBody&, btTransform>(
-                *pieces_[c].body,
-                to_bullet(placed(course_.clusters()[c].place(body), frame)));
+                *pieces_[c].body, to_bullet(placed(course_.clusters()[c].place(body), frame)));
         };
         const auto& [in_a, in_b] = course_.frames(j);
         const bool ground = joint.b.kind == PlanSeat::Kind::ground;
@@ -216,9 +213,9 @@ DUCTILE_INLINE void StructureInTime::make_joints(const ForceShare& share) {
                                                   all_joint_axes, Meeting::as_they_are);
         if (course_.joint(j).state) open.constraint->restore(*course_.joint(j).state);
         open.constraint->setJointFeedback(open.feedback.get());
-        open.constraint->set_force_share(share);
+        open.constraint->set_ahead(ahead);
         open.constraint->add_to(world_.engine(), !ground);
-        if (share.ahead) open.constraint->begin_part();
+        if (ahead) open.constraint->begin_part();
         joints_.push_back(std::move(open));
     }
 }
@@ -228,9 +225,8 @@ DUCTILE_INLINE void StructureInTime::make_joints(const ForceShare& share) {
 DUCTILE_INLINE JointFrame<double> StructureInTime::frame_of(const PlanSeat& seat) const {
     const std::size_t c = course_.cluster_of(seat.index);
     const Cluster& cluster = course_.clusters()[c];
-    const JointFrame<double> pose = cluster.held
-                                        ? JointFrame<double>{}
-                                        : to_core(pieces_[c].body->getCenterOfMassTransform());
+    const JointFrame<double> pose =
+        cluster.held ? JointFrame<double>{} : to_core(pieces_[c].body->getCenterOfMassTransform());
     return placed(pose, cluster.place(seat.index));
 }
 
@@ -280,9 +276,7 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
     }
 }
 
-DUCTILE_INLINE void StructureInTime::begin() {
-    touches_.clear();
-}
+DUCTILE_INLINE void StructureInTime::begin() { touches_.clear(); }
 
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(double /*dt*/,
                                                    std::span<const BodyBefore> /*before*/,
@@ -332,8 +326,7 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         const PlanJoint& joint = plan().joints[open.joint];
         add(open.feedback->m_appliedForceBodyA, open.feedback->m_appliedTorqueBodyA, joint.a);
         if (joint.b.kind != PlanSeat::Kind::body) continue;
-        add(open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB,
-            joint.b.index);
+        add(open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB, joint.b.index);
     }
     for (const Force& force : forces_) {
         const std::size_t c = course_.cluster_of(force.body);
@@ -373,21 +366,20 @@ DUCTILE_INLINE void StructureInTime::find_struck(std::vector<int>& sections) {
     proved_.reset();
 }
 
-DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, const ForceShare& share,
+DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ahead,
                                           std::vector<DivisionChange>& told) {
     note_joints();
     const std::vector<int> opened(sections.begin(), sections.end());
-    become(course_.open(opened, placed_clusters()), share);
+    become(course_.open(opened, placed_clusters()), ahead);
     for (const int joint : opened) told.push_back({&plan().joints[std::size_t(joint)], joint});
 }
 
-DUCTILE_INLINE bool StructureInTime::close_held(const ForceShare& share,
-                                                std::vector<DivisionChange>& told) {
+DUCTILE_INLINE bool StructureInTime::close_held(bool ahead, std::vector<DivisionChange>& told) {
     if (course_.whole()) return false;
     note_joints();
     const std::vector<int> held = course_.held();
     if (held.empty()) return false;
-    become(course_.close(held, placed_clusters()), share);
+    become(course_.close(held, placed_clusters()), ahead);
     for (const int joint : held) told.push_back({&plan().joints[std::size_t(joint)], joint});
     return true;
 }

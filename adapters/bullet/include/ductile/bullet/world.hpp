@@ -32,13 +32,10 @@
 //   if (!world.run().believed()) ...                   // frame(), run() say what was left, of whom
 //
 // Forces applied before the frame act in all of it. Motion states are told once, at its end; tick
-// callbacks and actions are called in every part, also of those that are put back. Not beside
-// leapfrog, and not in a btMultiBodyDynamicsWorld. Joints have to be added here or by add_to.
+// callbacks and actions are called in every part, also of those that are put back. Not
+// in a btMultiBodyDynamicsWorld. Joints have to be added here or by add_to.
 // Bullet then sorts its pairs (m_deterministicOverlappingPairs), so that a frame that was done
 // again is bit for bit what it would have been.
-//
-// leapfrog: steps of second order (world/leapfrog.hpp). Velocities are then those in the middle of
-// the last step, and so is the joints' own clock. Not for btMultiBodyDynamicsWorld.
 //
 // Not thread-safe; Bullet's world for threads may be below.
 #pragma once
@@ -67,12 +64,11 @@ class FrontHold;
 class WorldParts;
 
 struct WorldParameters {
-    bool ledger = true;    ///< whether the energy account is kept; not with multibodies
-    bool leapfrog = false; ///< whether positions are of second order in the step
+    bool ledger = true; ///< whether the energy account is kept; not with multibodies
     /// Share of the plastic work that a frame may misplace [-]: a step is then done in as many
     /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
     double tolerance = 0;
-    int budget = 256;           ///< solves of a frame where `tolerance` > 0, >= 4
+    int budget = 256; ///< solves of a frame where `tolerance` > 0, >= 4
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
@@ -101,7 +97,7 @@ class World final : public SteppedWorld {
     /// Looks after a member (member.hpp) until it ends or is removed. Its body is in Bullet's world
     /// already.
     /// @throws std::invalid_argument where it is in a world already, a constraint that it did not
-    /// make holds its body, or this world leapfrogs or is a btMultiBodyDynamicsWorld.
+    /// make holds its body, or this world is a btMultiBodyDynamicsWorld.
     void add(Member& member, std::string name = {});
     /// Of a member that is open the pieces end, and its body is in no world.
     void remove(Member& member);
@@ -117,11 +113,10 @@ class World final : public SteppedWorld {
 
   private:
     void forget(PlasticConstraint& joint);
-    /// Of Bullet's world all plastic joints share forces, not those alone that were added here.
-    void share(const ForceShare& how);
-    void require_leapfrog() const;
+    /// Of Bullet's world all plastic joints are told, not those alone that were added here.
+    void tell_ahead();
     void require_members() const;
-    void step_with_members(double dt, const ForceShare& how);
+    void step_with_members(double dt);
     template <class Change>
     void rearrange(const Change& change);
     void tell_of_members();
@@ -133,7 +128,7 @@ class World final : public SteppedWorld {
     // ---- what SteppedWorld asks of Bullet
 
     DUCTILE_INLINE void require_possible(double dt) override;
-    DUCTILE_INLINE void do_step(double dt, const ForceShare& how) override;
+    DUCTILE_INLINE void do_step(double dt) override;
     [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
     DUCTILE_INLINE void end_frame() override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
@@ -145,11 +140,10 @@ class World final : public SteppedWorld {
     bool tells_ledger_ = false;
     Members members_;
     std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
-    WorldSnapshot snapshot_;           ///< of a step, while there are members
-    std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
+    WorldSnapshot snapshot_;                         ///< of a step, while there are members
+    std::unique_ptr<WorldParts> parts_;              ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;
-    std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's
-    int told_ = -1; ///< how many constraints know that forces act for the whole step
+    std::unordered_set<PlasticConstraint*> told_ahead_; ///< whose parts are this World's
 };
 
 } // namespace ductile::bullet

@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ductile/bullet/force_share.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/precision_check.hpp"
 #include "ductile/bullet/world.hpp"
@@ -49,20 +48,12 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     tells_ledger_ = parameters.ledger;
     if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
-    if (parameters.leapfrog) {
-        require_leapfrog();
-        start_leapfrog();
-    }
     if (parameters.tolerance != 0) start_frames(parameters);
 }
 
 DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
     const FrameParameters frames{.tolerance = parameters.tolerance, .budget = parameters.budget};
     frames.validate("World");
-    if (parameters.leapfrog) {
-        throw std::invalid_argument(
-            "World.leapfrog = true: must not be asked for beside tolerance");
-    }
     if (front_ == nullptr) {
         throw std::invalid_argument(
             "World.tolerance: must not be asked of a btMultiBodyDynamicsWorld");
@@ -83,8 +74,8 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
 
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
     tell_idle(true);
-    share({.ahead = true});
-    members_.set_share({.ahead = true});
+    tell_ahead();
+    members_.set_ahead(true);
     parts_->begin(length);
     return *parts_;
 }
@@ -97,7 +88,7 @@ DUCTILE_INLINE void World::end_frame() {
 DUCTILE_INLINE World::~World() {
     parts_.reset();
     if (front_ != nullptr && front_->is_alive()) front_->set_direct(nullptr);
-    for (PlasticConstraint* joint : sharing_) joint->set_force_share({});
+    for (PlasticConstraint* joint : told_ahead_) joint->set_ahead(false);
 }
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
@@ -106,7 +97,6 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
         [&] { joint.add_to(world_); });
     keep(joint, [this, &joint] { forget(joint); });
     joints_.push_back(&joint);
-    told_ = -1;
 }
 DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
     detail::look_after(
@@ -116,9 +106,6 @@ DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string na
 }
 
 DUCTILE_INLINE void World::require_members() const {
-    if (leapfrogs()) {
-        throw std::invalid_argument("World.leapfrog = true: must not be asked for beside members");
-    }
     if (front_ == nullptr) {
         throw std::invalid_argument(
             "World.add.member: must not be added to a btMultiBodyDynamicsWorld");
@@ -139,8 +126,7 @@ DUCTILE_INLINE void World::add(Member& member, std::string name) {
     require_members();
     front_->set_direct(&members_.direct());
     members_.add(member, [this, &member] { remove(member); });
-    supervisor().add(&member, std::move(name),
-                     [this, &member] { return members_.report(member); });
+    supervisor().add(&member, std::move(name), [this, &member] { return members_.report(member); });
 }
 DUCTILE_INLINE void World::remove(Member& member) {
     if (!members_.has(member)) return;
@@ -171,7 +157,7 @@ DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
     if (!supervisor().knows(detail::address(joint))) return;
     let_go(joint);
     forget(joint);
-    joint.set_force_share({});
+    joint.set_ahead(false);
     if (joint.in_world()) joint.remove_from(world_);
 }
 DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
@@ -184,25 +170,19 @@ DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(detail::address(joint));
     if (meter_) meter_->forget(joint);
-    sharing_.erase(&joint);
+    told_ahead_.erase(&joint);
     std::erase(joints_, &joint);
 }
 
-DUCTILE_INLINE void World::share(const ForceShare& how) {
-    share_forces(world_, how);
+DUCTILE_INLINE void World::tell_ahead() {
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        auto* joint = dynamic_cast<PlasticConstraint*>(world_.getConstraint(i));
-        if (joint == nullptr || !sharing_.insert(joint).second) continue;
+        PlasticConstraint* joint = as_plastic(*world_.getConstraint(i));
+        if (joint == nullptr) continue;
+        joint->set_ahead(true);
+        if (!told_ahead_.insert(joint).second) continue;
         if (!supervisor().knows(detail::address(*joint))) {
             keep(*joint, [this, joint] { forget(*joint); });
         }
-    }
-}
-
-DUCTILE_INLINE void World::require_leapfrog() const {
-    if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) != nullptr) {
-        throw std::invalid_argument(
-            "World.leapfrog = true: must not be asked of a btMultiBodyDynamicsWorld");
     }
 }
 
@@ -228,18 +208,15 @@ DUCTILE_INLINE void World::require_possible(double dt) {
     }
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
 }
-DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
+DUCTILE_INLINE void World::do_step(double dt) {
     if (!members_.empty()) {
-        step_with_members(dt, how);
+        step_with_members(dt);
         return;
     }
     const bool keeps_ledger = meter_ && !holds_multibodies();
     if (keeps_ledger) meter_->before_step();
-    const bool told = how.value == 1 && told_ == world_.getNumConstraints();
-    if (leapfrogs() && !told) share(how);
-    told_ = how.value == 1 ? world_.getNumConstraints() : -1;
     world_.stepSimulation(btScalar(dt), 0);
-    if (keeps_ledger) meter_->after_step(double(btScalar(dt)), how.value);
+    if (keeps_ledger) meter_->after_step(double(btScalar(dt)));
 }
 
 /// What changes bodies of members, which is told to the ledger; true where it did.
@@ -250,8 +227,8 @@ void World::rearrange(const Change& change) {
 }
 
 /// The step, again with more sections open until none that is closed is beyond its strength.
-DUCTILE_INLINE void World::step_with_members(double dt, const ForceShare& how) {
-    members_.set_share(how);
+DUCTILE_INLINE void World::step_with_members(double dt) {
+    members_.set_ahead(false);
     tell_idle(true);
     for (;;) {
         snapshot_.take(world_, front_->usual());
@@ -268,7 +245,7 @@ DUCTILE_INLINE void World::step_with_members(double dt, const ForceShare& how) {
             return true;
         });
     }
-    if (meter_) meter_->after_step(double(btScalar(dt)), how.value);
+    if (meter_) meter_->after_step(double(btScalar(dt)));
     rearrange([this] { return members_.close_held(); });
     tell_of_members();
     members_.drop_forces();

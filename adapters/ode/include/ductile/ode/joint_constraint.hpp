@@ -112,7 +112,6 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
 
   private:
     [[nodiscard]] bool is_silent() const override { return silent_; }
-    [[nodiscard]] DUCTILE_INLINE Vector6<double> velocities() const override;
 
     // ---- around ODE's step
     [[nodiscard]] bool acts() const override { return acting_; }

@@ -36,7 +36,7 @@ DUCTILE_INLINE double mobility(const BodyState<double>& body, const Vector3<doub
 } // namespace detail
 
 DUCTILE_INLINE JointConstraint::JointConstraint(AnyLink<double>& link, dWorldID world, dBodyID a,
-                                              dBodyID b)
+                                                dBodyID b)
     : LinkQueries(link), a_(a), b_(b), life_(WorldLife::of(world)), forces_(world) {
     require_matching_precision();
     link_.start(body_motion(a_), body_motion(b_));
@@ -65,7 +65,7 @@ DUCTILE_INLINE dBodyID JointConstraint::require_bodies(const char* kind, dWorldI
 }
 
 DUCTILE_INLINE const JointFrame<double>& JointConstraint::require_frame(const char* name,
-                                                                       const Frame& frame) {
+                                                                        const Frame& frame) {
     constexpr double round_off = 1e-9;
     return ductile::require_frame(std::string("PlasticJoint.") + name, frame, round_off);
 }
@@ -79,8 +79,8 @@ DUCTILE_INLINE JointFrame<double> JointConstraint::frame_along(const std::string
     if (!is_finite(origin)) throw std::invalid_argument(kind + ".anchor: must be finite [m]");
     constexpr double aside = 0.8;
     const Vector3<double> z = scaled(1 / norm(axis), axis);
-    const Vector3<double> other = std::abs(z.x()) < aside ? Vector3<double>(1, 0, 0)
-                                                          : Vector3<double>(0, 1, 0);
+    const Vector3<double> other =
+        std::abs(z.x()) < aside ? Vector3<double>(1, 0, 0) : Vector3<double>(0, 1, 0);
     const Vector3<double> across = cross(z, other), y = scaled(1 / norm(across), across),
                           x = cross(y, z);
     JointFrame<double> frame{.origin = origin};
@@ -126,10 +126,6 @@ DUCTILE_INLINE bool JointConstraint::may_act() const {
 DUCTILE_INLINE bool JointConstraint::solved() const {
     return dBodyIsEnabled(a_) != 0 || (b_ != nullptr && dBodyIsEnabled(b_) != 0);
 }
-DUCTILE_INLINE Vector6<double> JointConstraint::velocities() const {
-    if (detached() || dJointIsEnabled(id_) == 0) return Vector6<double>::Zero();
-    return link_.velocities(body_motion(a_), body_motion(b_));
-}
 
 // ---- a structure's side
 
@@ -163,7 +159,7 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
     if (!put_back_) link_.teleport(a, b);
     put_back_ = false;
     const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
-    link_.prepare(a, b, force_share_.value * dt, rate, force_share_.midway);
+    link_.prepare(a, b, dt, rate);
     arm_a_ = difference(link_.point(), a.position);
     arm_b_ = difference(link_.point(), b.position);
     centre_ = {};
@@ -171,8 +167,8 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
 }
 
 DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const IslandSeat& a,
-                                              const IslandSeat& b, double dt) {
-    first_row_ = add_rows(island, link_, a, b, force_share_.value * dt);
+                                               const IslandSeat& b, double dt) {
+    first_row_ = add_rows(island, link_, a, b, dt);
 }
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
@@ -191,7 +187,7 @@ DUCTILE_INLINE void JointConstraint::make_rows(double dt) {
     bool out_of_scale = false; // a moment's row
     for (const JointAxis axis : all_joint_axes) {
         const LinkRow<double> row = link_.row(axis).along_unit();
-        SymmetricRow symmetric = symmetric_row(row.limits, dt, force_share_.value);
+        SymmetricRow symmetric = symmetric_row(row.limits, dt);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
         symmetric.cfm += std::max(detail::softness * dt * moved,
                                   section_softness / (stiffness[Eigen::Index(index(axis))] * dt));
@@ -230,11 +226,8 @@ DUCTILE_INLINE void JointConstraint::commit(double dt) {
     outside_.torque_b = difference(outside_.torque_b, about_centre(arm_b_));
     const Vector3<double> torque = sum(outside_.torque_a, to_core(moments_.t1));
     const Vector3<double> moment = difference(torque, cross(arm_a_, outside_.force));
-    const double share = force_share_.value;
     link_.commit(body_motion(a_), body_motion(b_),
-                 JointWrench<double>{.force = scaled(1 / share, outside_.force),
-                                     .moment = scaled(1 / share, moment)},
-                 share * dt, share);
+                 JointWrench<double>{.force = outside_.force, .moment = moment}, dt);
     booked_ = true;
 }
 

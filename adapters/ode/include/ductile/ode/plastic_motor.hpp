@@ -124,7 +124,6 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     }
     /// Of the pin for hinges and universals; other rigid rows are not known.
     [[nodiscard]] double last_rigid_residual() const override { return rigid_residual_; }
-    DUCTILE_INLINE void add_speeds(JointReport<double>& report) const override;
 
     static bool has_stop(const MotorAxis& row);
     [[nodiscard]] bool may_act() const;
@@ -159,7 +158,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     AtBreak at_break_;
     UsersMotor users_;
     dJointFeedback feedback_{};
-    MotorPose pose_; ///< at the start of the step, from commit on at its end
+    MotorPose pose_;                      ///< at the start of the step, from commit on at its end
     Vector3<double> pin_target_{0, 0, 0}; ///< NaN where it is not known [m/s]
     double rigid_residual_ = 0;           ///< largest component [m/s]
     bool rigid_unsolved_ = false;

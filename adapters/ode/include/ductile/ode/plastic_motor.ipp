@@ -52,11 +52,6 @@ DUCTILE_INLINE void MotorConstraint::restored(double position) {
     if (joint_.broken()) part(); // broken is broken, also when it was saved
 }
 
-DUCTILE_INLINE void MotorConstraint::add_speeds(JointReport<double>& report) const {
-    if (!row_.attached() || dJointIsEnabled(id()) == 0) return;
-    (row_.turns() ? report.rotation_rate : report.elongation_rate) = std::abs(row_.velocity());
-}
-
 // ---- life
 
 DUCTILE_INLINE bool MotorConstraint::has_stop(const MotorAxis& row) {
@@ -120,9 +115,9 @@ DUCTILE_INLINE void MotorConstraint::prepare(double dt) {
     }
     acting_ = true;
     pose_.look(row_);
-    Motion<double> motion{follow_teleport(), start_velocity(dt), 0, force_share_.midway};
+    Motion<double> motion{follow_teleport(), start_velocity(dt)};
     if (!joint_.rigid()) motion.mass = mass();
-    set_motor(joint_.prepare(motion, force_share_.value * dt), dt);
+    set_motor(joint_.prepare(motion, dt), dt);
     const auto erp = double(dWorldGetERP(dBodyGetWorld(row_.bodies().a)));
     pin_target_ = scaled(erp / dt, row_.pin_error(pose_.point()));
 }
@@ -145,7 +140,7 @@ DUCTILE_INLINE void MotorConstraint::commit(double dt) {
             ? row_.measure(position_ + velocity * dt)
             : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
     if (row_.turns()) see_turn(velocity, dt, position);
-    joint_.commit({force, velocity, position}, force_share_.value * dt);
+    joint_.commit({force, velocity, position}, dt);
     keep(position, force);
     pose_.look(row_);
     joint_.carry(pose_.velocity(row_)); // seen from where the bodies are now
@@ -188,7 +183,7 @@ DUCTILE_INLINE double MotorConstraint::start_velocity(double dt) const {
 }
 
 DUCTILE_INLINE void MotorConstraint::set_motor(const RowLimits<double>& limits, double dt) {
-    const SymmetricRow row = symmetric_row(limits, dt, force_share_.value);
+    const SymmetricRow row = symmetric_row(limits, dt);
     centre_ = row.centre;
     strength_ = row.strength;
     row_.set(dParamCFM, row.cfm);
@@ -231,15 +226,14 @@ DUCTILE_INLINE void MotorConstraint::certify_pin(const Vector3<double>& apart) {
     const double speed = norm(off);
     if (speed <= joint_.allowed_residual(0)) return;
     const dBodyID a = row_.bodies().a;
-    const Vector3<double> v =
-        sum(linear_velocity(a), cross(angular_velocity(a), pose_.arm_a()));
+    const Vector3<double> v = sum(linear_velocity(a), cross(angular_velocity(a), pose_.arm_a()));
     rigid_unsolved_ = !(speed <= joint_.allowed_residual(norm(v)));
 }
 
 DUCTILE_INLINE double MotorConstraint::row_force() const {
     const dJointFeedback* feedback = dJointGetFeedback(id());
-    if (!(strength_ > 0) || feedback == nullptr) return centre_ / force_share_.value;
-    return (centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a())) / force_share_.value;
+    if (!(strength_ > 0) || feedback == nullptr) return centre_;
+    return centre_ + row_.force(*feedback, pose_.axes(), pose_.arm_a());
 }
 
 DUCTILE_INLINE void MotorConstraint::hand_back(double energy) {

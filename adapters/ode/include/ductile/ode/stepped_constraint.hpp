@@ -4,7 +4,6 @@
 #pragma once
 
 #include "ductile/world/kept_joint.hpp"
-#include "ductile/world/leapfrog.hpp"
 
 namespace ductile::ode {
 
@@ -15,8 +14,6 @@ class SteppedConstraint : public KeptJoint {
     /// Called for all before any is prepared.
     /// @throws what makes the step impossible; nothing has changed then.
     virtual void check() const {}
-    /// How the constraint's forces act in the coming steps; of a World that leapfrogs.
-    void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
     /// Called for all when all have committed.
@@ -25,8 +22,6 @@ class SteppedConstraint : public KeptJoint {
   protected:
     friend class World;
     SteppedConstraint() = default;
-
-    ForceShare force_share_;
 };
 
 } // namespace ductile::ode

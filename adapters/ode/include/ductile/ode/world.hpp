@@ -15,12 +15,7 @@
 // before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's, also
 // those with a PlasticMotor.
 //
-// A step throws what a constraint's check() throws, and std::invalid_argument where it leapfrogs
-// and a joint's body was not added.
-//
-// leapfrog: steps of second order (world/leapfrog.hpp) of the bodies added here, which have to be
-// all that move. Velocities are then those in the middle of the last step, and so is the joints'
-// clock.
+// A step throws what a constraint's check() throws.
 //
 // Not thread-safe. ODE's world must outlive every step; all else may end in any order.
 #pragma once
@@ -46,8 +41,7 @@ enum class Solver { direct, quick };
 
 struct WorldParameters {
     Solver solver = Solver::direct;
-    bool ledger = true;    ///< whether the energy account is kept
-    bool leapfrog = false; ///< whether positions are of second order in the step
+    bool ledger = true; ///< whether the energy account is kept
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
@@ -88,7 +82,7 @@ class World final : public SteppedWorld {
     // ---- what SteppedWorld asks of ODE
 
     DUCTILE_INLINE void require_possible(double dt) override;
-    DUCTILE_INLINE void do_step(double dt, const ForceShare& how) override;
+    DUCTILE_INLINE void do_step(double dt) override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
         return meter_ ? &meter_->ledger() : nullptr;
@@ -97,8 +91,6 @@ class World final : public SteppedWorld {
     void forget(PlasticConstraint& joint);
     /// Of each plastic joint, by the first of those that hang together.
     [[nodiscard]] std::vector<std::size_t> islands() const;
-    /// Gravity on a body that is not known would not leapfrog.
-    void require_bodies();
 
     dWorldID world_;
     Solver solver_;
@@ -106,7 +98,6 @@ class World final : public SteppedWorld {
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
-    bool bodies_known_ = false;          ///< all those of joints
     std::vector<NamedContact> contacts_; ///< of the coming step
     IslandSolver islands_;
 };

@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "ductile/ode/force_share.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/ode/world.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -17,14 +16,11 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
-    : SteppedWorld(std::move(parameters.warn)),
-      world_(world),
-      solver_(parameters.solver) {
+    : SteppedWorld(std::move(parameters.warn)), world_(world), solver_(parameters.solver) {
     require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     if (parameters.ledger) meter_.emplace(world_);
-    if (parameters.leapfrog) start_leapfrog();
 }
 DUCTILE_INLINE World::World(dWorldID world, Solver solver)
     : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
@@ -38,8 +34,6 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
     islands_.add(joint);
-    bodies_known_ = false;
-    joint.set_force_share({});
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
     joint.came_into_world();
@@ -47,7 +41,6 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
     let_go(joint);
     forget(joint);
-    joint.set_force_share({});
 }
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(&joint);
@@ -63,7 +56,6 @@ DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
 DUCTILE_INLINE void World::remove(SteppedConstraint& constraint) {
     let_go(constraint);
     std::erase(constraints_, &constraint);
-    constraint.set_force_share({});
 }
 
 DUCTILE_INLINE void World::add(dBodyID body) {
@@ -76,7 +68,6 @@ DUCTILE_INLINE void World::add(dBodyID body) {
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
-    bodies_known_ = false;
     if (meter_) meter_->remove(body);
 }
 
@@ -84,14 +75,12 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
 
 DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
-    if (leapfrogs() && !bodies_known_) require_bodies();
 }
-DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
+DUCTILE_INLINE void World::do_step(double dt) {
     if (meter_) {
         for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();
     }
-    if (leapfrogs()) share_forces(bodies_, constraints_, how);
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
     islands_.before_step(contacts_, dt);
     if (solver_ == Solver::direct) {
@@ -103,7 +92,7 @@ DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
     share_work(std::span<PlasticConstraint* const>(plastic_), [this] { return islands(); });
     for (SteppedConstraint* constraint : constraints_) constraint->finish();
-    if (meter_) meter_->after_step(dt, how.value);
+    if (meter_) meter_->after_step(dt);
     contacts_.clear();
 }
 
@@ -137,20 +126,6 @@ DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
         result.push_back(can_move(body) ? island_of[body] : result.size());
     }
     return result;
-}
-
-DUCTILE_INLINE void World::require_bodies() {
-    std::vector<dBodyID> known = bodies_;
-    std::sort(known.begin(), known.end());
-    for (const PlasticConstraint* joint : plastic_) {
-        for (const int side : {0, 1}) {
-            const dBodyID body = dJointGetBody(joint->id(), side);
-            if (!can_move(body) || std::binary_search(known.begin(), known.end(), body)) continue;
-            throw std::invalid_argument(
-                "World.leapfrog = true: the bodies of every joint must have been added");
-        }
-    }
-    bodies_known_ = true;
 }
 
 } // namespace ductile::ode
