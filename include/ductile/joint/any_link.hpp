@@ -122,7 +122,7 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_,  force_,          start_,       end_,
+        kept_ = {pose_,  force_,          start_,       end_,           before_blow_,
                  swing_, rigid_residual_, unseen_turn_, rigid_unsolved_};
         keep_joint();
     }
@@ -132,6 +132,7 @@ class AnyLink {
         force_ = kept_->force;
         start_ = kept_->start;
         end_ = kept_->end;
+        before_blow_ = kept_->before_blow;
         swing_ = kept_->swing;
         rigid_residual_ = kept_->rigid_residual;
         unseen_turn_ = kept_->unseen_turn;
@@ -261,6 +262,10 @@ class AnyLink {
     AnyLink& operator=(AnyLink&&) = default;
     ~AnyLink() = default;
 
+    /// Of the last step nothing is known: what follows is no kick.
+    void forget_velocities() noexcept {
+        before_blow_.setConstant(std::numeric_limits<S>::quiet_NaN());
+    }
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept;
     /// Turns the rest orientation by what flowed about the plastic axes [rad].
@@ -297,12 +302,15 @@ class AnyLink {
     virtual void keep_joint() = 0;
     virtual void put_joint_back() noexcept = 0;
 
+    /// The velocities with which a step of `dt` [s] starts would strain a row noticeably, and
+    /// neither the joint nor its last step gave them to its bodies.
+    [[nodiscard]] bool is_kicked(S dt) const noexcept;
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
 
     /// What `keep` keeps.
     struct Kept {
         LinkPose<S> pose;
-        Vector6<S> force, start, end;
+        Vector6<S> force, start, end, before_blow;
         SwingState<S> swing;
         S rigid_residual, unseen_turn;
         bool rigid_unsolved;
@@ -310,9 +318,10 @@ class AnyLink {
 
     std::optional<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
-    RowTurning<S> turning_; ///< between prepare and commit
-    bool ahead_ = false;    ///< they were half a step ahead in it
-    bool sound_ = true;     ///< the bodies of the last prepare were somewhere
+    Vector6<S> before_blow_ = Vector6<S>::Zero(); ///< u' of the last step in which time passed
+    RowTurning<S> turning_;                       ///< between prepare and commit
+    bool ahead_ = false;                          ///< they were half a step ahead in it
+    bool sound_ = true;                           ///< the bodies of the last prepare were somewhere
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;

@@ -53,6 +53,11 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     const Vector6<S> before = ahead ? last : now;
     turning_ =
         ahead ? pose_.turning(a, b, linear(offset()), dt, totals().flowing) : RowTurning<S>();
+    if (sound_) start_ = turning_.before(pose_.twist(a, b));
+    if (damping_ > 0 && sound_ && is_kicked(dt)) { // what is at rest is damped, not what was struck
+        damping_ = 0;
+        swing_.kick();
+    }
     const Vector6<S> turned = turning_.target();
     const bool whole = !broken() && sound_;
     for (std::size_t i = 0; i < limits_.size(); ++i) {
@@ -62,7 +67,6 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     }
     if (!sound_) return limits_;
     if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
-    start_ = turning_.before(pose_.twist(a, b));
     prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, ahead);
     return limits_;
 }
@@ -79,6 +83,8 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     // velocities belong to the rows that were solved, positions to where the bodies are now
     const Vector6<S> velocity = pose_.twist(a, b);
     end_ = turning_.after(velocity);
+    constexpr S instant = S(1e-8); // a blow is no longer
+    if (dt > instant) before_blow_ = end_;
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
     unseen_turn_ = std::max(pose_.unseen_turn(a, b, ahead_ ? dt / 2 : dt), turned_too_far());
@@ -103,6 +109,21 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
         swing_.step(utilisation(), last().plastic_work * SwingState<S>::waits > held * dt, dt);
     }
     return last();
+}
+
+template <std::floating_point S>
+bool AnyLink<S>::is_kicked(S dt) const noexcept {
+    if (all_rigid_) return false;
+    const Vector6<S> stiffness = section_stiffness();
+    for (std::size_t i = 0; i < plastic_.size(); ++i) {
+        const auto k = Eigen::Index(i);
+        const S kick = std::abs(start_[k] - before_blow_[k]);
+        if (!plastic_[i] || !(kick > allowed_.absolute_residual)) continue;
+        if (kick * dt / 2 * stiffness[k] > SwingState<S>::band * strength(JointAxis(i))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 template <std::floating_point S>

@@ -73,6 +73,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         joint_.restore(state.joint);
         pose_.set_rest(state.rest);
         swing_ = state.swing;
+        this->forget_velocities();
         if constexpr (one_axis) {
             force_ = from_joint(JointVector::Constant(state.joint.force));
         } else {

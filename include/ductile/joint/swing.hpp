@@ -33,12 +33,15 @@ struct SwingState {
     S held = 0;          ///< U about which it stays [-]
     S still = 0;         ///< time for which it has [s]
     bool flows = false;  ///< in its last step
+    bool left = false;   ///< in it: where it rested, or it was kicked
     bool driven = false; ///< what damping did not bring to rest
 
     bool operator==(const SwingState&) const = default;
 
     /// Somebody woke it, or changed the structure.
     void stir() noexcept { *this = {}; }
+    /// Its bodies have velocities that it did not give them.
+    void kick() noexcept { left = true; }
     /// After a step of `dt` [s] of a joint without springs: what does not flow rests.
     void step(bool flowed, S dt) noexcept {
         step(S(0), flowed, dt);
@@ -48,6 +51,7 @@ struct SwingState {
     void step(S utilisation, bool flowed, S dt) noexcept {
         used = utilisation;
         flows = flowed;
+        left = rests() && std::abs(used - held) > band / 2;
         quiet += dt;
         still += dt;
         lasts += dt;
@@ -68,8 +72,10 @@ struct SwingState {
         }
         driven = driven && !flowed;
     }
-    /// It flows, or is used more than before.
-    [[nodiscard]] bool stirs() const noexcept { return flows || used > S(1.01) * peak + band; }
+    /// It flows, is used more than before, or no longer as where it rested.
+    [[nodiscard]] bool stirs() const noexcept {
+        return flows || left || used > S(1.01) * peak + band;
+    }
     /// May be damped until it rests.
     [[nodiscard]] bool is_quiet() const noexcept { return quiet > waits && !driven; }
     [[nodiscard]] bool rests() const noexcept { return still > waits; }
