@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The ways of kinematic bodies over a frame that is done in parts: from where the last frame left
-// them to where they were put since, with one velocity. Each part sees them in its middle, as it
-// sees all bodies.
+// The ways of kinematic bodies over a frame that is done in parts (world/driven_course.hpp): from
+// where the last frame left them to where they were put since. Each part sees them in its middle,
+// as it sees all bodies, with the velocities of its end.
 //
 // A step of Bullet's own reads such a body's whole way as that of its first tick, however short,
 // and the angle of a short turn off the cosine of its half.
@@ -16,24 +16,27 @@
 #include <vector>
 
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/driven_course.hpp"
 
 namespace ductile::bullet {
 
 class DrivenWays {
   public:
-    /// A frame of `length` > 0 [s] begins: the bodies go back to where the last one left them, with
-    /// the velocities of their ways. Who has a motion state goes where that says.
+    /// A frame of `length` > 0 [s] begins: the bodies go back to where the last one left them. Who
+    /// has a motion state goes where that says.
     void begin(btDiscreteDynamicsWorld& world, btScalar length);
-    /// Puts the bodies where they are `time` [s] after the frame's begin.
-    void place(btScalar time);
+    /// Puts the bodies where they are `time` [s] after the frame's begin, with the velocities that
+    /// they have at `then`.
+    void place(btScalar time, btScalar then);
 
   private:
     struct Way {
         btRigidBody* body;
         btTransform from, to;
+        DrivenCourse course;
     };
 
-    std::vector<Way> ways_;
+    std::vector<Way> ways_, last_;
     btScalar length_ = 1;
 };
 

@@ -53,7 +53,7 @@ DUCTILE_INLINE void HalfAhead::leave() {
 }
 
 DUCTILE_INLINE void HalfAhead::move(btScalar h, DrivenWays& ways, btScalar time) {
-    ways.place(time + h / 2);
+    ways.place(time + h / 2, time + h);
     ways_ = &ways;
     end_ = time + h;
     const auto& objects = world_.getCollisionObjectArray();
@@ -71,7 +71,7 @@ DUCTILE_INLINE void HalfAhead::move(btScalar h, DrivenWays& ways, btScalar time)
 
 DUCTILE_INLINE void HalfAhead::updateAction(btCollisionWorld* /*world*/, btScalar h) {
     if (!std::exchange(moved_, false)) return;
-    ways_->place(end_);
+    ways_->place(end_, end_);
     const auto& objects = world_.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {
         btRigidBody* body = detail::awake_body(*objects[i]);

@@ -165,17 +165,19 @@ DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double ti
                                                              bool with_mass) {
     const btRigidBody& body = this->body(side);
     std::unique_ptr<DrivenBody>& driven = driven_[std::size_t(side)];
-    if (!body.isKinematicObject() || ahead_) { // else see driven_ways.hpp
+    if (!body.isKinematicObject()) {
         driven.reset();
         return with_mass ? body_state(body) : body_motion(body);
     }
     if (driven == nullptr) driven = std::make_unique<DrivenBody>();
+    if (ahead_) return driven->at_start_ahead(body, tick);
     const bool counts_ticks = world_ != nullptr;
     return driven->at_start(body, tick, !counts_ticks);
 }
 
 DUCTILE_INLINE BodyState<double> PlasticConstraint::at_end(int side, bool late) {
-    if (driven_[std::size_t(side)] != nullptr) return driven_[std::size_t(side)]->at_end();
+    DrivenBody* driven = driven_[std::size_t(side)].get();
+    if (driven != nullptr) return ahead_ ? driven->at_end_ahead(body(side)) : driven->at_end();
     return late ? body_motion_of_last_tick(body(side)) : body_motion(body(side));
 }
 
