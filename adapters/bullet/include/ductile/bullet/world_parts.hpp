@@ -7,10 +7,12 @@
 //   blow    a tick of a nanosecond in which contacts of islands with plastic joints that touch are
 //           closed and all others open (front_solver.hpp); nothing is pushed apart
 //   member  one with a section beyond its strength opens it, and the part or blow is done again
-//   ERP     what a part removes of the error of rigid rows and of overlap: the world's share, or
-//           less where the part is short, h/5 ms
+//   ERP     what a part removes of the error of rigid rows: the world's share, or less where the
+//           part is short, h/5 ms; of overlap its share of what the frame would remove
 //
-// A share of each part would throw joints about: parts may be as short as 0.1 µs.
+// The world's share of each part would throw joints about: parts may be as short as 0.1 µs. Bodies
+// that overlap have mass: pushed apart in 5 ms, 24 crates that lay 1.4 mm deep in their beams got
+// 1.7 kJ.
 //
 // User's forces act in every part. Motion states are told once, at the end of the frame. Tick
 // callbacks and actions are called for each tick, also of parts that are put back, and have to
@@ -81,6 +83,7 @@ class WorldParts final : public PartEngine {
     MeetingIslands* islands_; ///< the world's; null: it kept its own
     DrivenWays ways_;
     double time_ = 0, kept_time_ = 0; ///< since the frame's begin [s]
+    double frame_ = 1;                ///< its length [s]
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;

@@ -31,11 +31,12 @@ struct SingleTick : btDiscreteDynamicsWorld {
 /// The solver's settings of a part or a blow while this lives.
 class WorldParts::Settings {
   public:
-    Settings(btContactSolverInfo& info, btScalar h, bool blow) : info_(info), usual_(info) {
+    /// `share`: of the frame.
+    Settings(btContactSolverInfo& info, btScalar h, btScalar share, bool blow)
+        : info_(info), usual_(info) {
         constexpr btScalar removed_in = btScalar(5e-3), as_in = btScalar(1e-4); // [s]
-        const btScalar most = blow ? btScalar(0) : h / removed_in;
-        info.m_erp = std::min(info.m_erp, most);
-        info.m_erp2 = std::min(info.m_erp2, most);
+        info.m_erp = blow ? btScalar(0) : std::min(info.m_erp, h / removed_in);
+        info.m_erp2 *= blow ? btScalar(0) : share;
         if (!blow) return;
         info.m_splitImpulse = 0;
         info.m_globalCfm *= h / as_in; // a compliance is divided by the tick
@@ -82,6 +83,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     forces_act_ = true;
     ways_.begin(world_, btScalar(length));
     time_ = 0;
+    frame_ = length;
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
@@ -121,7 +123,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         meter_.bodies_ahead();
     }
     members_.before_solve();
-    const Settings settings(world_.getSolverInfo(), btScalar(h), !ahead);
+    const Settings settings(world_.getSolverInfo(), btScalar(h), btScalar(h / frame_), !ahead);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow);
     detail::SingleTick::go(world_, btScalar(h));
     front_.set_kind(TickKind::step);
