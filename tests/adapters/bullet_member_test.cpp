@@ -256,7 +256,10 @@ TEST_CASE("a scene whose members stay whole is bit for bit the one without the l
         rig.body(0, {0, 0, 0}, {0, 0, -1},
                  rig.shape(std::make_unique<btBoxShape>(btVector3(50, 50, 1))), usual, everything);
         std::unique_ptr<World> world;
-        if (with_members) world = std::make_unique<World>(rig.engine, WorldParameters{.warn = {}});
+        if (with_members) {
+            world =
+                std::make_unique<World>(rig.engine, WorldParameters{.tolerance = 0, .warn = {}});
+        }
         std::vector<std::unique_ptr<bullet::Member>> members;
         MemberParameters p;
         p.segments = lumped_segments(2, 24, 8, {1e-3, 1e-3, 2e-3});

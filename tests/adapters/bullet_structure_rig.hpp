@@ -25,6 +25,7 @@ class StructureRig {
     using Body = btRigidBody*;
     using Joint = bullet::PlasticJoint<UsualSixAxisJoint>;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
+    static constexpr bool in_frames = true; ///< a default World's steps
     /// How deep into the floor a body is made that is to rest on it [m].
     static constexpr double layer = 0;
 

@@ -27,9 +27,10 @@ class WorldRig {
     using Body = btRigidBody*;
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
+    /// Steps as they are, not frames.
     explicit WorldRig(bool /*iterative*/, Warn warn = nullptr, bool ledger = true)
         : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
-          world_(dynamics_, {.ledger = ledger, .warn = std::move(warn)}) {
+          world_(dynamics_, {.ledger = ledger, .tolerance = 0, .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
     ~WorldRig() {

@@ -198,7 +198,7 @@ TEST_CASE("a world of multibodies keeps its solver and has no tolerance", "[bull
     const bullet::World world(reduced);
     CHECK(reduced.getConstraintSolver() == &solver);
     CHECK(message_of([&] { bullet::World(reduced, {.tolerance = 0.01}); }) ==
-          "World.tolerance: must not be asked of a btMultiBodyDynamicsWorld");
+          "World.tolerance: must not be asked of a world of multibodies or soft bodies");
 }
 
 TEST_CASE("a World over Bullet's world for threads does what it does over that for one",

@@ -182,9 +182,14 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
     }
     // pushed slowly, which is no rest: sway and sink go up by 0.16 and 0.352 a unit of the
     // factor from the first hinges to the mechanism, whatever the step
-    for (const double h : {1.0 / 60, 1.0 / 240, dt, 1.0 / 3840}) {
-        INFO("steps of 1/" << 1 / h);
-        StructureRig rig(0);
+    struct Steps {
+        double h, tolerance;
+    };
+    // a load that goes up by steps of 1/60 s makes what is not damped by the step swing by 0.5 %
+    for (const auto& [h, tolerance] : {Steps{1.0 / 60, 0}, Steps{1.0 / 240, 0}, Steps{dt, 0},
+                                       Steps{1.0 / 3840, 0}, Steps{1.0 / 240, 0.01}}) {
+        INFO("steps of 1/" << 1 / h << ", tolerance " << tolerance);
+        StructureRig rig(0, {.tolerance = tolerance});
         const auto portal = rig.build(portal_of(true));
         rig.keep_awake();
         rig.damp(20);

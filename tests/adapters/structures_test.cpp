@@ -66,6 +66,8 @@ TEST_CASE("A frame that loses a column or a foot comes to rest where P29 says", 
         cut = 0.547503;
     }
     for (const bool whole_column : {true, false}) {
+        // what swings on the way flows where a foot is cut: let it die out
+        if (settings.elastic && !whole_column) settings.world.tolerance = 0;
         Frame frame(settings);
         frame.rig.run(1, dt);
         frame.rig.keep_awake();

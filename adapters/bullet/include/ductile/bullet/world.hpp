@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // One object per Bullet world that steps it and looks after its plastic joints: the ledger, events
-// with names, the worst certificate, a warning where rows were left unsolved, and steps that follow
-// the motion.
+// with names, the worst certificate, a warning where rows were left unsolved, and frames as right
+// as a tolerance says.
 //
 //   ductile::bullet::World world(dynamics);
 //   world.add(hinge, "lamp post");
-//   world.step(dt);
+//   world.step(1.0 / 60);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
+//   if (!world.run().believed()) ...                   // more was left than the tolerance
 //
-// The joints need nothing of this: without a World they are as exact. Step through `step` and
-// `advance` alone, else ledger and clock miss something.
-//
-// A step is one internal tick. It throws std::invalid_argument where it is shorter than Bullet
-// steps.
+// The joints need nothing of this: without a World they are as exact. Step through `step` alone,
+// else ledger and clock miss something.
 //
 // Islands with a plastic joint are solved at once, contacts and friction too (front_solver.hpp),
 // whatever the user's solver is, which gets all others and is in place again when this object ends.
@@ -24,18 +22,13 @@
 // Of a world with multibodies no ledger is kept: what their solve does to energies that depend on
 // their pose cannot be told from outside.
 //
-// tolerance: a step is a frame, done in as many parts as the tolerance needs (world_parts.hpp):
-//
-//   ductile::bullet::World world(dynamics, {.tolerance = 0.01});
-//   world.add(hinge, "lamp post");
-//   world.step(1.0 / 60);
-//   if (!world.run().believed()) ...                   // frame(), run() say what was left, of whom
-//
-// Forces applied before the frame act in all of it. Motion states are told once, at its end; tick
-// callbacks and actions are called in every part, also of those that are put back. Not
-// in a btMultiBodyDynamicsWorld. Joints have to be added here or by add_to.
-// Bullet then sorts its pairs (m_deterministicOverlappingPairs), so that a frame that was done
-// again is bit for bit what it would have been.
+// A step is a frame, done in as many parts as the tolerance needs (world_parts.hpp); frame() and
+// run() say what it took and what was left, of whom. Forces applied before the frame act in all of
+// it. Motion states are told once, at its end; tick callbacks and actions are called in every part,
+// also of those that are put back. Joints have to be added here or by add_to. Bullet then sorts its
+// pairs (m_deterministicOverlappingPairs), so that a frame that was done again is bit for bit what
+// it would have been. Not where the world has bodies that cannot be put back, multibodies or soft
+// ones; there, and with tolerance = 0, a step is one internal tick.
 //
 // Not thread-safe; Bullet's world for threads may be below.
 #pragma once
@@ -65,9 +58,10 @@ class WorldParts;
 
 struct WorldParameters {
     bool ledger = true; ///< whether the energy account is kept; not with multibodies
-    /// Share of the plastic work that a frame may misplace [-]: a step is then done in as many
-    /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
-    double tolerance = 0;
+    /// Share of the plastic work that a step may misplace [-]: it is done in as many parts as that
+    /// needs (frame/frame_control.hpp). 0: in one, as long as it is. Not said: 0.01, and 0 where
+    /// the world has bodies that cannot be put back, multibodies or soft ones.
+    std::optional<double> tolerance{};
     int budget = 256; ///< solves of a frame where `tolerance` > 0, >= 4
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
@@ -121,7 +115,8 @@ class World final : public SteppedWorld {
     void rearrange(const Change& change);
     void tell_of_members();
     void tell_idle(bool after);
-    void start_frames(const WorldParameters& parameters);
+    void start_frames(double tolerance, int budget);
+    [[nodiscard]] bool can_put_back() const noexcept;
     [[nodiscard]] bool holds_multibodies() const noexcept;
     [[nodiscard]] btMultiBodyDynamicsWorld& world_of_multibodies() const;
 

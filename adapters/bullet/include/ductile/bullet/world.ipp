@@ -47,16 +47,23 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     }
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     tells_ledger_ = parameters.ledger;
-    if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
-    if (parameters.tolerance != 0) start_frames(parameters);
+    const double tolerance =
+        parameters.tolerance.value_or(can_put_back() ? FrameParameters{}.tolerance : 0.0);
+    if (parameters.ledger || tolerance != 0) meter_.emplace(world_);
+    if (tolerance != 0) start_frames(tolerance, parameters.budget);
 }
 
-DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
-    const FrameParameters frames{.tolerance = parameters.tolerance, .budget = parameters.budget};
+/// WorldSnapshot knows rigid bodies alone.
+DUCTILE_INLINE bool World::can_put_back() const noexcept {
+    return front_ != nullptr && world_.getWorldType() == BT_DISCRETE_DYNAMICS_WORLD;
+}
+
+DUCTILE_INLINE void World::start_frames(double tolerance, int budget) {
+    const FrameParameters frames{.tolerance = tolerance, .budget = budget};
     frames.validate("World");
-    if (front_ == nullptr) {
+    if (!can_put_back()) {
         throw std::invalid_argument(
-            "World.tolerance: must not be asked of a btMultiBodyDynamicsWorld");
+            "World.tolerance: must not be asked of a world of multibodies or soft bodies");
     }
     start_in_frames(frames);
     parts_ = std::make_unique<WorldParts>(
