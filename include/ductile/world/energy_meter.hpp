@@ -109,8 +109,9 @@ class EnergyMeter {
     /// Books the step of `dt` [s] that was opened by `before_step`, for the share `share` of which
     /// forces acted (force_share.hpp).
     void after_step(double dt, double share = 1);
-    /// Between two steps bodies of members were split or made one; `before`: held().total() before [J].
-    void bodies_rearranged(double before);
+    /// Between two steps bodies of members were split or made one, or what `account` says happened
+    /// to them; `before`: held().total() before [J].
+    void bodies_rearranged(double before, Account account = Account::members);
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();

@@ -107,8 +107,6 @@ class PlasticConstraint : public btTypedConstraint,
     /// Of `keep_all` and `put_all_back`, what all kinds have.
     void keep_life();
     void put_life_back();
-    /// Of what a row may be off by at rest, the speed that is as good as rest [-].
-    static constexpr double resting_share = 0.01;
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
     ForceShare force_share_;

@@ -7,10 +7,7 @@
 //   blow    a tick of a nanosecond in which contacts of islands with plastic joints that touch are
 //           closed and all others open (front_solver.hpp); nothing is pushed apart
 //   member  one with a section beyond its strength opens it, and the part or blow is done again
-//   ERP     what a part removes of the error of rigid rows and of overlap: the world's share, or
-//           less where the part is short, h/5 ms
-//
-// A share of each part would throw joints about: parts may be as short as 0.1 µs.
+//   ERP     by the length of the part (part_settings.hpp)
 //
 // User's forces act in every part. Motion states are told once, at the end of the frame. Tick
 // callbacks and actions are called for each tick, also of parts that are put back, and have to

@@ -3,7 +3,6 @@
 // Bodies of world_parts.hpp.
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/world_parts.hpp"
+#include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
 
@@ -32,13 +32,14 @@ struct SingleTick : btDiscreteDynamicsWorld {
 class WorldParts::Settings {
   public:
     Settings(btContactSolverInfo& info, btScalar h, bool blow) : info_(info), usual_(info) {
-        constexpr btScalar removed_in = btScalar(5e-3), as_in = btScalar(1e-4); // [s]
-        const btScalar most = blow ? btScalar(0) : h / removed_in;
-        info.m_erp = std::min(info.m_erp, most);
-        info.m_erp2 = std::min(info.m_erp2, most);
+        const auto erp = [h, blow](btScalar usual) {
+            return blow ? btScalar(0) : btScalar(part_erp(double(usual), double(h)));
+        };
+        info.m_erp = erp(info.m_erp);
+        info.m_erp2 = erp(info.m_erp2);
         if (!blow) return;
         info.m_splitImpulse = 0;
-        info.m_globalCfm *= h / as_in; // a compliance is divided by the tick
+        info.m_globalCfm *= btScalar(blow_compliance(double(h)));
     }
     ~Settings() {
         info_.m_erp = usual_.m_erp;
@@ -148,10 +149,11 @@ DUCTILE_INLINE void WorldParts::do_again() {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    constexpr double instant = 1e-9;
     if (!members_.empty()) save();
     members_.begin_blow();
-    for (tick(instant, false); members_.look_blow(instant); tick(instant, false)) do_again();
+    for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
+        do_again();
+    }
     motion_.closed = 0;
     return tell();
 }

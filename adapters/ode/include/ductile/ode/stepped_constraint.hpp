@@ -19,8 +19,10 @@ class SteppedConstraint : public KeptJoint {
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
-    /// Called for all when all have committed.
+    /// Called for all when all have committed: what a break gives back.
     virtual void finish() {}
+    /// The step stands: what is broken lets go, which is not put back.
+    virtual void stand() {}
 
   protected:
     friend class World;
