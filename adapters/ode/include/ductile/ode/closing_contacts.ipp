@@ -54,8 +54,8 @@ namespace detail {
         default: {
             std::array<dReal, 6> bounds{};
             dGeomGetAABB(geom, bounds.data());
-            return double(std::min({bounds[1] - bounds[0], bounds[3] - bounds[2],
-                                    bounds[5] - bounds[4]}));
+            return double(
+                std::min({bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]}));
         }
     }
 }
@@ -144,40 +144,71 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
                                                 std::span<PlasticConstraint* const> joints) {
     find_islands(contacts, joints);
     touches_.clear();
+    pairs_.clear();
     for (const NamedContact& named : contacts) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
         if (!is_plastic(a) && !is_plastic(b)) continue;
+        pairs_.push_back(std::minmax(a, b, std::less<dBodyID>()));
+        const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
         const Vector3<double> point = to_core(named.contact.geom.pos);
-        const Vector3<double> normal = scaled(reversed ? -1 : 1, to_core(named.contact.geom.normal));
+        const Vector3<double> normal =
+            scaled(reversed ? -1 : 1, to_core(named.contact.geom.normal));
         const Vector3<double> arm_a = detail::arm_of(a, point), arm_b = detail::arm_of(b, point);
         const Vector3<double> of_a = sum(linear_velocity(a), cross(angular_velocity(a), arm_a));
         const Vector3<double> of_b = sum(linear_velocity(b), cross(angular_velocity(b), arm_b));
         const double speed = dot(normal, difference(of_b, of_a));
-        const double yields = detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
+        const double yields =
+            detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
         if (!(speed > 0) || !(yields > 0)) continue;
-        touches_.push_back({double(named.contact.geom.depth), speed, speed * speed / (2 * yields)});
+        touches_.push_back({closed_depth - double(named.contact.geom.depth), speed,
+                            speed * speed / (2 * yields), is_new});
     }
+    std::sort(pairs_.begin(), pairs_.end());
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {
+    double largest = 0;
+    for (const NamedContact& named : contacts) {
+        const dJointFeedback* feedback = dJointGetFeedback(named.joint);
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        if (feedback == nullptr || (!is_plastic(a) && !is_plastic(b))) continue;
+        const double force = dot(to_core(feedback->f1), to_core(named.contact.geom.normal));
+        largest = std::max(largest, std::abs(force));
+    }
+    if (largest > 0) force_ = largest;
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
-    return std::any_of(touches_.begin(), touches_.end(),
-                       [touching](const Touch& touch) { return touch.energy > touching; });
+    return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
+        return touch.gap < closed_depth / 2 && touch.energy > touching;
+    });
 }
 
-DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double since,
-                                                    double apart) const {
-    constexpr double hair = left_overlap / 2;
+DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
+    double next = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches_) {
+        if (touch.gap < closed_depth / 2 || !(touch.energy > apart)) continue;
+        next = std::min(next, touch.gap / touch.speed);
+    }
+    return next;
+}
+
+DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double since, double apart) const {
+    constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
     double first = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        const double ago = touch.depth / touch.speed;
-        if (!(touch.energy > apart) || !(ago < since) || !(touch.depth > left_overlap)) continue;
-        first = std::min(first, past - ago + hair / touch.speed);
+        const double ago = -touch.gap / touch.speed;
+        const double cost = std::max(touch.energy, force_ * -touch.gap / pushed_out);
+        if (!(cost > apart) || !(touch.gap < -closed_depth / 4)) continue;
+        if (!(ago < since) && !touch.is_new) continue;
+        first = std::min(first, past - std::min(ago, since));
     }
     return first;
 }
 
 DUCTILE_INLINE double ClosingContactsFinder::lengths(const ContactMaker& maker,
-                                                std::span<const dBodyID> bodies, double h) const {
+                                                     std::span<const dBodyID> bodies,
+                                                     double h) const {
     double result = 1;
     const auto need = [&](double speed, double thickness) {
         result = std::max(result, speed * h / (thickness / 2));
@@ -199,7 +230,8 @@ DUCTILE_INLINE double ClosingContactsFinder::lengths(const ContactMaker& maker,
         for (const detail::MovingGeom& other : here) {
             const double speed =
                 norm(difference(one.velocity, other.velocity)) + one.turning + other.turning;
-            const double thin = std::min({one.thickness, other.thickness, maker.parameters().thickness});
+            const double thin =
+                std::min({one.thickness, other.thickness, maker.parameters().thickness});
             if (!(speed * h > thin / 2) || !one.may_reach(other, speed * h)) continue;
             if (one.may_touch(other)) need(speed, thin);
         }

@@ -8,7 +8,8 @@
 //   space      whose geoms are kept in one order, those within its subspaces too: a body that moved
 //              brings its geoms to the front of ODE's list, so that contacts would come in another
 //              order after a part that was put back. Null: `make` collides without geoms.
-//   thickness  of the thinnest part, where there is no space to tell: bodies are not moved past each
+//   thickness  of the thinnest part, where there is no space to tell: bodies are not moved past
+//   each
 //              other by half of it unseen [m]
 //
 // Not thread-safe.
@@ -28,7 +29,7 @@ namespace ductile::ode {
 
 struct ContactParameters {
     dSpaceID space = nullptr;
-    dJointGroupID group = nullptr; ///< required
+    dJointGroupID group = nullptr;                              ///< required
     double thickness = std::numeric_limits<double>::infinity(); ///< > 0 [m]
 };
 

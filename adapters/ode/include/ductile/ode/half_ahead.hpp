@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Lets a step of ODE see its bodies half a step ahead (frame/README.md): before it they are moved by
-// h/2 with the velocities they have; after it, from there on by h/2 with those they got, before any
-// joint books where bodies are.
+// Lets a step of ODE see its bodies half a step ahead (frame/README.md): before it they are moved
+// by h/2 with the velocities they have; after it, from there on by h/2 with those they got, before
+// any joint books where bodies are.
 //
 // Bodies turn by the rotation that is theirs, whatever dBodySetFiniteRotationMode says. A kinematic
 // body goes its way like all others. One that the step woke was not ahead, and goes its half from

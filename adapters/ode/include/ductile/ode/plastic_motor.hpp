@@ -169,7 +169,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     AtBreak at_break_;
     UsersMotor users_;
     dJointFeedback feedback_{};
-    MotorPose pose_; ///< at the start of the step, from commit on at its end
+    MotorPose pose_;                      ///< at the start of the step, from commit on at its end
     Vector3<double> pin_target_{0, 0, 0}; ///< NaN where it is not known [m/s]
     double rigid_residual_ = 0;           ///< largest component [m/s]
     bool rigid_unsolved_ = false;

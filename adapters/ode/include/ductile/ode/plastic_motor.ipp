@@ -186,8 +186,8 @@ DUCTILE_INLINE void MotorConstraint::begin_frame() {
 
 DUCTILE_INLINE double MotorConstraint::follow_ahead(double velocity, double dt) {
     const double ahead = row_.measured() ? row_.measure(position_ + velocity * dt / 2)
-                                         : position_ + row_.increment(pose_.placement(), pose_.axis(),
-                                                                      pose_.point());
+                                         : position_ + row_.increment(pose_.placement(),
+                                                                      pose_.axis(), pose_.point());
     pose_.look(row_);
     keep(ahead, force_);
     return ahead;
@@ -195,8 +195,8 @@ DUCTILE_INLINE double MotorConstraint::follow_ahead(double velocity, double dt) 
 
 DUCTILE_INLINE void MotorConstraint::keep_all() {
     joint_.keep();
-    kept_ = {release_,        position_,       force_,    unseen_turn_, rigid_residual_,
-             rigid_unsolved_, restored_, pose_,     outside_,     driven_};
+    kept_ = {release_,        position_, force_, unseen_turn_, rigid_residual_,
+             rigid_unsolved_, restored_, pose_,  outside_,     driven_};
 }
 
 DUCTILE_INLINE void MotorConstraint::put_all_back() {
@@ -292,8 +292,7 @@ DUCTILE_INLINE void MotorConstraint::certify_pin(const Vector3<double>& apart) {
     const double speed = norm(off);
     if (speed <= joint_.allowed_residual(0)) return;
     const dBodyID a = row_.bodies().a;
-    const Vector3<double> v =
-        sum(linear_velocity(a), cross(angular_velocity(a), pose_.arm_a()));
+    const Vector3<double> v = sum(linear_velocity(a), cross(angular_velocity(a), pose_.arm_a()));
     rigid_unsolved_ = !(speed <= joint_.allowed_residual(norm(v)));
 }
 

@@ -5,9 +5,9 @@
 // samples). ODE's own counters would count the parts of a frame, also those that are put back, and
 // can be neither read nor written.
 //
-// An island falls asleep as a whole: what hangs together by joints and contacts, once all its bodies
-// are idle and its plastic joints rest. One that hangs on a kinematic body that is enabled stays
-// awake, as ODE would wake it, and so does a body without any joint.
+// An island falls asleep as a whole: what hangs together by joints and contacts, once all its
+// bodies are idle and its plastic joints rest. One that hangs on a kinematic body that is enabled
+// stays awake, as ODE would wake it, and so does a body without any joint.
 //
 // Not thread-safe.
 #pragma once

@@ -108,8 +108,9 @@ class World final : public SteppedWorld {
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
     void add_contact(dJointID joint, const dContact& contact);
-    /// From now on `make` is called for the contacts of each step, part, and look for gaps; it makes
-    /// their joints in the group and names them by add_contact. The group is emptied around that.
+    /// From now on `make` is called for the contacts of each step, part, and look for gaps; it
+    /// makes their joints in the group and names them by add_contact. The group is emptied around
+    /// that.
     /// @throws std::invalid_argument as ContactMaker.
     void on_contacts(const ContactParameters& parameters, std::function<void()> make);
 

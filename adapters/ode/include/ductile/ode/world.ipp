@@ -19,9 +19,7 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
-    : SteppedWorld(std::move(parameters.warn)),
-      world_(world),
-      solver_(parameters.solver) {
+    : SteppedWorld(std::move(parameters.warn)), world_(world), solver_(parameters.solver) {
     require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));

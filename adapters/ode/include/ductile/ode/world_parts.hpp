@@ -82,8 +82,8 @@ class WorldParts final : public PartEngine {
     void leave();
     void tick(double h, bool blow);
     void damp(double share);
-    /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put back
-    /// where that throws.
+    /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
+    /// back where that throws.
     void look(const WorldSnapshot* moved = nullptr);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
@@ -102,7 +102,7 @@ class WorldParts final : public PartEngine {
     ClosingContactsFinder closing_;
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
-    double closed_ = 0;   ///< in the middle of the part [s]
+    double closed_ = 0;                                      ///< in the middle of the part [s]
     PartMotion motion_;
 };
 

@@ -22,7 +22,7 @@ class WorldParts::Settings {
           cfm_(dWorldGetCFM(world)),
           layer_(dWorldGetContactSurfaceLayer(world)) {
         dWorldSetERP(world, dReal(blow ? 0 : part_erp(double(erp_), h)));
-        dWorldSetContactSurfaceLayer(world, std::max(layer_, dReal(left_overlap)));
+        dWorldSetContactSurfaceLayer(world, std::max(layer_, dReal(closed_depth)));
         if (blow) dWorldSetCFM(world, cfm_ * dReal(blow_compliance(h)));
     }
     ~Settings() {
@@ -90,12 +90,14 @@ DUCTILE_INLINE void WorldParts::damp(double share) {
 
 DUCTILE_INLINE void WorldParts::save() {
     of_.meter.keep();
+    closing_.save();
     snapshot_.take(of_.bodies, of_.joints);
 }
 
 DUCTILE_INLINE void WorldParts::put_back() {
     snapshot_.put_back();
     of_.meter.put_back();
+    closing_.put_back();
     looked_ = false;
 }
 
@@ -106,7 +108,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     half_ahead_.move(of_.bodies, half);
     if (!blow) of_.meter.bodies_ahead();
     look(blow ? nullptr : &snapshot_);
-    closed_ = blow ? std::numeric_limits<double>::infinity() : closing_.closed(half, half, apart_);
+    closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
     if (blow) open_others();
     for (const auto& [joint, contact] : of_.contacts) of_.meter.add_contact(joint, contact.geom);
@@ -115,6 +117,11 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     {
         const Settings settings(of_.world, h, blow);
         of_.solve(h);
+    }
+    if (!blow) {
+        closing_.see_forces(of_.contacts);
+        closed_ = closing_.closed(half, half, apart_);
+        closing_.remember();
     }
     half_ahead_.move_on(half);
     of_.book(h);
@@ -175,9 +182,17 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
 DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     for (NamedContact& named : of_.contacts) {
         dSurfaceParameters& surface = named.contact.surface;
-        if ((surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        const double gap = closed_depth - double(named.contact.geom.depth);
+        const bool open = !blow && gap > 0 && (closing_.is_plastic(a) || closing_.is_plastic(b));
+        if (!open && (surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
         surface.soft_erp = dReal(blow ? 0 : part_erp(double(surface.soft_erp), h));
         if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
+        if (open) {
+            if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
+            surface.mode |= dContactMotionN;
+            surface.motionN -= dReal(2 * gap / h);
+        }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
         dJointAttach(named.joint, dJointGetBody(old, 0), dJointGetBody(old, 1));
@@ -199,8 +214,11 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     if (!of_.maker) return found;
     if (!std::exchange(looked_, true)) look();
     if (!closing_.any_plastic()) return found;
+    closing_.remember();
     found.strikes = closing_.strikes(touching);
-    if (!found.strikes) found.time = next_gap(h, apart);
+    if (found.strikes) return found;
+    found.time = closing_.next_gap(apart);
+    if (!(found.time < h)) found.time = next_gap(h, apart);
     return found;
 }
 

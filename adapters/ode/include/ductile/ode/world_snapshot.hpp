@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// All of an ODE world that a part changes, kept and put back bit for bit: what follows is what would
-// have followed without whatever was done in between.
+// All of an ODE world that a part changes, kept and put back bit for bit: what follows is what
+// would have followed without whatever was done in between.
 //
 //   bodies   pose, velocities, whether they are enabled
 //   joints   plastic ones, all
 //   solver   the seed of ODE's random numbers, by which QuickStep shuffles its rows
 //
-// Contacts are made anew (contact_maker.hpp, which also keeps geoms in their order), forces are held
-// (held_forces.hpp), and falling asleep is the World's (resting_islands.hpp), as ODE's counters can
-// be neither read nor written.
+// Contacts are made anew (contact_maker.hpp, which also keeps geoms in their order), forces are
+// held (held_forces.hpp), and falling asleep is the World's (resting_islands.hpp), as ODE's
+// counters can be neither read nor written.
 //
 // Traps of ODE 0.16 that this header deals with
 //   - dBodySetQuaternion normalises what it is given, and makes the matrix of it anew: a pose put
