@@ -57,8 +57,9 @@ struct Rig {
     double friction = 0, bounce = -1;
     std::vector<std::unique_ptr<ode::PlasticConstraint>> joints;
 
-    explicit Rig(const WorldParameters& parameters = {
-                     .tolerance = 0.01, .rest_damping = 0, .warn = {}})
+    explicit Rig(const WorldParameters& parameters = {.tolerance = 0.01,
+                                                      .rest_damping = 0,
+                                                      .warn = {}})
         : world(engine.id, parameters) {
         dRandSetSeed(0);
         dWorldSetCFM(engine.id, 1e-13);
@@ -165,7 +166,8 @@ TEST_CASE("Frames: a mass dropped on a crushing head, by ODE's own contact", "[f
 TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests", "[frame]") {
     // falls from a low height, so that in the part that ends there it still gains much of its speed
     constexpr double mass = 500, head_mass = 50, height = 0.05, g = 9.81;
-    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
+    constexpr double fall = height + ode::closed_depth;
+    const double common = std::sqrt(2 * g * fall) * mass / (mass + head_mass);
     for (const double frame : all_frames) {
         for (const double strength : {30e3, 300e3}) {
             CAPTURE(frame, strength);
@@ -177,7 +179,7 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
             rig.body(mass, V3(50, 50, 50), {0, 0.2 + height, 0}, rig.sphere(0.1), 2, 1);
             const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
             rig.run(0.5, frame);
-            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(2e-3));
+            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(1e-3));
             CHECK(rig.world.run().believed());
             int solves = 0;
             for (int i = 0; i < 12; ++i) {

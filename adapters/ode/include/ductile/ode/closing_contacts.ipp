@@ -195,11 +195,13 @@ DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
 
 DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double since, double apart) const {
     constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
+    // of a first hit nobody knows yet how hard the contact will push
+    const double unmissed = closed_depth * (force_ > 0 ? 0.25 : 0.01);
     double first = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        const double ago = -touch.gap / touch.speed;
-        const double cost = std::max(touch.energy, force_ * -touch.gap / pushed_out);
-        if (!(cost > apart) || !(touch.gap < -closed_depth / 4)) continue;
+        const double overlap = -touch.gap, ago = overlap / touch.speed;
+        const bool counts = touch.energy > apart || force_ * overlap > pushed_out * apart;
+        if (!counts || !(overlap > unmissed)) continue;
         if (!(ago < since) && !touch.is_new) continue;
         first = std::min(first, past - std::min(ago, since));
     }

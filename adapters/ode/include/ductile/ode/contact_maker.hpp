@@ -5,9 +5,10 @@
 // collides and names each contact by World::add_contact; the joints are in a group of their own,
 // which is emptied before and after.
 //
-//   space      whose geoms are kept in one order, those within its subspaces too: a body that moved
-//              brings its geoms to the front of ODE's list, so that contacts would come in another
-//              order after a part that was put back. Null: `make` collides without geoms.
+//   space      whose geoms are kept in the order of their bodies, those within its subspaces too: a
+//              body that moved brings its geoms to the front of ODE's list, so that contacts would
+//              come in another order after a part that was put back. Null: `make` collides without
+//              geoms.
 //   thickness  of the thinnest part, where there is no space to tell: bodies are not moved past
 //   each
 //              other by half of it unseen [m]
@@ -19,7 +20,7 @@
 
 #include <functional>
 #include <limits>
-#include <unordered_map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,8 +40,8 @@ class ContactMaker {
     /// positive.
     ContactMaker(const ContactParameters& parameters, std::function<void()> make);
 
-    /// The contacts of the bodies as they are, in place of the last ones.
-    void make();
+    /// The contacts of the bodies, all that move, as they are, in place of the last ones.
+    void make(std::span<const dBodyID> bodies);
     /// `make` is at work.
     [[nodiscard]] bool is_making() const noexcept { return making_; }
     /// There are none.
@@ -50,11 +51,10 @@ class ContactMaker {
     [[nodiscard]] std::vector<dGeomID> geoms() const;
 
   private:
-    void put_in_order(dSpaceID space);
+    void put_in_order(std::span<const dBodyID> bodies) const;
 
     ContactParameters parameters_;
     std::function<void()> make_;
-    std::unordered_map<dSpaceID, std::vector<dGeomID>> orders_;
     bool making_ = false;
 };
 

@@ -3,9 +3,7 @@
 // Bodies of contact_maker.hpp.
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
-#include <unordered_set>
 
 #include "ductile/ode/contact_maker.hpp"
 
@@ -44,9 +42,9 @@ DUCTILE_INLINE ContactMaker::ContactMaker(const ContactParameters& parameters,
     }
 }
 
-DUCTILE_INLINE void ContactMaker::make() {
+DUCTILE_INLINE void ContactMaker::make(std::span<const dBodyID> bodies) {
     clear();
-    if (parameters_.space != nullptr) put_in_order(parameters_.space);
+    put_in_order(bodies);
     struct AtWork {
         bool& flag;
         ~AtWork() { flag = false; }
@@ -55,20 +53,13 @@ DUCTILE_INLINE void ContactMaker::make() {
     make_();
 }
 
-/// Those that were here, as they first were, then those that came.
-DUCTILE_INLINE void ContactMaker::put_in_order(dSpaceID space) {
-    const std::vector<dGeomID> here = detail::geoms_of(space);
-    std::vector<dGeomID>& order = orders_[space];
-    std::unordered_set<dGeomID> left(here.begin(), here.end());
-    std::erase_if(order, [&left](dGeomID geom) { return left.erase(geom) == 0; });
-    for (dGeomID geom : here) {
-        if (left.contains(geom)) order.push_back(geom);
-    }
-    for (dGeomID geom : order) dSpaceRemove(space, geom);
-    for (dGeomID geom : order) dSpaceAdd(space, geom);
-    dSpaceClean(space);
-    for (dGeomID geom : order) {
-        if (const dSpaceID below = detail::as_space(geom)) put_in_order(below);
+/// Geoms that are clean come to the front of their spaces as they are told that they moved.
+DUCTILE_INLINE void ContactMaker::put_in_order(std::span<const dBodyID> bodies) const {
+    if (parameters_.space == nullptr) return;
+    dSpaceClean(parameters_.space);
+    for (dBodyID body : bodies) {
+        const dReal* at = dBodyGetPosition(body);
+        dBodySetPosition(body, at[0], at[1], at[2]);
     }
 }
 

@@ -133,7 +133,7 @@ DUCTILE_INLINE void World::require_possible(double) {
     if (parts_ != nullptr) require_all_bodies();
 }
 DUCTILE_INLINE void World::do_step(double dt, const ForceShare& how) {
-    if (maker_) maker_->make();
+    if (maker_) maker_->make(bodies_);
     if (meter_) {
         for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();

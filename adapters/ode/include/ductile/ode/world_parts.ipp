@@ -171,7 +171,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
 
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
-    if (of_.maker) of_.maker->make();
+    if (of_.maker) of_.maker->make(of_.bodies);
     closing_.look(of_.contacts, of_.joints);
 } catch (...) {
     if (moved != nullptr) moved->put_poses_back();
