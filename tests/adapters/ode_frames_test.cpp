@@ -281,6 +281,40 @@ TEST_CASE("Frames: balls on a post of five hinges take the same at any frame", "
     }
 }
 
+TEST_CASE("Frames: motors of ODE's own joints that are plastic stop where they should", "[frame]") {
+    // a hinge tells its angle, an angular motor is summed up; the rotor turns by 1.225 rad
+    constexpr double inertia = 2, spin = 7, strength = 40, energy = inertia * spin * spin / 2;
+    for (const bool measured : {true, false}) {
+        for (const double frame : all_frames) {
+            CAPTURE(measured, frame);
+            Rig rig;
+            const dBodyID rotor = rig.body(1, V3(2, 2, 2), {0, 0, 0});
+            dBodySetAngularVel(rotor, 0, 0, dReal(spin));
+            const dJointID joint = measured ? dJointCreateHinge(rig.engine.id, nullptr)
+                                            : dJointCreateAMotor(rig.engine.id, nullptr);
+            dJointAttach(joint, rotor, nullptr);
+            if (measured) {
+                dJointSetHingeAxis(joint, 0, 0, 1);
+            } else {
+                dJointSetAMotorNumAxes(joint, 1);
+                dJointSetAMotorAxis(joint, 0, 0, 0, 0, 1);
+            }
+            auto made = std::make_unique<ode::PlasticMotor<Law>>(
+                measured ? ode::hinge_axis(joint) : ode::angular_motor_axis(joint, 0),
+                law(strength));
+            const ode::PlasticMotor<Law>& motor = *made;
+            rig.world.add(*made);
+            rig.joints.push_back(std::move(made));
+            rig.run(0.5, frame);
+            CHECK(motor.absorbed_energy() == Approx(energy).epsilon(1e-6));
+            CHECK(motor.position() == Approx(energy / strength).epsilon(1e-6));
+            CHECK(rig.world.run().believed());
+            CHECK(rig.world.run().parts <= rig.world.run().frames + 8);
+            CHECK(std::abs(rig.world.ledger().unexplained()) < 1e-9 * energy);
+        }
+    }
+}
+
 TEST_CASE("Frames: what is thin and fast does not pass unseen", "[frame]") {
     // a ball of 1 kg at 300 m/s on a plate of 4 mm: it goes 10 m in a frame
     constexpr double strength = 5e3, common = 300 / 3.0;

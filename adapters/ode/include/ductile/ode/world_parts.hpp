@@ -82,6 +82,7 @@ class WorldParts final : public PartEngine {
     void leave();
     void tick(double h, bool blow);
     void damp(double share);
+    void drop_forces();
     /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
     /// back where that throws.
     void look(const WorldSnapshot* moved = nullptr);

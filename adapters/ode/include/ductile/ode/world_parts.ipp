@@ -48,11 +48,10 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
         if (dBodyIsEnabled(body) == 0) asleep_.push_back(body);
-        dBodySetForce(body, 0, 0, 0);
-        dBodySetTorque(body, 0, 0, 0);
         const Damped damped{body, dBodyGetLinearDamping(body), dBodyGetAngularDamping(body)};
         if (damped.linear != 0 || damped.angular != 0) damped_.push_back(damped);
     }
+    drop_forces();
     resting_.begin(of_.bodies);
     for (PlasticConstraint* joint : of_.joints) joint->begin_frame();
 }
@@ -74,6 +73,13 @@ DUCTILE_INLINE void WorldParts::end() {
     forces_.apply_to(asleep_);
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
+}
+
+DUCTILE_INLINE void WorldParts::drop_forces() {
+    for (dBodyID body : of_.bodies) {
+        dBodySetForce(body, 0, 0, 0);
+        dBodySetTorque(body, 0, 0, 0);
+    }
 }
 
 DUCTILE_INLINE void WorldParts::damp(double share) {
@@ -125,10 +131,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     }
     half_ahead_.move_on(half);
     of_.book(h);
-    for (dBodyID body : of_.bodies) { // those of bodies that sleep stay in ODE
-        dBodySetForce(body, 0, 0, 0);
-        dBodySetTorque(body, 0, 0, 0);
-    }
+    drop_forces(); // those of bodies that sleep stay in ODE
     of_.meter.after_step(h);
     looked_ = false;
 }
@@ -155,7 +158,12 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     return tell();
 }
 
-DUCTILE_INLINE void WorldParts::accept(double h) { of_.accept(h); }
+DUCTILE_INLINE void WorldParts::accept(double h) try {
+    of_.accept(h);
+} catch (...) { // a listener's
+    leave();
+    throw;
+}
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
@@ -175,6 +183,9 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     closing_.look(of_.contacts, of_.joints);
 } catch (...) {
     if (moved != nullptr) moved->put_poses_back();
+    if (moved == &snapshot_) of_.meter.put_back();
+    drop_forces();
+    forces_.apply(); // as they were
     leave();
     throw;
 }
