@@ -21,7 +21,8 @@ from collections import defaultdict
 
 from common import Progress, run_options, stored_rows, write_meta, write_rows
 
-RUNNERS = ("frames-bullet-double", "frames-bullet-float")
+RUNNERS = ("frames-bullet-double", "frames-bullet-float", "frames-ode-double")
+BUILDS = (("bullet", "double"), ("bullet", "float"), ("ode", "double"))
 COLUMNS = ("scene", "engine", "precision", "y_name", "y", "frame_s", "method", "solver", "tolerance", "parts",
            "error_rel", "energy_error_rel", "believed", "left_rel", "energy_gain_rel", "solves", "rejected",
            "worst_frame", "cpu_s")
@@ -54,12 +55,14 @@ def run_all(folder, quick):
     return rows
 
 
-def cells(rows, precision):
+def of_build(rows, build):
+    return [row for row in rows if (row["engine"], row["precision"]) == build]
+
+
+def cells(rows, build):
     """Cell -> its row of ours, and the series of each peer and solver, coarsest first."""
     ours, peers = {}, defaultdict(lambda: defaultdict(list))
-    for row in rows:
-        if row["precision"] != precision:
-            continue
+    for row in of_build(rows, build):
         cell = (row["scene"], row["y"], row["frame_s"])
         if row["method"] == "ours":
             if row["tolerance"] == USUAL:
@@ -166,16 +169,16 @@ def dear_cells(ours, peers):
 
 def tolerance_table(rows):
     lines = []
-    for precision in ("double", "float"):
+    for build in BUILDS:
         for tolerance in TOLERANCES:
-            group = [row for row in rows if row["method"] == "ours" and row["tolerance"] == tolerance
-                     and row["precision"] == precision]
+            group = [row for row in of_build(rows, build)
+                     if row["method"] == "ours" and row["tolerance"] == tolerance]
             if not group:
                 continue
             allowed = max(0.05, float(tolerance))
             moving = [row for row in group if row["scene"] != "still-cantilever"]
             errors = sorted(number(row, "error_rel") for row in moving)
-            lines.append([precision, f"{100 * float(tolerance):g} %", len(group),
+            lines.append([" ".join(build), f"{100 * float(tolerance):g} %", len(group),
                           *[sum(right(row, target) for row in group) for target in TARGETS],
                           f"{100 * statistics.mean(errors):.2g} %", f"{100 * errors[-1]:.2g} %",
                           sum(int(row["solves"]) for row in group),
@@ -187,7 +190,7 @@ def tolerance_table(rows):
 
 
 def report(rows, meta):
-    ours, peers = cells(rows, "double")
+    ours, peers = cells(rows, BUILDS[0])
     return "\n".join([
         "# What a frame gives", "",
         f"{meta['processor']}, {meta['compiler']}, `{meta['flags']}`, Bullet {meta['bullet']}, {meta['date']}.", "",
@@ -202,7 +205,7 @@ def draw(folder, rows):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    ours, peers = cells(rows, "double")
+    ours, peers = cells(rows, BUILDS[0])
     scenes = list(dict.fromkeys(cell[0] for cell in ours))
     rank = lambda error: 0 if error <= 0.01 else 1 if error <= 0.05 else 2
     colours = matplotlib.colors.ListedColormap(["#2a9d4a", "#b8dba0", "#d7263d"])
@@ -237,8 +240,8 @@ def draw(folder, rows):
     for scene in scenes:
         points = []
         for tolerance in TOLERANCES:
-            group = [row for row in rows if row["scene"] == scene and row["method"] == "ours"
-                     and row["tolerance"] == tolerance and row["precision"] == "double"]
+            group = [row for row in of_build(rows, BUILDS[0]) if row["scene"] == scene
+                     and row["method"] == "ours" and row["tolerance"] == tolerance]
             error = statistics.mean(number(row, "error_rel") for row in group)
             points.append((sum(int(row["solves"]) for row in group) / len(group), 100 * max(error, 1e-6)))
         axis.plot(*zip(*points), marker="o", markersize=4, label=scene)

@@ -3,8 +3,11 @@
 // What of the adapter for ODE is compiled once (DUCTILE_COMPILED).
 #include <ductile/ode/ode.hpp>
 
+#include <ductile/ode/closing_contacts.ipp>
+#include <ductile/ode/contact_maker.ipp>
 #include <ductile/ode/contact_rows.ipp>
 #include <ductile/ode/energy_meter.ipp>
+#include <ductile/ode/half_ahead.ipp>
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
@@ -12,9 +15,12 @@
 #include <ductile/ode/motor_pose.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
+#include <ductile/ode/resting_islands.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
+#include <ductile/ode/world_parts.ipp>
+#include <ductile/ode/world_snapshot.ipp>
 
 namespace ductile::ode {
 

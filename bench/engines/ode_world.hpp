@@ -2,6 +2,8 @@
 //
 // A scene in ODE. A contact that is still apart gets a target velocity that lets it close the gap
 // in this step and no more; bodies do not collide otherwise.
+//
+// With a tolerance a step is a frame, and its contacts are those that are closed, or about to be.
 #pragma once
 
 #include <ode/ode.h>
@@ -24,11 +26,13 @@ class OdeWorld {
     static constexpr std::string_view engine = "ode";
     static constexpr std::string_view precision =
         sizeof(dReal) == sizeof(double) ? "double" : "float";
-    static constexpr int default_iterations = 20; ///< of dWorldQuickStep
+    static constexpr int default_iterations = 20;              ///< of dWorldQuickStep
     static constexpr std::string_view exact_solver = "direct"; ///< elastic rows included
     static constexpr std::array<SolverName, 2> solvers{
         {{"direct", Iterations::none}, {"quick", Iterations::solve}}};
-    static constexpr bool has_frames = false;
+    static constexpr bool has_frames = true;
+    static constexpr std::string_view default_solver = "direct";
+    static constexpr std::array<std::string_view, 2> solvers_of_peers{"direct", "quick"};
 
     [[nodiscard]] static bool has(std::string_view method) {
         return std::any_of(ode_methods::all.begin(), ode_methods::all.end(),
@@ -39,12 +43,11 @@ class OdeWorld {
     OdeWorld(const Scene& scene, const Settings& settings)
         : scene_(scene),
           stepper_(world_, {.solver = settings.solver == "quick" ? ductile::ode::Solver::quick
-                                                                : ductile::ode::Solver::direct,
+                                                                 : ductile::ode::Solver::direct,
                             .ledger = false,
-                            .warn = nullptr}) {
-        if (settings.in_frames()) {
-            throw std::invalid_argument("tolerance: must be 0 in ODE, whose steps are no frames");
-        }
+                            .tolerance = settings.tolerance,
+                            .warn = nullptr}),
+          in_frames_(settings.in_frames()) {
         if (settings.solver != "direct" && settings.solver != "quick") {
             throw std::invalid_argument("solver = " + settings.solver +
                                         ": must be direct or quick");
@@ -59,19 +62,25 @@ class OdeWorld {
         }
         for (const JointSpec& joint : scene.joints) add_joint(joint, settings.method);
         made_.resize(scene.contacts.size());
+        if (!in_frames_) return;
+        double thickness = infinity;
+        for (const ContactSpec& contact : scene.contacts) {
+            thickness = std::min(thickness, contact.thickness);
+        }
+        stepper_.on_contacts({.group = contacts_, .thickness = thickness}, [this] { collide(0); });
     }
     ~OdeWorld() = default;
     OdeWorld(const OdeWorld&) = delete;
     OdeWorld& operator=(const OdeWorld&) = delete;
 
     void step(double dt) {
-        dWorldSetERP(world_, dReal(drift_correction(dt)));
+        if (!in_frames_) dWorldSetERP(world_, dReal(drift_correction(dt)));
         for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
             const Vector& f = scene_.bodies[i].force;
             if (!f.isZero()) dBodyAddForce(bodies_[i], dReal(f.x()), dReal(f.y()), dReal(f.z()));
         }
         for (auto& holder : holders_) holder->before_step(dt);
-        collide(dt);
+        if (!in_frames_) collide(dt);
         stepper_.step(dt);
         dJointGroupEmpty(contacts_);
         for (auto& holder : holders_) holder->after_step(dt);
@@ -81,8 +90,10 @@ class OdeWorld {
         return state_of(index == ground ? nullptr : bodies_[std::size_t(index)]);
     }
     [[nodiscard]] const std::vector<std::unique_ptr<Holder>>& holders() const { return holders_; }
-    /// As of a world without a tolerance.
-    [[nodiscard]] const ductile::RunReport* run() const { return nullptr; }
+    /// What frames with a tolerance say of themselves; null without one.
+    [[nodiscard]] const ductile::RunReport* run() const {
+        return in_frames_ ? &stepper_.run() : nullptr;
+    }
 
   private:
     [[nodiscard]] dBodyID body(int index) const {
@@ -123,14 +134,16 @@ class OdeWorld {
         throw std::invalid_argument("method = " + std::string(method) + ": not there in ODE");
     }
 
+    /// Of a step of `dt` [s]; 0: of a part of a frame.
     void collide(double dt) {
         int count = 0;
         for (std::size_t i = 0; i < made_.size(); ++i) {
             const ContactSpec& spec = scene_.contacts[i];
             const BodyState a = state(spec.a), b = state(spec.b);
             const double closing = spec.approach ? spec.approach(a, b).closing_speed : 0;
-            const charpy::EdgeContact contact =
-                spec.touch(a, b, charpy::reach(made_[i], spec.thickness, closing, dt));
+            const double reach = in_frames_ ? ductile::ode::closed_depth
+                                            : charpy::reach(made_[i], spec.thickness, closing, dt);
+            const charpy::EdgeContact contact = spec.touch(a, b, reach);
             made_[i] = contact.count > 0;
             for (int k = 0; k < contact.count; ++k) {
                 add_contact(spec, contact.points[std::size_t(k)], dt, count++);
@@ -141,13 +154,14 @@ class OdeWorld {
                      int count) {
         dContact contact{};
         contact.surface.mode = dContactApprox1 | dContactBounce | dContactMotionN;
-        contact.surface.motionN = dReal(-std::max(point.gap, 0.0) / dt);
+        contact.surface.motionN = dReal(in_frames_ ? 0 : -std::max(point.gap, 0.0) / dt);
         if (scene_.contact_compliance > 0) {
             contact.surface.mode |= dContactSoftCFM;
             contact.surface.soft_cfm = dReal(scene_.contact_compliance);
             contact.surface.motionN -= dReal(1e-6 * (1 + 0.37 * count));
         }
-        contact.geom.depth = dReal(std::max(-point.gap, 0.0));
+        const double overlap = in_frames_ ? ductile::ode::closed_depth - point.gap : -point.gap;
+        contact.geom.depth = dReal(std::max(overlap, 0.0));
         for (int i = 0; i < 3; ++i) {
             contact.geom.pos[i] = dReal(point.position[i]);
             contact.geom.normal[i] =
@@ -190,6 +204,7 @@ class OdeWorld {
     dWorldID world_ = owned_.world;
     dJointGroupID contacts_ = owned_.contacts;
     ductile::ode::World stepper_;
+    bool in_frames_;
     std::vector<dBodyID> bodies_;
     std::vector<std::unique_ptr<Holder>> holders_;
     std::vector<bool> made_;

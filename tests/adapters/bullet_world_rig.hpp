@@ -33,7 +33,17 @@ class WorldRig {
           world_(dynamics_, {.ledger = ledger, .tolerance = 0, .warn = std::move(warn)}) {
         dynamics_.setGravity({0, 0, 0});
     }
+    /// Steps are frames.
+    WorldRig(bool /*iterative*/, double tolerance, int budget)
+        : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
+          world_(dynamics_, {.tolerance = tolerance,
+                             .budget = budget,
+                             .rest_damping = 0, // what swings here is to go on
+                             .warn = nullptr}) {
+        dynamics_.setGravity({0, 0, 0});
+    }
     ~WorldRig() {
+        others_.clear();
         for (auto& hinge : hinges_) world_.remove(*hinge);
         for (auto& joint : sixes_) world_.remove(*joint);
         for (auto& body : bodies_) dynamics_.removeRigidBody(body.get());
@@ -88,6 +98,22 @@ class WorldRig {
         return *sixes_.back();
     }
 
+    /// To the static world, along `axis`.
+    auto& slider(Body a, const V3& axis, Joint joint) {
+        btTransform frame;
+        frame.setIdentity();
+        frame.setRotation(shortestArcQuat({0, 0, 1}, bullet::to_bullet(axis)));
+        const btTransform in_a = a->getCenterOfMassTransform().inverse() * frame;
+        return own(std::make_unique<bullet::PlasticSlider<Joint>>(*a, in_a, std::move(joint)));
+    }
+    /// Any joint of six axes, as `six_axes`.
+    template <class Any>
+    auto& six_of(Body a, Any joint) {
+        btTransform frame;
+        frame.setIdentity();
+        return own(std::make_unique<bullet::PlasticJoint<Any>>(*a, frame, std::move(joint)));
+    }
+
     void set_gravity(const V3& g) {
         dynamics_.setGravity(bullet::to_bullet(g));
         for (auto& body : bodies_) body->setGravity(bullet::to_bullet(g));
@@ -119,6 +145,14 @@ class WorldRig {
     static V3 position(Body b) { return bullet::to_core(b->getCenterOfMassPosition()); }
 
   private:
+    template <class Constraint>
+    Constraint& own(std::unique_ptr<Constraint> constraint) {
+        Constraint& result = *constraint;
+        others_.push_back(std::move(constraint));
+        world_.add(result);
+        return result;
+    }
+
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
@@ -129,6 +163,7 @@ class WorldRig {
     bullet::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;
+    std::vector<std::unique_ptr<bullet::PlasticConstraint>> others_;
 };
 
 } // namespace ductile::test

@@ -33,11 +33,19 @@ class WorldRig {
         : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,
                        .ledger = ledger,
                        .warn = std::move(warn)}) {
-        dRandSetSeed(0); // the iterative solver shuffles its rows
-        dWorldSetQuickStepNumIterations(id_, 10);
-        dWorldSetCFM(id_, 1e-13); // ODE's 1e-10 lets 100 kN move by 1e-5 m/s
+        prepare();
+    }
+    /// Steps are frames.
+    WorldRig(bool iterative, double tolerance, int budget)
+        : world_(id_, {.solver = iterative ? ode::Solver::quick : ode::Solver::direct,
+                       .tolerance = tolerance,
+                       .budget = budget,
+                       .rest_damping = 0, // what swings here is to go on
+                       .warn = nullptr}) {
+        prepare();
     }
     ~WorldRig() {
+        others_.clear();
         for (auto& hinge : hinges_) world_.remove(*hinge);
         for (auto& joint : sixes_) world_.remove(*joint);
     }
@@ -79,6 +87,18 @@ class WorldRig {
         return *sixes_.back();
     }
 
+    /// To the static world, along `axis`.
+    auto& slider(Body a, const V3& axis, Joint joint) {
+        return own(
+            std::make_unique<ode::PlasticSlider<Joint>>(id_, a, nullptr, axis, std::move(joint)));
+    }
+    /// Any joint of six axes, as `six_axes`.
+    template <class Any>
+    auto& six_of(Body a, Any joint) {
+        return own(std::make_unique<ode::PlasticJoint<Any>>(id_, a, nullptr, JointFrame<double>{},
+                                                            std::move(joint)));
+    }
+
     void set_gravity(const V3& g) {
         dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
     }
@@ -113,6 +133,19 @@ class WorldRig {
     static V3 position(Body b) { return ode::to_core(dBodyGetPosition(b)); }
 
   private:
+    void prepare() {
+        dRandSetSeed(0); // the iterative solver shuffles its rows
+        dWorldSetQuickStepNumIterations(id_, 10);
+        dWorldSetCFM(id_, 1e-13); // ODE's 1e-10 lets 100 kN move by 1e-5 m/s
+    }
+    template <class Constraint>
+    Constraint& own(std::unique_ptr<Constraint> constraint) {
+        Constraint& result = *constraint;
+        others_.push_back(std::move(constraint));
+        world_.add(result);
+        return result;
+    }
+
     /// ODE counts its users: initialised once per rig, before the world; both go last, also where
     /// what follows cannot be made.
     struct Library {
@@ -134,6 +167,7 @@ class WorldRig {
     ode::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;
+    std::vector<std::unique_ptr<ode::PlasticConstraint>> others_;
 };
 
 } // namespace ductile::test

@@ -22,6 +22,7 @@ class Plastic final : public Holder {
     template <class... Arguments>
     explicit Plastic(const OdeSite& site, Arguments&&... arguments)
         : stepper_(site.stepper),
+          joint_(site.joint),
           constraint_(site.world, site.a, site.b, std::forward<Arguments>(arguments)...) {
         constraint_.add_to(stepper_);
     }
@@ -29,6 +30,9 @@ class Plastic final : public Holder {
 
     [[nodiscard]] std::optional<double> absorbed() override {
         return constraint_.absorbed_energy();
+    }
+    [[nodiscard]] std::optional<double> peak() override {
+        return joint_.strength / joint_.stiffness + constraint_.joint().state().plastic_travel;
     }
     [[nodiscard]] bool broken() override { return constraint_.broken(); }
     [[nodiscard]] bool unreliable() override {
@@ -38,6 +42,7 @@ class Plastic final : public Holder {
 
   private:
     ductile::ode::World& stepper_;
+    JointSpec joint_;
     Constraint constraint_;
 };
 

@@ -108,9 +108,9 @@ class EnergyMeter {
     void bodies_ahead();
     /// Books the step of `dt` [s] that was opened by `before_step`.
     void after_step(double dt);
-    /// Between two steps bodies of members were split or made one; `before`: held().total() before
-    /// [J].
-    void bodies_rearranged(double before);
+    /// Between two steps bodies of members were split or made one, or what `account` says happened
+    /// to them; `before`: held().total() before [J].
+    void bodies_rearranged(double before, Account account = Account::members);
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();

@@ -68,9 +68,9 @@ DUCTILE_INLINE void EnergyMeter::before_step() {
     watch_step();
 }
 
-DUCTILE_INLINE void EnergyMeter::bodies_rearranged(double before) {
+DUCTILE_INLINE void EnergyMeter::bodies_rearranged(double before, Account account) {
     const double gained = held().total() - before;
-    ledger_.book(Account::members, -gained);
+    ledger_.book(account, -gained);
     last_.kinetic += gained; // what was changed from outside is seen by the next step
     ledger_.update(last_);
 }

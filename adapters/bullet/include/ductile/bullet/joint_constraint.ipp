@@ -8,6 +8,7 @@
 #include "ductile/bullet/reaction.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/part_rows.hpp"
 
 namespace ductile::bullet {
 
@@ -204,22 +205,7 @@ DUCTILE_INLINE void JointConstraint::put_all_back() {
 DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,
                                                     std::vector<PartRow>& rows) const {
     settle();
-    const double share = is_awake() ? link_.utilisation() : 0;
-    for (const JointAxis axis : link_.axes()) {
-        const auto i = Eigen::Index(index(axis));
-        PartRow& row = rows.emplace_back();
-        row.joint = joint;
-        row.noise = resting_share * link_.absolute_residual();
-        row.turning = link_.turning_speed();
-        row.least = link_.least_travel();
-        row.too_far = link_.turned_too_far();
-        row.elastic = !link_.all_rigid();
-        if (!is_awake()) continue;
-        row.start = link_.start_velocities()[i];
-        row.end = link_.end_velocities()[i];
-        row.share = share;
-        row.strength = link_.strength(axis);
-    }
+    add_part_rows(link_, joint, is_awake(), rows);
 }
 
 // ---- what the solver did

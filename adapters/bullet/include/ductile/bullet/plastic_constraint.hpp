@@ -106,8 +106,6 @@ class PlasticConstraint : public btTypedConstraint,
     /// Of `keep_all` and `put_all_back`, what all kinds have.
     void keep_life();
     void put_life_back();
-    /// Of what a row may be off by at rest, the speed that is as good as rest [-].
-    static constexpr double resting_share = 0.01;
 
     btDynamicsWorld* world_ = nullptr; ///< where add_to put it
     bool ahead_ = false;               ///< the bodies are half a step ahead where rows are solved

@@ -13,6 +13,7 @@
 #include "ductile/joint/joint_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/part_rows.hpp"
 
 namespace ductile::bullet {
 
@@ -182,16 +183,7 @@ DUCTILE_INLINE void MotorConstraint::put_all_back() {
 DUCTILE_INLINE void MotorConstraint::list_part_rows(std::size_t joint,
                                                     std::vector<PartRow>& rows) const {
     settle();
-    PartRow& row = rows.emplace_back();
-    row.joint = joint;
-    row.noise = resting_share * joint_.allowed_residual(0);
-    row.least = joint_.least_travel();
-    row.elastic = !joint_.rigid();
-    if (!acts() || joint_.broken()) return;
-    row.start = joint_.start_velocity();
-    row.end = joint_.velocity();
-    row.strength = joint_.strength(force_ > 0 ? -1 : 1);
-    row.share = row.strength > 0 ? std::abs(force_) / row.strength : 0;
+    add_part_row(joint_, force_, joint, acts(), rows);
 }
 
 DUCTILE_INLINE void MotorConstraint::settle() const {

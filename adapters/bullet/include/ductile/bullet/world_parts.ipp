@@ -3,7 +3,6 @@
 // Bodies of world_parts.hpp.
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/world_parts.hpp"
+#include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
 
@@ -31,15 +31,15 @@ struct SingleTick : btDiscreteDynamicsWorld {
 /// The solver's settings of a part or a blow while this lives.
 class WorldParts::Settings {
   public:
-    /// `share`: of the frame.
-    Settings(btContactSolverInfo& info, btScalar h, btScalar share, bool blow)
+    /// `frame`: length of the whole [s].
+    Settings(btContactSolverInfo& info, btScalar h, double frame, bool blow)
         : info_(info), usual_(info) {
-        constexpr btScalar removed_in = btScalar(5e-3), as_in = btScalar(1e-4); // [s]
-        info.m_erp = blow ? btScalar(0) : std::min(info.m_erp, h / removed_in);
-        info.m_erp2 *= blow ? btScalar(0) : share;
+        const auto part = double(h);
+        info.m_erp = blow ? btScalar(0) : btScalar(part_erp(double(info.m_erp), part));
+        info.m_erp2 = blow ? btScalar(0) : btScalar(overlap_erp(double(info.m_erp2), part, frame));
         if (!blow) return;
         info.m_splitImpulse = 0;
-        info.m_globalCfm *= h / as_in; // a compliance is divided by the tick
+        info.m_globalCfm *= btScalar(blow_compliance(double(h)));
     }
     ~Settings() {
         info_.m_erp = usual_.m_erp;
@@ -123,7 +123,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         meter_.bodies_ahead();
     }
     members_.before_solve();
-    const Settings settings(world_.getSolverInfo(), btScalar(h), btScalar(h / frame_), !ahead);
+    const Settings settings(world_.getSolverInfo(), btScalar(h), frame_, !ahead);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow);
     detail::SingleTick::go(world_, btScalar(h));
     front_.set_kind(TickKind::step);
@@ -150,10 +150,11 @@ DUCTILE_INLINE void WorldParts::do_again() {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    constexpr double instant = 1e-9;
     if (!members_.empty()) save();
     members_.begin_blow();
-    for (tick(instant, false); members_.look_blow(instant); tick(instant, false)) do_again();
+    for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
+        do_again();
+    }
     motion_.closed = 0;
     return tell();
 }

@@ -45,6 +45,8 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// Names a contact joint of the coming step, so that its work is booked as contact and
     /// friction.
     void add_contact(dJointID joint, const dContactGeom& geometry) { contacts_[joint] = geometry; }
+    /// Contacts of the step were named after `before_step`.
+    void look_at_contacts() { watch_step(); }
     /// Energy that all rows of a joint took from the bodies since the meter was made [J].
     [[nodiscard]] double taken_by(dJointID joint) const { return taken_by_address(joint); }
 

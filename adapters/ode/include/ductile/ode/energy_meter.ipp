@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
@@ -56,17 +57,40 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
 }
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
+    std::unordered_map<dJointID, const dJointFeedback*> of_plastic;
+    for (const PlasticConstraint* constraint : plastic_) {
+        if (seen_.count(constraint->id()) > 0) of_plastic.emplace(constraint->id(), nullptr);
+    }
     for (const auto& [id, bodies, feedback, lent] : watched_) {
         if (contacts_.count(id) > 0) continue;
+        if (const auto found = of_plastic.find(id); found != of_plastic.end()) {
+            found->second = feedback;
+            continue;
+        }
         joints.push_back({id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
                           to_core(feedback->f2), to_core(feedback->t2), nullptr});
     }
     for (const PlasticConstraint* constraint : plastic_) {
-        if (seen_.count(constraint->id()) == 0) continue;
+        const auto found = of_plastic.find(constraint->id());
+        if (found == of_plastic.end()) continue;
         const auto [a, b, reversed] = constraint->bodies();
         const OutsideForce& outside = constraint->outside_force();
-        joints.push_back({constraint->id(), a, b, outside.force, outside.torque_a,
-                          scaled(-1, outside.force), outside.torque_b, &constraint->queries()});
+        MeteredJoint& joint = joints.emplace_back();
+        joint = {constraint->id(),
+                 a,
+                 b,
+                 outside.force,
+                 outside.torque_a,
+                 scaled(-1, outside.force),
+                 outside.torque_b,
+                 &constraint->queries()};
+        // all motors of one of ODE's joints share its feedback: the first has it
+        const dJointFeedback* feedback = std::exchange(found->second, nullptr);
+        if (feedback == nullptr) continue;
+        joint.force_a = sum(joint.force_a, to_core(feedback->f1));
+        joint.torque_a = sum(joint.torque_a, to_core(feedback->t1));
+        joint.force_b = sum(joint.force_b, to_core(feedback->f2));
+        joint.torque_b = sum(joint.torque_b, to_core(feedback->t2));
     }
 }
 

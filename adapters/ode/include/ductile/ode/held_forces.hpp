@@ -6,6 +6,7 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,13 @@ class HeldForces {
     }
     void apply() const {
         for (const auto& [body, force, torque] : held_) add_force(body, force, torque);
+    }
+    /// To these alone.
+    void apply_to(std::span<const dBodyID> bodies) const {
+        for (const auto& [body, force, torque] : held_) {
+            if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) continue;
+            add_force(body, force, torque);
+        }
     }
 
   private:

@@ -42,8 +42,9 @@ class IslandSolver {
     void add(PlasticConstraint& joint);
     void remove(PlasticConstraint& joint);
 
-    /// Between the constraints' `prepare` and ODE's step of `dt` [s].
-    void before_step(const std::vector<NamedContact>& contacts, double dt);
+    /// Between the constraints' `prepare` and ODE's step of `dt` [s]. `may_sleep`: islands may fall
+    /// asleep in it.
+    void before_step(const std::vector<NamedContact>& contacts, double dt, bool may_sleep = true);
     void after_step();
 
   private:

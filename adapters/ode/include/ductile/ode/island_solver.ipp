@@ -41,8 +41,8 @@ DUCTILE_INLINE void IslandSolver::index_members() {
 
 // ---- a step
 
-DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& contacts,
-                                              double dt) {
+DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& contacts, double dt,
+                                              bool may_sleep) {
     if (members_.empty()) return;
     if (!indexed_) index_members();
     ++step_;
@@ -58,7 +58,7 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
         bool ours = known && awake_;
         if (ours) {
             Kept& kept = kept_of(*members_[joints_.front()].joint);
-            ours = !falls_asleep(kept, dt);
+            ours = !may_sleep || !falls_asleep(kept, dt);
             if (ours) solve(kept.solver, contacts, dt);
         }
         if (ours) continue;

@@ -82,8 +82,15 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step. Called by World::step.
     DUCTILE_INLINE void commit(double dt) override;
-    /// After a break lets go. Called by World::step.
+    /// After a break gives its energy back. Called by World::step.
     DUCTILE_INLINE void finish() override;
+    DUCTILE_INLINE void stand() override;
+
+    DUCTILE_INLINE void begin_frame() override;
+    DUCTILE_INLINE void keep_all() override;
+    DUCTILE_INLINE void put_all_back() override;
+    DUCTILE_INLINE void list_part_rows(std::size_t joint,
+                                       std::vector<PartRow>& rows) const override;
     [[nodiscard]] const Step<double>* booked() const noexcept override {
         return booked_ ? &link_.last() : nullptr;
     }
@@ -128,6 +135,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     void rest_motor();
     /// What no row of ODE's gives, as an outside force on both bodies.
     void add_centre(double sign);
+    /// The bodies as the step finds them.
+    [[nodiscard]] std::array<BodyState<double>, 2> at_start(double dt);
     void hand_back();
     void let_go();
 
@@ -148,6 +157,15 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     bool booked_ = false;   ///< and not finished
     bool acting_ = false;   ///< between prepare and commit: the joint takes part in this step
     bool silent_ = true;    ///< no force
+    bool holds_on_ = false; ///< broken, in a step that does not stand yet
+    /// What `keep_all` keeps beside the link.
+    struct Kept {
+        BreakRelease<double> release;
+        OutsideForce outside;
+        DrivenPair driven;
+        bool silent = true;
+    };
+    Kept kept_;
 };
 
 } // namespace ductile::ode

@@ -17,6 +17,7 @@
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/world/joint_checks.hpp"
+#include "ductile/world/part_rows.hpp"
 
 namespace ductile::ode {
 
@@ -154,16 +155,21 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
         return;
     }
     acting_ = true;
-    const BodyState<double> a = driven_.at_start(0, a_, body_state(a_), dt);
-    const BodyState<double> b = driven_.at_start(1, b_, body_state(b_), dt);
-    if (!put_back_) link_.teleport(a, b);
-    put_back_ = false;
+    const auto [a, b] = at_start(dt);
     const double rate = double(dWorldGetERP(dBodyGetWorld(a_))) / dt;
-    link_.prepare(a, b, dt, rate);
+    link_.prepare(a, b, dt, rate, ahead_);
     arm_a_ = difference(link_.point(), a.position);
     arm_b_ = difference(link_.point(), b.position);
     centre_ = {};
     moments_ = {}; // ODE leaves it alone where the motor has no row
+}
+
+/// In a part of a frame begin_frame has looked.
+DUCTILE_INLINE std::array<BodyState<double>, 2> JointConstraint::at_start(double dt) {
+    const std::array<BodyState<double>, 2> bodies{driven_.at_start(0, a_, body_state(a_), dt),
+                                                  driven_.at_start(1, b_, body_state(b_), dt)};
+    if (!ahead_ && !std::exchange(put_back_, false)) link_.teleport(bodies[0], bodies[1]);
+    return bodies;
 }
 
 DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const IslandSeat& a,
@@ -212,11 +218,14 @@ DUCTILE_INLINE void JointConstraint::commit(double dt) {
         forces_.clear();
         link_.pause();
         driven_.forget();
+        acting_ = false;
         return;
     }
     silent_ = false;
-    driven_.booked(0, a_, dt);
-    driven_.booked(1, b_, dt);
+    if (!ahead_) {
+        driven_.booked(0, a_, dt);
+        driven_.booked(1, b_, dt);
+    }
     outside_ = forces_.collect();
     const auto about_centre = [this](const Vector3<double>& arm) {
         return sum(cross(arm, centre_.force), centre_.moment);
@@ -234,7 +243,38 @@ DUCTILE_INLINE void JointConstraint::commit(double dt) {
 DUCTILE_INLINE void JointConstraint::finish() {
     if (!std::exchange(booked_, false) || !link_.broken()) return;
     hand_back();
-    let_go();
+    holds_on_ = true;
+}
+
+DUCTILE_INLINE void JointConstraint::stand() {
+    if (std::exchange(holds_on_, false)) let_go();
+}
+
+// ---- a part of a frame
+
+DUCTILE_INLINE void JointConstraint::begin_frame() {
+    if (link_.broken() || detached()) return;
+    const BodyState<double> a = body_motion(a_), b = body_motion(b_);
+    if (!std::exchange(put_back_, false)) link_.teleport(a, b);
+}
+
+DUCTILE_INLINE void JointConstraint::keep_all() {
+    link_.keep();
+    kept_ = {release_, outside_, driven_, silent_};
+}
+
+DUCTILE_INLINE void JointConstraint::put_all_back() {
+    booked_ = acting_ = holds_on_ = false;
+    link_.put_back();
+    release_ = kept_.release;
+    outside_ = kept_.outside;
+    driven_ = kept_.driven;
+    silent_ = kept_.silent;
+}
+
+DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,
+                                                    std::vector<PartRow>& rows) const {
+    add_part_rows(link_, joint, acting_ && !link_.broken(), rows);
 }
 
 DUCTILE_INLINE void JointConstraint::set_motor(int number, const PointRow& moment, bool on) {

@@ -7,7 +7,9 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
+#include "ductile/frame/part_row.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/island_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
@@ -59,6 +61,17 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     [[nodiscard]] virtual AttachedBodies bodies() const = 0;
     /// Null: its rows are a joint's of ODE.
     [[nodiscard]] virtual IslandRows* island_rows() noexcept { return nullptr; }
+
+    // ---- parts of a frame (world_parts.hpp)
+
+    /// A frame begins: what hands did to the bodies is seen now, before they are half a step ahead.
+    virtual void begin_frame() = 0;
+    /// Keeps all that a part may change, for one put_all_back or more.
+    virtual void keep_all() = 0;
+    /// Everything is as it was at the last `keep_all`, bit for bit; the bodies are already.
+    virtual void put_all_back() = 0;
+    /// Adds what the last part did along the plastic axes; `joint`: its number.
+    virtual void list_part_rows(std::size_t joint, std::vector<PartRow>& rows) const = 0;
 };
 
 } // namespace ductile::ode

@@ -96,8 +96,16 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     DUCTILE_INLINE void prepare(double dt) override;
     /// Books the step. Called by World::step.
     DUCTILE_INLINE void commit(double dt) override;
-    /// After a break lets go of the joint. Called by World::step.
+    /// After a break gives its energy back. Called by World::step.
     DUCTILE_INLINE void finish() override;
+    /// Then lets go of the joint.
+    DUCTILE_INLINE void stand() override;
+
+    DUCTILE_INLINE void begin_frame() override;
+    DUCTILE_INLINE void keep_all() override;
+    DUCTILE_INLINE void put_all_back() override;
+    DUCTILE_INLINE void list_part_rows(std::size_t joint,
+                                       std::vector<PartRow>& rows) const override;
     [[nodiscard]] const Step<double>* booked() const noexcept override {
         return booked_ ? &joint_.last() : nullptr;
     }
@@ -133,6 +141,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void suspend();
     /// The bodies were put elsewhere since the last step: the rest position goes along.
     [[nodiscard]] double follow_teleport();
+    /// Where the row is half a step ahead of where it was last looked at, moving at `velocity`.
+    [[nodiscard]] double follow_ahead(double velocity, double dt);
     void part();
 
     [[nodiscard]] Vector6<double> direction() const;
@@ -170,6 +180,17 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     bool acting_ = false; ///< between prepare and commit: the row takes part in this step
     bool detached_ = false;
     bool restored_ = false; ///< the next position is measured, not compared
+    bool holds_on_ = false; ///< broken, in a step that does not stand yet
+    /// What `keep_all` keeps beside the joint.
+    struct Kept {
+        BreakRelease<double> release;
+        double position = 0, force = 0, unseen_turn = 0, rigid_residual = 0;
+        bool rigid_unsolved = false, restored = false;
+        MotorPose pose;
+        OutsideForce outside;
+        DrivenPair driven;
+    };
+    Kept kept_;
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>

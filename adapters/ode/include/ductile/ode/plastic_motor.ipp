@@ -12,6 +12,7 @@
 #include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
+#include "ductile/world/part_rows.hpp"
 
 namespace ductile::ode {
 
@@ -114,8 +115,17 @@ DUCTILE_INLINE void MotorConstraint::prepare(double dt) {
         return;
     }
     acting_ = true;
-    pose_.look(row_);
-    Motion<double> motion{follow_teleport(), start_velocity(dt)};
+    Motion<double> motion{.ahead = ahead_};
+    if (ahead_) {
+        driven_.forget();
+        motion.velocity = row_.velocity();
+        motion.position = follow_ahead(motion.velocity, dt);
+        motion.before = motion.position - motion.velocity * dt / 2;
+    } else {
+        pose_.look(row_);
+        motion.position = follow_teleport();
+        motion.velocity = start_velocity(dt);
+    }
     if (!joint_.rigid()) motion.mass = mass();
     set_motor(joint_.prepare(motion, dt), dt);
     const auto erp = double(dWorldGetERP(dBodyGetWorld(row_.bodies().a)));
@@ -127,19 +137,23 @@ DUCTILE_INLINE void MotorConstraint::commit(double dt) {
     if (!solved()) {
         take_back();
         suspend();
+        acting_ = false;
         return;
     }
     const Vector6<double> twist = pose_.twist(row_);
     const double velocity = pose_.along(row_, twist);
-    driven_.booked(0, row_.bodies().a, dt);
-    driven_.booked(1, row_.bodies().b, dt);
+    if (!ahead_) {
+        driven_.booked(0, row_.bodies().a, dt);
+        driven_.booked(1, row_.bodies().b, dt);
+    }
     certify_pin(linear(twist));
     const double force = row_force();
+    const double moved = ahead_ ? dt / 2 : dt; // since the row was prepared
     const double position =
         row_.measured()
-            ? row_.measure(position_ + velocity * dt)
+            ? row_.measure(position_ + velocity * moved)
             : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
-    if (row_.turns()) see_turn(velocity, dt, position);
+    if (row_.turns()) see_turn(velocity, moved, position);
     joint_.commit({force, velocity, position}, dt);
     keep(position, force);
     pose_.look(row_);
@@ -150,7 +164,54 @@ DUCTILE_INLINE void MotorConstraint::commit(double dt) {
 DUCTILE_INLINE void MotorConstraint::finish() {
     if (!std::exchange(booked_, false) || !joint_.broken()) return;
     if (joint_.last().release > 0) hand_back(joint_.last().release);
-    part();
+    holds_on_ = true;
+}
+
+DUCTILE_INLINE void MotorConstraint::stand() {
+    if (std::exchange(holds_on_, false)) part();
+}
+
+// ---- a part of a frame
+
+DUCTILE_INLINE void MotorConstraint::begin_frame() {
+    if (joint_.broken() || !row_.attached()) return;
+    pose_.look(row_);
+    (void)follow_teleport();
+}
+
+DUCTILE_INLINE double MotorConstraint::follow_ahead(double velocity, double dt) {
+    const double ahead = row_.measured() ? row_.measure(position_ + velocity * dt / 2)
+                                         : position_ + row_.increment(pose_.placement(),
+                                                                      pose_.axis(), pose_.point());
+    pose_.look(row_);
+    keep(ahead, force_);
+    return ahead;
+}
+
+DUCTILE_INLINE void MotorConstraint::keep_all() {
+    joint_.keep();
+    kept_ = {release_,        position_, force_, unseen_turn_, rigid_residual_,
+             rigid_unsolved_, restored_, pose_,  outside_,     driven_};
+}
+
+DUCTILE_INLINE void MotorConstraint::put_all_back() {
+    booked_ = acting_ = holds_on_ = false;
+    joint_.put_back();
+    release_ = kept_.release;
+    position_ = kept_.position;
+    force_ = kept_.force;
+    unseen_turn_ = kept_.unseen_turn;
+    rigid_residual_ = kept_.rigid_residual;
+    rigid_unsolved_ = kept_.rigid_unsolved;
+    restored_ = kept_.restored;
+    pose_ = kept_.pose;
+    outside_ = kept_.outside;
+    driven_ = kept_.driven;
+}
+
+DUCTILE_INLINE void MotorConstraint::list_part_rows(std::size_t joint,
+                                                    std::vector<PartRow>& rows) const {
+    add_part_row(joint_, force_, joint, acting_, rows);
 }
 
 // ---- the row

@@ -14,14 +14,20 @@ class SteppedConstraint : public KeptJoint {
     /// Called for all before any is prepared.
     /// @throws what makes the step impossible; nothing has changed then.
     virtual void check() const {}
+    /// In the coming steps the bodies are half a step ahead (half_ahead.hpp).
+    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
     virtual void prepare(double dt) = 0;
     virtual void commit(double dt) = 0;
-    /// Called for all when all have committed.
+    /// Called for all when all have committed: what a break gives back.
     virtual void finish() {}
+    /// The step stands: what is broken lets go, which is not put back.
+    virtual void stand() {}
 
   protected:
     friend class World;
     SteppedConstraint() = default;
+
+    bool ahead_ = false; ///< the bodies are half a step ahead where rows are solved
 };
 
 } // namespace ductile::ode

@@ -17,20 +17,40 @@
 //
 // A step throws what a constraint's check() throws.
 //
+// on_contacts: who makes the contacts of a step, so that they need not be made before it.
+//
+// tolerance: a step is a frame, done in as many parts as the tolerance needs (world_parts.hpp):
+//
+//   ductile::ode::World world(id, {.tolerance = 0.01});
+//   world.on_contacts({.space = space, .group = group},
+//                     [&] { dSpaceCollide(space, &world, near); }); // near: add_contact
+//   world.step(1.0 / 60);
+//   if (!world.run().believed()) ...                   // frame(), run() say what was left, of whom
+//
+// Forces applied before the frame act in all of it. Every body that moves has to be added here, and
+// contacts come of on_contacts alone: each part, and each look for gaps that close, has its own.
+// Thin and fast things are not missed as long as their geoms are in that space. ODE's callbacks and
+// those of contacts are called in every part, also of those that are put back. Islands fall asleep
+// as a whole, told once a frame (resting_islands.hpp).
+//
 // Not thread-safe. ODE's world must outlive every step; all else may end in any order.
 #pragma once
 
 #include <ode/ode.h>
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/ode/world_parts.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/stepped_world.hpp"
 
@@ -42,6 +62,10 @@ enum class Solver { direct, quick };
 struct WorldParameters {
     Solver solver = Solver::direct;
     bool ledger = true; ///< whether the energy account is kept
+    /// > 0: a step is a frame, and this the share of the plastic work that may be misplaced [-];
+    /// 0: a step is one of the engine's
+    double tolerance = 0;
+    int budget = 256; ///< solves of a frame, >= 4
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
@@ -64,6 +88,7 @@ class World final : public SteppedWorld {
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint);
     /// Steps what is no plastic joint, until it ends.
+    /// @throws std::invalid_argument where the world has a tolerance: it could not be put back.
     void add(SteppedConstraint& constraint);
     void remove(SteppedConstraint& constraint);
 
@@ -74,32 +99,52 @@ class World final : public SteppedWorld {
     void remove(dBodyID body);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
     /// islands with plastic joints are solved with it (island_solver.hpp).
-    void add_contact(dJointID joint, const dContact& contact) {
-        contacts_.push_back({joint, contact});
-    }
+    /// @throws std::logic_error where the world has a tolerance and it is not called by what
+    /// on_contacts was given.
+    void add_contact(dJointID joint, const dContact& contact);
+    /// From now on `make` is called for the contacts of each step, part, and look for gaps; it
+    /// makes their joints in the group and names them by add_contact. The group is emptied around
+    /// that.
+    /// @throws std::invalid_argument as ContactMaker.
+    void on_contacts(const ContactParameters& parameters, std::function<void()> make);
 
   private:
     // ---- what SteppedWorld asks of ODE
 
     DUCTILE_INLINE void require_possible(double dt) override;
     DUCTILE_INLINE void do_step(double dt) override;
+    [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
+    DUCTILE_INLINE void end_frame() override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
-        return meter_ ? &meter_->ledger() : nullptr;
+        return tells_ledger_ ? &meter_->ledger() : nullptr;
     }
 
     void forget(PlasticConstraint& joint);
     /// Of each plastic joint, by the first of those that hang together.
     [[nodiscard]] std::vector<std::size_t> islands() const;
+    void start_frames(const WorldParameters& parameters);
+    /// ODE's step, with what constraints do before it.
+    void solve(double dt);
+    /// What they did in it; the breaking ones still hold on.
+    void book(double dt);
+    /// The step stands.
+    void let_go_of_broken();
+    /// A body that is not known would not be put back: of joints, also ODE's own, of contacts, of
+    /// geoms.
+    void require_all_bodies();
 
     dWorldID world_;
     Solver solver_;
     std::optional<EnergyMeter> meter_;
+    bool tells_ledger_ = false;
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
     std::vector<NamedContact> contacts_; ///< of the coming step
     IslandSolver islands_;
+    std::optional<ContactMaker> maker_;
+    std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
 };
 
 } // namespace ductile::ode

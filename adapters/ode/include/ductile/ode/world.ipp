@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/ode/world.hpp"
@@ -20,7 +22,30 @@ DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
     require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
-    if (parameters.ledger) meter_.emplace(world_);
+    tells_ledger_ = parameters.ledger;
+    if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
+    if (parameters.tolerance != 0) start_frames(parameters);
+}
+DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
+    const FrameParameters frames{.tolerance = parameters.tolerance, .budget = parameters.budget};
+    frames.validate("World");
+    start_in_frames(frames);
+    parts_ = std::make_unique<WorldParts>(WorldParts::Parts{
+        .world = world_,
+        .bodies = bodies_,
+        .joints = plastic_,
+        .contacts = contacts_,
+        .maker = maker_,
+        .meter = *meter_,
+        .solve = [this](double dt) { solve(dt); },
+        .book = [this](double dt) { book(dt); },
+        .number = [this](const PlasticConstraint& joint) { return supervisor().number(&joint); },
+        .accept =
+            [this](double h) {
+                let_go_of_broken();
+                part_stands(h);
+            },
+    });
 }
 DUCTILE_INLINE World::World(dWorldID world, Solver solver)
     : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
@@ -34,6 +59,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
     islands_.add(joint);
+    joint.set_ahead(parts_ != nullptr);
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
     joint.came_into_world();
@@ -50,6 +76,11 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     if (meter_) meter_->remove(joint);
 }
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
+    if (parts_ != nullptr) {
+        throw std::invalid_argument(
+            "World.add.constraint: must be a plastic joint in a world with a tolerance: others "
+            "cannot be put back");
+    }
     constraints_.push_back(&constraint);
     keep(constraint, [this, &constraint] { std::erase(constraints_, &constraint); });
 }
@@ -71,30 +102,66 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
     if (meter_) meter_->remove(body);
 }
 
+DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) {
+    if (parts_ != nullptr && !(maker_ && maker_->is_making())) {
+        throw std::logic_error(
+            "World.add_contact: in a world with a tolerance contacts are made by what on_contacts "
+            "was given, as each part of a step needs its own");
+    }
+    contacts_.push_back({joint, contact});
+}
+DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
+                                       std::function<void()> make) {
+    maker_.emplace(parameters, std::move(make));
+}
+
 // ---- what SteppedWorld asks of ODE
 
 DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
+    if (parts_ != nullptr) require_all_bodies();
 }
 DUCTILE_INLINE void World::do_step(double dt) {
+    if (maker_) maker_->make(bodies_);
     if (meter_) {
         for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();
     }
+    solve(dt);
+    book(dt);
+    let_go_of_broken();
+    if (meter_) meter_->after_step(dt);
+    contacts_.clear();
+    if (maker_) maker_->clear();
+}
+
+DUCTILE_INLINE void World::solve(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
-    islands_.before_step(contacts_, dt);
+    islands_.before_step(contacts_, dt, parts_ == nullptr);
     if (solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {
         dWorldQuickStep(world_, dReal(dt));
     }
     islands_.after_step();
+}
+DUCTILE_INLINE void World::book(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
     share_work(std::span<PlasticConstraint* const>(plastic_), [this] { return islands(); });
     for (SteppedConstraint* constraint : constraints_) constraint->finish();
-    if (meter_) meter_->after_step(dt);
-    contacts_.clear();
 }
+DUCTILE_INLINE void World::let_go_of_broken() {
+    for (SteppedConstraint* constraint : constraints_) constraint->stand();
+}
+
+DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
+    for (SteppedConstraint* constraint : constraints_) {
+        constraint->set_ahead(true);
+    }
+    parts_->begin(length);
+    return *parts_;
+}
+DUCTILE_INLINE void World::end_frame() { parts_->end(); }
 
 DUCTILE_INLINE bool World::has_body(const void* body) const {
     if (body == nullptr) return false;
@@ -126,6 +193,32 @@ DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
         result.push_back(can_move(body) ? island_of[body] : result.size());
     }
     return result;
+}
+
+DUCTILE_INLINE void World::require_all_bodies() {
+    const std::unordered_set<dBodyID> known(bodies_.begin(), bodies_.end());
+    const auto require = [&known](dBodyID body) {
+        if (body == nullptr || known.contains(body)) return;
+        throw std::invalid_argument(
+            "World.tolerance: every body that moves must have been added, also where only a joint "
+            "or a geom holds it");
+    };
+    for (dBodyID body : bodies_) {
+        for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            if (dJointGetType(joint) == dJointTypeContact) {
+                throw std::logic_error(
+                    "World.step: there are contacts before the step: in a world with a tolerance "
+                    "they are made by what on_contacts was given");
+            }
+            for (const int side : {0, 1}) require(dJointGetBody(joint, side));
+        }
+    }
+    for (const PlasticConstraint* joint : plastic_) {
+        for (const int side : {0, 1}) require(dJointGetBody(joint->id(), side));
+    }
+    if (!maker_) return;
+    for (dGeomID geom : maker_->geoms()) require(dGeomGetBody(geom));
 }
 
 } // namespace ductile::ode

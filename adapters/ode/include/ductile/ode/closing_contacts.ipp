@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of closing_contacts.hpp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <unordered_set>
+
+#include "ductile/ode/closing_contacts.hpp"
+#include "ductile/ode/convert.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// Velocity that a unit impulse along `normal` at `arm` gives there [1/kg].
+[[nodiscard]] DUCTILE_INLINE double yield_at(dBodyID body, const Vector3<double>& arm,
+                                             const Vector3<double>& normal) {
+    if (!can_move(body)) return 0;
+    const BodyState<double> state = body_state(body);
+    const Vector3<double> turn = cross(arm, normal);
+    return state.inverse_mass + dot(turn, times(state.inverse_inertia, turn));
+}
+
+[[nodiscard]] DUCTILE_INLINE Vector3<double> arm_of(dBodyID body, const Vector3<double>& point) {
+    return body != nullptr ? difference(point, to_core(dBodyGetPosition(body)))
+                           : Vector3<double>(0, 0, 0);
+}
+
+/// Smallest extent of a geom; infinite for what has no other side [m].
+[[nodiscard]] DUCTILE_INLINE double thickness(dGeomID geom) {
+    dReal radius = 0, length = 0;
+    switch (dGeomGetClass(geom)) {
+        case dSphereClass:
+            return 2 * double(dGeomSphereGetRadius(geom));
+        case dBoxClass: {
+            dVector3 sides;
+            dGeomBoxGetLengths(geom, sides);
+            return double(std::min({sides[0], sides[1], sides[2]}));
+        }
+        case dCapsuleClass:
+            dGeomCapsuleGetParams(geom, &radius, &length);
+            return 2 * double(radius);
+        case dCylinderClass:
+            dGeomCylinderGetParams(geom, &radius, &length);
+            return std::min(2 * double(radius), double(length));
+        case dPlaneClass:
+        case dHeightfieldClass:
+            return std::numeric_limits<double>::infinity();
+        default: {
+            std::array<dReal, 6> bounds{};
+            dGeomGetAABB(geom, bounds.data());
+            return double(
+                std::min({bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]}));
+        }
+    }
+}
+
+/// How a geom moves.
+struct MovingGeom {
+    dGeomID geom;
+    dBodyID body; ///< null: it stands
+    Vector3<double> velocity{0, 0, 0};
+    double turning = 0; ///< no point of it is faster than |velocity| and this [m/s]
+    double thickness = 0;
+    std::array<double, 6> bounds{}; ///< as ODE's
+
+    explicit MovingGeom(dGeomID of) : geom(of), body(dGeomGetBody(of)) {
+        std::array<dReal, 6> box{};
+        dGeomGetAABB(of, box.data());
+        std::copy(box.begin(), box.end(), bounds.begin());
+        thickness = detail::thickness(of);
+        if (body == nullptr || dBodyIsEnabled(body) == 0) return;
+        velocity = linear_velocity(body);
+        const Vector3<double> at = to_core(dBodyGetPosition(body));
+        double farthest = 0; // square
+        for (int k = 0; k < 3; ++k) {
+            const double low = bounds[std::size_t(2 * k)] - at[k],
+                         high = bounds[std::size_t(2 * k + 1)] - at[k];
+            farthest += std::max(low * low, high * high);
+        }
+        turning = norm(angular_velocity(body)) * std::sqrt(farthest);
+    }
+    [[nodiscard]] double speed() const { return norm(velocity) + turning; }
+    [[nodiscard]] bool may_reach(const MovingGeom& other, double way) const {
+        for (std::size_t k = 0; k < 6; k += 2) {
+            if (other.bounds[k] - way > bounds[k + 1] || other.bounds[k + 1] + way < bounds[k]) {
+                return false;
+            }
+        }
+        return true;
+    }
+    [[nodiscard]] bool may_touch(const MovingGeom& other) const {
+        const bool meant = (dGeomGetCategoryBits(geom) & dGeomGetCollideBits(other.geom)) != 0 ||
+                           (dGeomGetCategoryBits(other.geom) & dGeomGetCollideBits(geom)) != 0;
+        if (!meant || dGeomIsEnabled(geom) == 0 || dGeomIsEnabled(other.geom) == 0) return false;
+        if (body == other.body) return false;
+        return body == nullptr || other.body == nullptr ||
+               dAreConnectedExcluding(body, other.body, dJointTypeContact) == 0;
+    }
+};
+
+} // namespace detail
+
+DUCTILE_INLINE void ClosingContactsFinder::find_islands(
+    std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints) {
+    std::unordered_set<dBodyID> found;
+    std::unordered_set<dJointID> named;
+    for (const NamedContact& contact : contacts) named.insert(contact.joint);
+    island_.clear();
+    const auto add = [&](dBodyID body) {
+        if (can_move(body) && found.insert(body).second) island_.push_back(body);
+    };
+    for (const PlasticConstraint* joint : joints) {
+        if (joint->queries().broken() || dJointIsEnabled(joint->id()) == 0) continue;
+        for (const int side : {0, 1}) add(dJointGetBody(joint->id(), side));
+    }
+    for (std::size_t at = 0; at < island_.size(); ++at) {
+        const dBodyID body = island_[at];
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            if (dJointIsEnabled(joint) == 0) continue;
+            if (dJointGetType(joint) == dJointTypeContact && !named.contains(joint)) {
+                throw std::logic_error(
+                    "World.step: a contact of a body with plastic joints was not named: in a world "
+                    "with a tolerance all are made and named (add_contact) by what on_contacts was "
+                    "given");
+            }
+            for (const int side : {0, 1}) add(dJointGetBody(joint, side));
+        }
+    }
+    std::sort(island_.begin(), island_.end(), std::less<dBodyID>());
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(dBodyID body) const {
+    return std::binary_search(island_.begin(), island_.end(), body, std::less<dBodyID>());
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> contacts,
+                                                std::span<PlasticConstraint* const> joints) {
+    find_islands(contacts, joints);
+    touches_.clear();
+    pairs_.clear();
+    for (const NamedContact& named : contacts) {
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        if (!is_plastic(a) && !is_plastic(b)) continue;
+        pairs_.push_back(std::minmax(a, b, std::less<dBodyID>()));
+        const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
+        const Vector3<double> point = to_core(named.contact.geom.pos);
+        const Vector3<double> normal =
+            scaled(reversed ? -1 : 1, to_core(named.contact.geom.normal));
+        const Vector3<double> arm_a = detail::arm_of(a, point), arm_b = detail::arm_of(b, point);
+        const Vector3<double> of_a = sum(linear_velocity(a), cross(angular_velocity(a), arm_a));
+        const Vector3<double> of_b = sum(linear_velocity(b), cross(angular_velocity(b), arm_b));
+        const double speed = dot(normal, difference(of_b, of_a));
+        const double yields =
+            detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
+        if (!(speed > 0) || !(yields > 0)) continue;
+        touches_.push_back({closed_depth - double(named.contact.geom.depth), speed,
+                            speed * speed / (2 * yields), is_new});
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {
+    double largest = 0;
+    for (const NamedContact& named : contacts) {
+        const dJointFeedback* feedback = dJointGetFeedback(named.joint);
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        if (feedback == nullptr || (!is_plastic(a) && !is_plastic(b))) continue;
+        const double force = dot(to_core(feedback->f1), to_core(named.contact.geom.normal));
+        largest = std::max(largest, std::abs(force));
+    }
+    if (largest > 0) force_ = largest;
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
+    return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
+        return touch.gap < closed_depth / 2 && touch.energy > touching;
+    });
+}
+
+DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
+    double next = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches_) {
+        if (touch.gap < closed_depth / 2 || !(touch.energy > apart)) continue;
+        next = std::min(next, touch.gap / touch.speed);
+    }
+    return next;
+}
+
+DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double since, double apart) const {
+    constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
+    // of a first hit nobody knows yet how hard the contact will push
+    const double unmissed = closed_depth * (force_ > 0 ? 0.25 : 0.01);
+    double first = std::numeric_limits<double>::infinity();
+    for (const Touch& touch : touches_) {
+        const double overlap = -touch.gap, ago = overlap / touch.speed;
+        const bool counts = touch.energy > apart || force_ * overlap > pushed_out * apart;
+        if (!counts || !(overlap > unmissed)) continue;
+        if (!(ago < since) && !touch.is_new) continue;
+        first = std::min(first, past - std::min(ago, since));
+    }
+    return first;
+}
+
+DUCTILE_INLINE double ClosingContactsFinder::lengths(const ContactMaker& maker,
+                                                     std::span<const dBodyID> bodies,
+                                                     double h) const {
+    double result = 1;
+    const auto need = [&](double speed, double thickness) {
+        result = std::max(result, speed * h / (thickness / 2));
+    };
+    std::vector<detail::MovingGeom> here;
+    double fastest = 0, thinnest = maker.parameters().thickness;
+    for (dGeomID geom : maker.geoms()) {
+        const detail::MovingGeom& moving = here.emplace_back(geom);
+        fastest = std::max(fastest, moving.speed());
+        thinnest = std::min(thinnest, moving.thickness);
+    }
+    for (dBodyID body : bodies) {
+        if (dBodyIsEnabled(body) != 0) fastest = std::max(fastest, norm(linear_velocity(body)));
+    }
+    if (here.empty()) need(2 * fastest, thinnest);
+    if (!(2 * fastest * h > thinnest / 2)) return 1;
+    for (const detail::MovingGeom& one : here) {
+        if (!is_plastic(one.body)) continue;
+        for (const detail::MovingGeom& other : here) {
+            const double speed =
+                norm(difference(one.velocity, other.velocity)) + one.turning + other.turning;
+            const double thin =
+                std::min({one.thickness, other.thickness, maker.parameters().thickness});
+            if (!(speed * h > thin / 2) || !one.may_reach(other, speed * h)) continue;
+            if (one.may_touch(other)) need(speed, thin);
+        }
+    }
+    return result;
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of contact_maker.hpp.
+#pragma once
+
+#include <stdexcept>
+
+#include "ductile/ode/contact_maker.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE std::vector<dGeomID> geoms_of(dSpaceID space) {
+    std::vector<dGeomID> geoms;
+    const int count = dSpaceGetNumGeoms(space);
+    geoms.reserve(std::size_t(count));
+    for (int i = 0; i < count; ++i) geoms.push_back(dSpaceGetGeom(space, i));
+    return geoms;
+}
+[[nodiscard]] DUCTILE_INLINE dSpaceID as_space(dGeomID geom) {
+    return dGeomIsSpace(geom) != 0 ? reinterpret_cast<dSpaceID>(geom) : nullptr;
+}
+DUCTILE_INLINE void add_geoms_below(dSpaceID space, std::vector<dGeomID>& geoms) {
+    for (dGeomID geom : geoms_of(space)) {
+        const dSpaceID below = as_space(geom);
+        below != nullptr ? add_geoms_below(below, geoms) : geoms.push_back(geom);
+    }
+}
+
+} // namespace detail
+
+DUCTILE_INLINE ContactMaker::ContactMaker(const ContactParameters& parameters,
+                                          std::function<void()> make)
+    : parameters_(parameters), make_(std::move(make)) {
+    if (parameters_.group == nullptr) {
+        throw std::invalid_argument("World.on_contacts.group = null: must be a joint group");
+    }
+    if (!make_) throw std::invalid_argument("World.on_contacts.make: must not be empty");
+    if (!(parameters_.thickness > 0)) {
+        throw std::invalid_argument("World.on_contacts.thickness: must be > 0 [m]");
+    }
+}
+
+DUCTILE_INLINE void ContactMaker::make(std::span<const dBodyID> bodies) {
+    clear();
+    put_in_order(bodies);
+    struct AtWork {
+        bool& flag;
+        ~AtWork() { flag = false; }
+    } const at_work{making_};
+    making_ = true;
+    make_();
+}
+
+/// Geoms that are clean come to the front of their spaces as they are told that they moved.
+DUCTILE_INLINE void ContactMaker::put_in_order(std::span<const dBodyID> bodies) const {
+    if (parameters_.space == nullptr) return;
+    dSpaceClean(parameters_.space);
+    for (dBodyID body : bodies) {
+        const dReal* at = dBodyGetPosition(body);
+        dBodySetPosition(body, at[0], at[1], at[2]);
+    }
+}
+
+DUCTILE_INLINE std::vector<dGeomID> ContactMaker::geoms() const {
+    std::vector<dGeomID> geoms;
+    if (parameters_.space != nullptr) detail::add_geoms_below(parameters_.space, geoms);
+    return geoms;
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+//
+// An ODE world as a frame asks for it (frame/part_engine.hpp): parts, what they told, and the world
+// as it was before them.
+//
+//   part    half a step ahead (half_ahead.hpp), contacts there, a step of h, the rest of the way
+//   blow    a step of a nanosecond in which contacts of islands with plastic joints are closed and
+//           all others open; nothing is pushed apart, and nothing moves
+//   ERP, compliance of contacts by the length of the part (frame/part_settings.hpp), those that a
+//           contact has for itself too: its joint is then made once more
+//   damping of the bodies by its share for the part
+//   kinematic bodies go on with the velocity they had, to where the user's leads
+//           (world/driven_course.hpp)
+//
+// User's forces act in every part. Contacts are made for each part, and where gaps are looked for,
+// by who was given to World::on_contacts.
+//
+// Not thread-safe.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "ductile/frame/part_engine.hpp"
+#include "ductile/ode/closing_contacts.hpp"
+#include "ductile/ode/contact_maker.hpp"
+#include "ductile/ode/energy_meter.hpp"
+#include "ductile/ode/half_ahead.hpp"
+#include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/resting_islands.hpp"
+#include "ductile/ode/world_snapshot.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/driven_course.hpp"
+
+namespace ductile::ode {
+
+class WorldParts final : public PartEngine {
+  public:
+    /// What a World has, and what it does.
+    struct Parts {
+        dWorldID world;
+        const std::vector<dBodyID>& bodies; ///< all that move
+        const std::vector<PlasticConstraint*>& joints;
+        std::vector<NamedContact>& contacts; ///< of the coming step
+        std::optional<ContactMaker>& maker;
+        EnergyMeter& meter;
+        std::function<void(double)> solve; ///< ODE's step [s]
+        std::function<void(double)> book;  ///< it is what the joints did [s]
+        std::function<std::size_t(const PlasticConstraint&)> number;
+        std::function<void(double)> accept; ///< a part of this length stands [s]
+    };
+
+    explicit WorldParts(Parts parts) : of_(std::move(parts)) {}
+    ~WorldParts() { leave(); }
+    WorldParts(const WorldParts&) = delete;
+    WorldParts& operator=(const WorldParts&) = delete;
+
+    /// A frame of `length` [s] begins, with the forces that are applied for it.
+    void begin(double length);
+    /// It is over.
+    void end();
+
+    DUCTILE_INLINE void save() override;
+    DUCTILE_INLINE void put_back() override;
+    DUCTILE_INLINE const PartMotion& part(double h) override;
+    DUCTILE_INLINE const PartMotion& blow() override;
+    DUCTILE_INLINE void accept(double h) override;
+    [[nodiscard]] DUCTILE_INLINE ClosingContacts closing(double h, double touching,
+                                                         double apart) override;
+    [[nodiscard]] DUCTILE_INLINE double kinetic_energy() const override;
+
+  private:
+    class Settings;
+    struct Damped {
+        dBodyID body;
+        dReal linear, angular;
+    };
+
+    /// The user's velocity of a kinematic body is its mean one over the frame.
+    struct Driven {
+        dBodyID body;
+        BodyState<double> mean;
+        DrivenCourse course;
+    };
+
+    /// What a frame set is as it was.
+    void leave();
+    void begin_driven();
+    void drive(const Vector3<double>& velocity, const Vector3<double>& spin, dBodyID body) const;
+    void tick(double h, bool blow);
+    void damp(double share);
+    void drop_forces();
+    /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
+    /// back where that throws.
+    void look(const WorldSnapshot* moved = nullptr);
+    /// A contact's own ERP and compliance are those of the part.
+    void rule_contacts(double h, bool blow);
+    void open_others();
+    const PartMotion& tell();
+    [[nodiscard]] double next_gap(double h, double apart);
+
+    Parts of_;
+    double length_ = 1;               ///< of the frame [s]
+    double time_ = 0, kept_time_ = 0; ///< since it began [s]
+    std::vector<Driven> driven_, last_driven_;
+    HalfAhead half_ahead_;
+    HeldForces forces_;
+    std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
+    std::vector<Damped> damped_;
+    RestingIslands resting_;
+    WorldSnapshot snapshot_, looked_from_;
+    ClosingContactsFinder closing_;
+    bool looked_ = false; ///< where the bodies are, and as fast as they are
+    double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
+    double closed_ = 0;                                      ///< in the middle of the part [s]
+    PartMotion motion_;
+};
+
+} // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/world_parts.ipp"
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+//
+// What the joints of any engine tell a frame of their last part (frame/part_row.hpp).
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "ductile/frame/part_row.hpp"
+#include "ductile/joint/any_link.hpp"
+#include "ductile/joint/axis_joint.hpp"
+
+namespace ductile {
+
+/// Of what a row may be off by at rest, the speed that is as good as rest [-].
+inline constexpr double resting_share = 0.01;
+
+/// Adds a row for each plastic axis; `joint`: its number; `acts`: the part was solved with it.
+inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
+                          std::vector<PartRow>& rows) {
+    const double share = acts ? link.utilisation() : 0;
+    for (const JointAxis axis : link.axes()) {
+        const auto i = Eigen::Index(index(axis));
+        PartRow& row = rows.emplace_back();
+        row.joint = joint;
+        row.noise = resting_share * link.absolute_residual();
+        row.turning = link.turning_speed();
+        row.least = link.least_travel();
+        row.too_far = link.turned_too_far();
+        row.elastic = !link.all_rigid();
+        if (!acts) continue;
+        row.start = link.start_velocities()[i];
+        row.end = link.end_velocities()[i];
+        row.share = share;
+        row.strength = link.strength(axis);
+    }
+}
+
+/// Adds the row; `force`: that of the part [N | N m].
+inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint, bool acts,
+                         std::vector<PartRow>& rows) {
+    PartRow& row = rows.emplace_back();
+    row.joint = joint;
+    row.noise = resting_share * axis.allowed_residual(0);
+    row.least = axis.least_travel();
+    row.elastic = !axis.rigid();
+    if (!acts || axis.broken()) return;
+    row.start = axis.start_velocity();
+    row.end = axis.velocity();
+    row.strength = axis.strength(force > 0 ? -1 : 1);
+    row.share = row.strength > 0 ? std::abs(force) / row.strength : 0;
+}
+
+} // namespace ductile

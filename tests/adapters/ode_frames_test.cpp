@@ -1,0 +1,486 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames with a tolerance in ODE, with contacts of ODE's own shapes.
+#include <ode/ode.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "ductile/ode/ode.hpp"
+#include "support/throws.hpp"
+
+namespace {
+
+using namespace ductile;
+using ductile::test::message_of;
+using ode::Solver;
+using ode::World;
+using ode::WorldParameters;
+using Law = OneAxisJoint<Perfect<double>>;
+using Hinge = ode::PlasticHinge<Law>;
+using Slider = ode::PlasticSlider<Law>;
+using V3 = Vector3<double>;
+
+constexpr double all_frames[] = {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30};
+
+[[nodiscard]] Law law(double strength) { return Law(Perfect<double>({.strength = strength})); }
+
+/// A world with what a test puts into it.
+struct Rig {
+    struct Library {
+        Library() { dInitODE2(0); }
+        ~Library() { dCloseODE(); }
+        Library(const Library&) = delete;
+        Library& operator=(const Library&) = delete;
+    };
+    struct Engine {
+        Engine() = default;
+        ~Engine() {
+            dJointGroupDestroy(group);
+            dSpaceDestroy(space);
+            dWorldDestroy(id);
+        }
+        Engine(const Engine&) = delete;
+        Engine& operator=(const Engine&) = delete;
+        dWorldID id = dWorldCreate();
+        dSpaceID space = dHashSpaceCreate(nullptr);
+        dJointGroupID group = dJointGroupCreate(0);
+    };
+    Library library;
+    Engine engine;
+    World world;
+    double friction = 0, bounce = -1;
+    bool soft = false; ///< contacts have their own ERP and CFM
+    std::vector<std::unique_ptr<ode::PlasticConstraint>> joints;
+
+    explicit Rig(const WorldParameters& parameters = {.tolerance = 0.01,
+                                                      .rest_damping = 0,
+                                                      .warn = {}})
+        : world(engine.id, parameters) {
+        dRandSetSeed(0);
+        dWorldSetCFM(engine.id, 1e-13);
+        world.on_contacts({.space = engine.space, .group = engine.group},
+                          [this] { dSpaceCollide(engine.space, this, &Rig::near); });
+    }
+
+    static void near(void* data, dGeomID a, dGeomID b) {
+        auto& rig = *static_cast<Rig*>(data);
+        const dBodyID of_a = dGeomGetBody(a), of_b = dGeomGetBody(b);
+        if (of_a != nullptr && of_b != nullptr &&
+            dAreConnectedExcluding(of_a, of_b, dJointTypeContact) != 0) {
+            return;
+        }
+        dContactGeom points[8];
+        const int count = dCollide(a, b, 8, points, sizeof *points);
+        for (int i = 0; i < count; ++i) {
+            dContact contact{};
+            contact.surface.mode = dContactApprox1;
+            contact.surface.mu = dReal(rig.friction);
+            if (rig.bounce >= 0) {
+                contact.surface.mode |= dContactBounce;
+                contact.surface.bounce = dReal(rig.bounce);
+            }
+            if (rig.soft) {
+                contact.surface.mode |= dContactSoftERP | dContactSoftCFM;
+                contact.surface.soft_erp = dReal(0.8);
+                contact.surface.soft_cfm = dReal(1e-9);
+            }
+            contact.geom = points[i];
+            const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.group, &contact);
+            dJointAttach(joint, of_a, of_b);
+            rig.world.add_contact(joint, contact);
+        }
+    }
+
+    dBodyID body(double mass, const V3& inertia, const V3& at, dGeomID shape = nullptr,
+                 unsigned long group = 0, unsigned long mask = 0) {
+        const dBodyID body = dBodyCreate(engine.id);
+        dMass m;
+        dMassSetParameters(&m, dReal(mass), 0, 0, 0, dReal(inertia.x()), dReal(inertia.y()),
+                           dReal(inertia.z()), 0, 0, 0);
+        dBodySetMass(body, &m);
+        dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        if (shape != nullptr) {
+            dGeomSetBody(shape, body);
+            dGeomSetCategoryBits(shape, group);
+            dGeomSetCollideBits(shape, mask);
+        }
+        world.add(body);
+        return body;
+    }
+    [[nodiscard]] dGeomID box(double x, double y, double z) const { // half
+        return dCreateBox(engine.space, dReal(2 * x), dReal(2 * y), dReal(2 * z));
+    }
+    [[nodiscard]] dGeomID sphere(double radius) const {
+        return dCreateSphere(engine.space, dReal(radius));
+    }
+    Slider& slider(dBodyID a, const V3& axis, double strength) {
+        auto made = std::make_unique<Slider>(engine.id, a, nullptr, axis, law(strength));
+        Slider& result = *made;
+        joints.push_back(std::move(made));
+        world.add(result);
+        return result;
+    }
+    Hinge& hinge(dBodyID a, dBodyID b, const V3& anchor, double strength) {
+        auto made = std::make_unique<Hinge>(
+            engine.id, a, b, ode::HingeFrame{.anchor = anchor, .axis = {0, 0, 1}}, law(strength));
+        Hinge& result = *made;
+        joints.push_back(std::move(made));
+        world.add(result);
+        return result;
+    }
+    void set_gravity(double g) { dWorldSetGravity(engine.id, 0, dReal(-g), 0); }
+    /// Frames until `duration` [s] or more is over.
+    void run(double duration, double frame) {
+        while (world.time() < duration - 1e-9) world.step(frame);
+    }
+};
+
+[[nodiscard]] WorldParameters with(Solver solver) {
+    return {.solver = solver, .tolerance = 0.01, .rest_damping = 0, .warn = {}};
+}
+
+} // namespace
+
+TEST_CASE("Frames: a mass dropped on a crushing head, by ODE's own contact", "[frame]") {
+    constexpr double mass = 500, head_mass = 50, height = 2, strength = 30e3, g = 9.81;
+    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
+    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    for (const Solver solver : {Solver::direct, Solver::quick}) {
+        for (const double frame : all_frames) {
+            CAPTURE(solver, frame);
+            Rig rig(with(solver));
+            rig.set_gravity(g);
+            const dBodyID head =
+                rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+            rig.body(mass, V3(50, 50, 50), {0, 0.2 + height, 0}, rig.box(0.4, 0.1, 0.4), 2, 1);
+            const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+            rig.run(1.2, frame);
+            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(2e-3));
+            CHECK(-double(dBodyGetPosition(head)[1]) == Approx(crush).epsilon(5e-3));
+            CHECK(rig.world.run().believed());
+            CHECK(std::abs(rig.world.ledger().unexplained()) < 1e-6 * strength * crush);
+        }
+    }
+}
+
+TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests", "[frame]") {
+    // falls from a low height, so that in the part that ends there it still gains much of its speed
+    constexpr double mass = 500, head_mass = 50, height = 0.05, g = 9.81;
+    constexpr double fall = height + ode::closed_depth;
+    const double common = std::sqrt(2 * g * fall) * mass / (mass + head_mass);
+    for (const double frame : all_frames) {
+        for (const double strength : {30e3, 300e3}) {
+            CAPTURE(frame, strength);
+            const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+            Rig rig;
+            rig.set_gravity(g);
+            const dBodyID head =
+                rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+            rig.body(mass, V3(50, 50, 50), {0, 0.2 + height, 0}, rig.sphere(0.1), 2, 1);
+            const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+            rig.run(0.5, frame);
+            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(1e-3));
+            CHECK(rig.world.run().believed());
+            int solves = 0;
+            for (int i = 0; i < 12; ++i) {
+                rig.world.step(frame);
+                solves += rig.world.frame().solves();
+            }
+            CHECK(solves <= 24); // at rest: two a frame
+        }
+    }
+}
+
+TEST_CASE("Frames: a vehicle against a lamp post, by ODE's own contact", "[frame]") {
+    // bench/scenes/lamp_post.hpp has the closed form: M θ = E₁ + m_p g (L/2)(1 - cos θ)
+    constexpr double vehicle = 1000, speed = 10, bumper = 0.6, post = 60, length = 5;
+    constexpr double moment = 25e3, g = 9.81;
+    constexpr double inertia = post * length * length / 3;
+    constexpr double both = vehicle * bumper * bumper + inertia;
+    constexpr double after = vehicle * vehicle * speed * speed * bumper * bumper / (2 * both);
+    double angle = after / moment;
+    for (int i = 0; i < 100; ++i) {
+        angle = (after + post * g * length / 2 * (1 - std::cos(angle))) / moment;
+    }
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.set_gravity(g);
+        constexpr double half = 0.01;
+        const dBodyID rod = rig.body(post, V3(125, 1, 125), {0, length / 2, 0},
+                                     rig.box(half, length / 2, 0.1), 1, 2);
+        const dBodyID car = rig.body(vehicle, V3(100, 100, 100), {-0.3 - half - 0.02, bumper, 0},
+                                     rig.sphere(0.02), 2, 1);
+        dBodySetLinearVel(car, dReal(speed), 0, 0);
+        dBodySetGravityMode(car, 0);
+        const dJointID guide = dJointCreateSlider(rig.engine.id, nullptr);
+        dJointAttach(guide, car, nullptr);
+        dJointSetSliderAxis(guide, 1, 0, 0);
+        const Hinge& hinge = rig.hinge(rod, nullptr, {0, 0, 0}, moment);
+        rig.run(0.6, frame);
+        CHECK(hinge.plastic_rotation() == Approx(angle).epsilon(0.01));
+        CHECK(hinge.absorbed_energy() == Approx(moment * angle).epsilon(0.01));
+        CHECK(rig.world.run().believed());
+    }
+}
+
+namespace {
+
+/// Plastic work of a post of five hinges that balls of 100 kg strike [J].
+double work_of_balls(int balls, double speed, double frame, Solver solver) {
+    Rig rig(with(solver));
+    std::vector<dBodyID> pieces;
+    for (int i = 0; i < 5; ++i) {
+        pieces.push_back(rig.body(12, V3(0.482, 0.00964, 0.482), {0, 0.4 * i + 0.2, 0},
+                                  rig.box(0.05, 0.2, 0.05), 2, 4));
+        rig.hinge(pieces.back(), i == 0 ? nullptr : pieces[std::size_t(i - 1)], {0, 0.4 * i, 0},
+                  4000);
+    }
+    for (int i = 0; i < balls; ++i) {
+        const dBodyID ball = rig.body(100, V3(1.6, 1.6, 1.6), {-0.3 - 0.05 * i, 1.95 - 0.9 * i, 0},
+                                      rig.sphere(0.2), 4, 2);
+        dBodySetLinearVel(ball, dReal(speed), 0, 0);
+    }
+    const double energy = 50 * speed * speed * balls;
+    double most = 0;
+    while (rig.world.time() < 0.6 - 1e-9) {
+        rig.world.step(frame);
+        most = std::max(most, rig.world.ledger().held().kinetic);
+    }
+    CHECK(most <= energy * (1 + 1e-9));
+    CHECK(rig.world.run().believed());
+    CHECK(std::abs(rig.world.ledger().unexplained()) < 1e-6 * energy);
+    double work = 0;
+    for (const auto& joint : rig.joints) work += joint->queries().absorbed_energy();
+    return work;
+}
+
+} // namespace
+
+TEST_CASE("Frames: balls on a post of five hinges take the same at any frame", "[frame]") {
+    // plastic work at frames of 1 ms, within 0.1 % that of Bullet too (bullet_frames_test.cpp) [J]
+    struct Case {
+        int balls;
+        double speed, work, off;
+    };
+    for (const Case& scene :
+         {Case{1, 1, 46.391, 1e-3}, Case{1, 2, 185.42, 1e-3}, Case{1, 5, 1123.5, 1e-3},
+          Case{1, 20, 4551.8, 0.02}, Case{2, 1, 87.108, 1e-3}, Case{2, 2, 361.3, 1e-3},
+          Case{2, 5, 1965.8, 5e-3}, Case{2, 20, 9913.6, 0.02}}) {
+        for (const double frame : all_frames) {
+            CAPTURE(scene.balls, scene.speed, frame);
+            const double work = work_of_balls(scene.balls, scene.speed, frame, Solver::direct);
+            CHECK(work == Approx(scene.work).epsilon(scene.off));
+        }
+    }
+}
+
+TEST_CASE("Frames: motors of ODE's own joints that are plastic stop where they should", "[frame]") {
+    // a hinge tells its angle, an angular motor is summed up; the rotor turns by 1.225 rad
+    constexpr double inertia = 2, spin = 7, strength = 40, energy = inertia * spin * spin / 2;
+    for (const bool measured : {true, false}) {
+        for (const double frame : all_frames) {
+            CAPTURE(measured, frame);
+            Rig rig;
+            const dBodyID rotor = rig.body(1, V3(2, 2, 2), {0, 0, 0});
+            dBodySetAngularVel(rotor, 0, 0, dReal(spin));
+            const dJointID joint = measured ? dJointCreateHinge(rig.engine.id, nullptr)
+                                            : dJointCreateAMotor(rig.engine.id, nullptr);
+            dJointAttach(joint, rotor, nullptr);
+            if (measured) {
+                dJointSetHingeAxis(joint, 0, 0, 1);
+            } else {
+                dJointSetAMotorNumAxes(joint, 1);
+                dJointSetAMotorAxis(joint, 0, 0, 0, 0, 1);
+            }
+            auto made = std::make_unique<ode::PlasticMotor<Law>>(
+                measured ? ode::hinge_axis(joint) : ode::angular_motor_axis(joint, 0),
+                law(strength));
+            const ode::PlasticMotor<Law>& motor = *made;
+            rig.world.add(*made);
+            rig.joints.push_back(std::move(made));
+            rig.run(0.5, frame);
+            CHECK(motor.absorbed_energy() == Approx(energy).epsilon(1e-6));
+            CHECK(motor.position() == Approx(energy / strength).epsilon(1e-6));
+            CHECK(rig.world.run().believed());
+            CHECK(rig.world.run().parts <= rig.world.run().frames + 8);
+            CHECK(std::abs(rig.world.ledger().unexplained()) < 1e-9 * energy);
+        }
+    }
+}
+
+TEST_CASE("Frames: what is thin and fast does not pass unseen", "[frame]") {
+    // a ball of 1 kg at 300 m/s on a plate of 4 mm: it goes 10 m in a frame
+    constexpr double strength = 5e3, common = 300 / 3.0;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const dBodyID plate = rig.body(2, V3(1, 1, 1), {0, 0, 0}, rig.box(0.002, 0.5, 0.5), 1, 2);
+        const dBodyID ball = rig.body(1, V3(1, 1, 1), {-3, 0, 0}, rig.sphere(0.002), 2, 1);
+        dBodySetLinearVel(ball, 300, 0, 0);
+        const Slider& slider = rig.slider(plate, {1, 0, 0}, strength);
+        rig.run(0.2, frame);
+        CHECK(slider.absorbed_energy() == Approx(3 * common * common / 2).epsilon(1e-3));
+    }
+}
+
+TEST_CASE("Frames: a blow rebounds as the contact says", "[frame]") {
+    // u' of a ball of 1 kg that meets 3 kg at 8 m/s with e = 1/2: -1 and 3 m/s
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.bounce = 0.5;
+        const dBodyID block = rig.body(3, V3(1, 1, 1), {0, 0, 0}, rig.box(0.5, 0.5, 0.5), 1, 2);
+        const dBodyID ball = rig.body(1, V3(1, 1, 1), {-1, 0, 0}, rig.sphere(0.2), 2, 1);
+        dBodySetLinearVel(ball, 8, 0, 0);
+        const Slider& slider = rig.slider(block, {1, 0, 0}, 20);
+        rig.run(2, frame);
+        CHECK(double(dBodyGetLinearVel(ball)[0]) == Approx(-1).epsilon(1e-6));
+        CHECK(slider.absorbed_energy() == Approx(3 * 9 / 2.0).epsilon(1e-6));
+    }
+}
+
+TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about", "[frame]") {
+    constexpr double mass = 500, head_mass = 50, height = 1, strength = 30e3, g = 9.81;
+    constexpr double fall = height + ode::closed_depth;
+    const double common = std::sqrt(2 * g * fall) * mass / (mass + head_mass);
+    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    for (const bool guided : {false, true}) { // that island is ODE's
+        for (const double frame : all_frames) {
+            CAPTURE(guided, frame);
+            Rig rig;
+            rig.soft = true;
+            rig.set_gravity(g);
+            const dBodyID head =
+                rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+            const dBodyID block =
+                rig.body(mass, V3(50, 50, 50), {0, 0.2 + height, 0}, rig.sphere(0.1), 2, 1);
+            if (guided) {
+                const dJointID guide = dJointCreateSlider(rig.engine.id, nullptr);
+                dJointAttach(guide, block, nullptr);
+                dJointSetSliderAxis(guide, 0, 1, 0);
+            }
+            const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+            rig.run(1, frame);
+            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(5e-3));
+            CHECK(rig.world.run().believed());
+        }
+    }
+}
+
+TEST_CASE("Frames: damping is that of frames, however many parts they have", "[frame]") {
+    // ODE takes a share of the velocity in each step; the ball meets nothing, the rotor yields
+    const auto left = [](double tolerance) {
+        Rig rig({.tolerance = tolerance, .rest_damping = 0, .warn = {}});
+        const dBodyID ball = rig.body(1, V3(1, 1, 1), {0, 5, 0});
+        dBodySetLinearVel(ball, 1, 0, 0);
+        dBodySetLinearDamping(ball, dReal(0.02));
+        const dBodyID rotor = rig.body(1, V3(2, 2, 2), {0, 0, 0});
+        dBodySetAngularVel(rotor, 0, 0, 7);
+        rig.hinge(rotor, nullptr, {0, 0, 0}, 40);
+        rig.run(0.5, 1.0 / 60);
+        CHECK(double(dBodyGetLinearDamping(ball)) == Approx(0.02));
+        return double(dBodyGetLinearVel(ball)[0]);
+    };
+    CHECK(left(0.01) == Approx(std::pow(0.98, 30)).epsilon(1e-9));
+    CHECK(left(1e-5) == Approx(std::pow(0.98, 30)).epsilon(1e-9));
+}
+
+TEST_CASE("Frames: islands fall asleep as a whole, and what strikes wakes them", "[frame]") {
+    Rig rig;
+    rig.set_gravity(9.81);
+    rig.friction = 0.5;
+    dWorldSetCFM(rig.engine.id, dReal(1e-10));
+    const dGeomID floor = dCreatePlane(rig.engine.space, 0, 1, 0, 0);
+    dGeomSetCategoryBits(floor, 1);
+    dGeomSetCollideBits(floor, 6);
+    const dBodyID post = rig.body(50, V3(2, 2, 2), {0, 0.5, 0}, rig.box(0.05, 0.45, 0.05), 2, 4);
+    const Hinge& hinge = rig.hinge(post, nullptr, {0, 0.05, 0}, 4000);
+    const dBodyID lower = rig.body(10, V3(1, 1, 1), {3, 0.5, 0}, rig.box(0.5, 0.5, 0.5), 4, 7);
+    const dBodyID upper = rig.body(10, V3(1, 1, 1), {3, 1.5, 0}, rig.box(0.5, 0.5, 0.5), 4, 7);
+    for (const dBodyID body : {post, lower, upper}) {
+        dBodySetAutoDisableFlag(body, 1);
+        dBodySetAutoDisableTime(body, dReal(0.2));
+    }
+    const auto asleep = [](dBodyID body) { return dBodyIsEnabled(body) == 0; };
+    rig.run(3, 1.0 / 60);
+    CHECK(asleep(post));
+    CHECK(asleep(lower));
+    CHECK(asleep(upper));
+    CHECK(dBodyGetAutoDisableAverageSamplesCount(post) == 1); // as the user has it
+    const double asleep_energy = rig.world.ledger().booked(Account::sleep);
+    CHECK(asleep_energy >= 0);
+    CHECK(std::abs(rig.world.ledger().unexplained()) < 1e-6);
+    const dBodyID ball = rig.body(20, V3(1, 1, 1), {-1, 0.8, 0}, rig.sphere(0.2), 4, 2);
+    dBodySetGravityMode(ball, 0);
+    dBodySetLinearVel(ball, 6, 0, 0);
+    rig.run(3.5, 1.0 / 60);
+    CHECK(hinge.absorbed_energy() > 10);
+    CHECK(asleep(lower)); // no business of theirs
+}
+
+TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
+    using Catch::Matchers::Contains;
+    const auto contact_of = [](Rig& rig, dBodyID body, bool named) {
+        dContact contact{};
+        contact.geom.normal[1] = 1;
+        const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.group, &contact);
+        dJointAttach(joint, body, nullptr);
+        if (named) rig.world.add_contact(joint, contact);
+    };
+    {
+        Rig rig;
+        const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0, 0});
+        CHECK_THROWS_WITH(contact_of(rig, body, true), Contains("World.add_contact"));
+        CHECK_THROWS_WITH(rig.world.step(0.01), Contains("contacts before the step"));
+    }
+    {
+        Rig rig; // whose callback does not name them
+        const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0, 0});
+        dBodySetLinearVel(body, 0, 1, 0);
+        rig.slider(body, {0, 1, 0}, 1);
+        rig.world.on_contacts({.group = rig.engine.group}, [&] { contact_of(rig, body, false); });
+        CHECK_THROWS_WITH(rig.world.step(0.01), Contains("was not named"));
+        CHECK(dBodyGetPosition(body)[1] == 0); // as it was
+    }
+    {
+        Rig rig;
+        const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0, 0});
+        const dBodyID unknown = dBodyCreate(rig.engine.id);
+        const dJointID ball = dJointCreateBall(rig.engine.id, nullptr);
+        dJointAttach(ball, body, unknown);
+        CHECK_THAT(message_of([&] { rig.world.step(0.01); }), Contains("must have been added"));
+        rig.world.add(unknown);
+        CHECK_NOTHROW(rig.world.step(0.01));
+        const dBodyID with_geom = dBodyCreate(rig.engine.id);
+        dGeomSetBody(rig.sphere(0.1), with_geom);
+        CHECK_THAT(message_of([&] { rig.world.step(0.01); }), Contains("must have been added"));
+    }
+    Rig rig;
+    CHECK_THAT(message_of([&] { rig.world.on_contacts({}, [] {}); }), Contains("group = null"));
+    CHECK_THAT(message_of([&] { rig.world.on_contacts({.group = rig.engine.group}, {}); }),
+               Contains("on_contacts.make"));
+}
+
+TEST_CASE("Frames: figures of balls on a post", "[.][figures]") {
+    for (const Solver solver : {Solver::direct, Solver::quick}) {
+        for (const int balls : {1, 2}) {
+            for (const double speed : {1.0, 2.0, 5.0, 10.0, 20.0}) {
+                std::printf("%s, %d at %g m/s:", solver == Solver::direct ? "direct" : "quick",
+                            balls, speed);
+                for (const double frame :
+                     {1.0 / 30, 1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480, 1e-3}) {
+                    std::printf(" %.6g", work_of_balls(balls, speed, frame, solver));
+                    std::fflush(stdout);
+                }
+                std::printf("\n");
+            }
+        }
+    }
+}

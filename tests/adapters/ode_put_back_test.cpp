@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+//
+// An ODE world that was put back goes on bit for bit as one that never tried: a pile of 30 boxes
+// with friction, and beside it four pairs of boxes on a plastic hinge that slide, tip over and
+// yield.
+#include <ode/ode.h>
+
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "ductile/ode/ode.hpp"
+
+namespace {
+
+using namespace ductile;
+using Law = OneAxisJoint<Perfect<double>, TravelLimit<double>>;
+using Hinge = ode::PlasticHinge<Law>;
+
+constexpr double frame = 1.0 / 60;
+
+struct Options {
+    bool quick = false;  ///< QuickStep
+    bool hash = true;    ///< the space
+    double limit = 1e9;  ///< travel at which hinges break [rad]
+    bool motors = false; ///< in place of hinges PlasticMotors on ODE's own
+};
+
+/// The pile and its parts.
+struct Pile {
+    struct Engine {
+        explicit Engine(bool hash)
+            : space(hash ? dHashSpaceCreate(nullptr) : dSimpleSpaceCreate(nullptr)) {}
+        ~Engine() {
+            dJointGroupDestroy(group);
+            dSpaceDestroy(space);
+            dWorldDestroy(id);
+        }
+        Engine(const Engine&) = delete;
+        Engine& operator=(const Engine&) = delete;
+        dWorldID id = dWorldCreate();
+        dSpaceID space;
+        dJointGroupID group = dJointGroupCreate(0);
+    };
+
+    Options options;
+    Engine engine;
+    std::vector<dBodyID> bodies;
+    std::vector<std::unique_ptr<ode::PlasticConstraint>> owned;
+    std::vector<ode::PlasticConstraint*> joints;
+    std::vector<ode::NamedContact> contacts;
+    std::optional<ode::ContactMaker> maker;
+    ode::EnergyMeter meter{engine.id};
+    ode::IslandSolver islands;
+    ode::WorldParts parts{{.world = engine.id,
+                           .bodies = bodies,
+                           .joints = joints,
+                           .contacts = contacts,
+                           .maker = maker,
+                           .meter = meter,
+                           .solve = [this](double dt) { solve(dt); },
+                           .book = [this](double dt) { book(dt); },
+                           .number = [](const ode::PlasticConstraint&) { return 0u; },
+                           .accept =
+                               [this](double) {
+                                   for (auto* joint : joints) joint->stand();
+                               }}};
+    std::uint64_t seed = 7; ///< ODE has one for all worlds
+
+    explicit Pile(const Options& of) : options(of), engine(of.hash) {
+        dWorldSetGravity(engine.id, 0, dReal(-9.81), 0);
+        dWorldSetCFM(engine.id, dReal(1e-8));
+        dCreatePlane(engine.space, 0, 1, 0, 0);
+        for (int i = 0; i < 30; ++i) {
+            add({1.02 * (i % 3) + 0.1 * ((i / 3) % 2), 0.6 + 1.1 * (i / 3), 0.05 * (i % 2)});
+        }
+        for (int i = 0; i < 4; ++i) {
+            const double x = 12 + 4 * i;
+            add({x, 0.52, 0});
+            add({x, 1.62, 0});
+            const dBodyID below = bodies[bodies.size() - 2], above = bodies.back();
+            join(above, below, {x, 1.07, 0});
+            dBodySetLinearVel(below, dReal(1 + i), 0, dReal(0.3));
+            dBodySetAngularVel(above, 0, 0, dReal(0.5 * i));
+        }
+        dBodySetLinearVel(bodies[27], 3, 0, 1);
+        maker.emplace(ode::ContactParameters{.space = engine.space, .group = engine.group},
+                      [this] { dSpaceCollide(engine.space, this, &Pile::near); });
+        meter.open();
+    }
+
+    void add(const Vector3<double>& at) {
+        const dBodyID body = dBodyCreate(engine.id);
+        dMass mass;
+        dMassSetBoxTotal(&mass, 100, 1, 1, 1);
+        dBodySetMass(body, &mass);
+        dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        dGeomSetBody(dCreateBox(engine.space, 1, 1, 1), body);
+        bodies.push_back(body);
+        meter.add(body);
+    }
+    void join(dBodyID above, dBodyID below, const Vector3<double>& at) {
+        const Law law(Perfect<double>({.strength = 300}),
+                      TravelLimit<double>({.limit = options.limit}));
+        if (options.motors) {
+            const dJointID hinge = dJointCreateHinge(engine.id, nullptr);
+            dJointAttach(hinge, above, below);
+            dJointSetHingeAnchor(hinge, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+            dJointSetHingeAxis(hinge, 0, 0, 1);
+            owned.push_back(std::make_unique<ode::PlasticMotor<Law>>(ode::hinge_axis(hinge), law));
+        } else {
+            owned.push_back(std::make_unique<Hinge>(
+                engine.id, above, below, ode::HingeFrame{.anchor = at, .axis = {0, 0, 1}}, law));
+        }
+        joints.push_back(owned.back().get());
+        joints.back()->set_ahead(true);
+        islands.add(*joints.back());
+        meter.add(*joints.back());
+    }
+    static void near(void* data, dGeomID a, dGeomID b) {
+        auto& pile = *static_cast<Pile*>(data);
+        const dBodyID of_a = dGeomGetBody(a), of_b = dGeomGetBody(b);
+        if (of_a != nullptr && of_b != nullptr &&
+            dAreConnectedExcluding(of_a, of_b, dJointTypeContact) != 0) {
+            return;
+        }
+        dContactGeom points[8];
+        const int count = dCollide(a, b, 8, points, sizeof *points);
+        for (int i = 0; i < count; ++i) {
+            dContact contact{};
+            contact.surface.mode = dContactApprox1;
+            contact.surface.mu = dReal(0.6);
+            contact.geom = points[i];
+            const dJointID joint = dJointCreateContact(pile.engine.id, pile.engine.group, &contact);
+            dJointAttach(joint, of_a, of_b);
+            pile.contacts.push_back({joint, contact});
+        }
+    }
+    void solve(double dt) {
+        for (auto* joint : joints) joint->prepare(dt);
+        islands.before_step(contacts, dt, false);
+        options.quick ? dWorldQuickStep(engine.id, dReal(dt)) : dWorldStep(engine.id, dReal(dt));
+        islands.after_step();
+    }
+    void book(double dt) {
+        for (auto* joint : joints) joint->commit(dt);
+        for (auto* joint : joints) joint->finish();
+    }
+    /// A frame in `pieces` parts, after one of `trial` frames that is put back; 0: none.
+    void go(double trial, int pieces) {
+        dRandSetSeed(static_cast<unsigned long>(seed));
+        parts.begin(frame);
+        if (trial > 0) {
+            parts.save();
+            (void)parts.closing(trial * frame, 1, 1);
+            (void)parts.part(trial * frame);
+            parts.put_back();
+        }
+        for (int i = 0; i < pieces; ++i) {
+            parts.save();
+            (void)parts.part(frame / pieces);
+            parts.accept(frame / pieces);
+        }
+        parts.end();
+        seed = dRandGetSeed();
+    }
+
+    /// Of all places and velocities, and the joints' accounts, bit by bit.
+    [[nodiscard]] std::uint64_t hash() const {
+        std::uint64_t result = 1469598103934665603u;
+        const auto eat = [&result](const auto* values, int count) {
+            for (int i = 0; i < count; ++i) {
+                const auto value = double(values[i]);
+                std::uint64_t bits = 0;
+                std::memcpy(&bits, &value, sizeof bits);
+                result = (result ^ bits) * 1099511628211u;
+            }
+        };
+        for (const dBodyID body : bodies) {
+            eat(dBodyGetPosition(body), 3);
+            eat(dBodyGetQuaternion(body), 4);
+            eat(dBodyGetRotation(body), 12);
+            eat(dBodyGetLinearVel(body), 3);
+            eat(dBodyGetAngularVel(body), 3);
+        }
+        for (const auto* joint : joints) {
+            const double absorbed = joint->queries().absorbed_energy();
+            eat(&absorbed, 1);
+        }
+        const HeldEnergy<double> held = meter.ledger().held();
+        const double books[] = {held.kinetic, held.potential, meter.ledger().unexplained(),
+                                meter.ledger().booked(Account::friction)};
+        eat(books, 4);
+        return result;
+    }
+    [[nodiscard]] double absorbed() const {
+        double sum = 0;
+        for (const auto* joint : joints) sum += joint->queries().absorbed_energy();
+        return sum;
+    }
+};
+
+struct Library {
+    Library() { dInitODE2(0); }
+    ~Library() { dCloseODE(); }
+    Library(const Library&) = delete;
+    Library& operator=(const Library&) = delete;
+};
+
+/// Frames in which a world that tried first differs from one that did not.
+int frames_that_differ(const Options& options, double trial, int pieces, int frames) {
+    const Library library;
+    Pile plain(options), tried(options);
+    int differ = 0;
+    for (int i = 0; i < frames; ++i) {
+        plain.go(0, pieces);
+        tried.go(trial, pieces);
+        differ += plain.hash() != tried.hash();
+    }
+    CHECK(plain.absorbed() > 100); // the hinges yield
+    return differ;
+}
+
+} // namespace
+
+TEST_CASE("A pile that tried a frame and was put back goes on bit for bit", "[frame]") {
+    for (const bool quick : {false, true}) {
+        for (const bool hash : {false, true}) {
+            for (const double trial : {1.0, 4.0}) {
+                for (const int pieces : {1, 3}) {
+                    CAPTURE(quick, hash, trial, pieces);
+                    const int frames = quick ? 100 : 12;
+                    CHECK(frames_that_differ({.quick = quick, .hash = hash}, trial, pieces,
+                                             frames) == 0);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("A pile that broke a hinge in a trial has it again, bit for bit", "[frame]") {
+    for (const bool motors : {false, true}) {
+        CAPTURE(motors);
+        CHECK(frames_that_differ({.quick = true, .limit = 0.2, .motors = motors}, 16, 2, 100) == 0);
+    }
+}
+
+TEST_CASE("A pile with motors that are plastic goes on bit for bit", "[frame]") {
+    CHECK(frames_that_differ({.motors = true}, 1, 2, 12) == 0);
+    CHECK(frames_that_differ({.quick = true, .motors = true}, 4, 1, 100) == 0);
+}

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames with a tolerance on problems with known answers and without contacts, World({.tolerance =
+// 0.01}): compiled for every engine and precision (RIG_HEADER), and run with both of an engine's
+// solvers where it has two.
+#include RIG_HEADER
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "support/throws.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+constexpr bool rough = WorldRig::single;
+constexpr double all_frames[] = {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30};
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+[[nodiscard]] Joint law(double strength, double limit = 1e9, double stiffness = unlimited) {
+    return Joint(Perfect<double>({.strength = strength}), TravelLimit<double>({.limit = limit}),
+                 {.stiffness = stiffness});
+}
+
+struct Rig : WorldRig {
+    explicit Rig(bool iterative = false, double tolerance = 0.01, int budget = 256)
+        : WorldRig(iterative, tolerance, budget) {}
+    /// Frames until `duration` [s] or more is over.
+    void run(double duration, double frame) {
+        while (world().time() < duration - 1e-9) world().step(frame);
+    }
+};
+
+WorldRig::Body rotor(WorldRig& rig, double spin) {
+    const auto body = rig.body(1, V3::Constant(2), V3::Zero());
+    WorldRig::set_spin(body, V3(0, 0, spin));
+    return body;
+}
+
+} // namespace
+
+TEST_CASE("Frames: a rotor stops where it should, its energy in the hinge", "[frame]") {
+    constexpr double inertia = 2, spin = 7, strength = 40; // 49 J, 1.225 rad, 0.35 s
+    for (const bool iterative : {false, true}) {
+        for (const double frame : all_frames) {
+            CAPTURE(iterative, frame);
+            Rig rig(iterative);
+            const auto body = rotor(rig, spin);
+            auto& hinge = rig.hinge(body, nullptr, V3::Zero(), law(strength), "hinge");
+            rig.run(0.5, frame);
+            const double energy = inertia * spin * spin / 2;
+            CHECK(hinge.absorbed_energy() == Approx(energy).epsilon(rough ? 1e-4 : 1e-9));
+            CHECK(hinge.rotation() == Approx(energy / strength).epsilon(rough ? 1e-3 : 1e-6));
+            CHECK(std::abs(WorldRig::spin(body).z()) < (rough ? 1e-4 : 1e-9));
+            CHECK(rig.world().run().believed());
+            CHECK(std::abs(rig.world().ledger().unexplained()) < (rough ? 1e-3 : 1e-9) * energy);
+        }
+    }
+}
+
+TEST_CASE("Frames: a hinge breaks with the energy of its travel", "[frame]") {
+    constexpr double inertia = 2, spin = 7, strength = 40, limit = 0.4; // takes 16 of 49 J
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rotor(rig, spin);
+        auto& hinge = rig.hinge(body, nullptr, V3::Zero(), law(strength, limit), "hinge");
+        int broke = 0, yielded = 0;
+        rig.world().on_event([&](const auto& event) {
+            broke += event.kind == EventKind::broke;
+            yielded += event.kind == EventKind::yielded;
+        });
+        rig.run(0.2, frame);
+        CHECK(hinge.broken());
+        CHECK(broke == 1); // once, however often a part was done
+        CHECK(yielded == 1);
+        CHECK(hinge.absorbed_energy() == Approx(strength * limit).epsilon(rough ? 1e-4 : 1e-9));
+        const double left = std::sqrt(spin * spin - 2 * strength * limit / inertia);
+        CHECK(WorldRig::spin(body).z() == Approx(left).epsilon(rough ? 1e-4 : 1e-8));
+    }
+}
+
+TEST_CASE("Frames: an elastic row keeps its energy at any stiffness and frame", "[frame]") {
+    constexpr double mass = 10, speed = 2, strength = 1e7; // never yields
+    for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+            WorldRig::set_velocity(body, V3(speed, 0, 0));
+            auto& slider = rig.slider(body, V3(1, 0, 0), law(strength, 1e9, stiffness));
+            const double energy = mass * speed * speed / 2;
+            for (int i = 0; i < 100; ++i) {
+                rig.world().step(frame);
+                const double v = WorldRig::velocity(body).x();
+                const double now = mass * v * v / 2 + slider.stored_energy();
+                REQUIRE(now == Approx(energy).epsilon(rough ? 1e-3 : 1e-9));
+            }
+        }
+    }
+}
+
+TEST_CASE("Frames: an elastic-plastic row under a sudden load peaks where it should", "[frame]") {
+    // P04: a load of 0.75 of the strength at once: yields, peaks at
+    // q = q_y + m u²/(2 (R - F)) with m u²/2 = F q_y - k q_y²/2
+    constexpr double mass = 1000, strength = 1e4, load = 0.75 * strength;
+    for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+            auto& slider = rig.slider(body, V3(1, 0, 0), law(strength, 1e9, stiffness));
+            const double yield = strength / stiffness;
+            const double flow =
+                (load * yield - strength * yield / 2) / (strength - load); // beyond yield
+            const double period = 2 * std::numbers::pi * std::sqrt(mass / stiffness);
+            while (rig.world().time() < std::max(period, 2 * frame)) {
+                WorldRig::apply_force(body, V3(load, 0, 0));
+                rig.world().step(frame);
+            }
+            CHECK(slider.plastic_travel() == Approx(flow).epsilon(rough ? 0.03 : 0.02));
+            CHECK(slider.absorbed_energy() == Approx(strength * flow).epsilon(0.02));
+            CHECK(rig.world().run().believed());
+        }
+    }
+}
+
+TEST_CASE("Frames: a base that is driven by hand goes its way in parts too", "[frame]") {
+    // the base turns at 3 rad/s for 1 s, then stands: the rotor is dragged along at 2 rad/s², and
+    // brought to rest: 3 rad of slip
+    constexpr double strength = 4;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto base = rig.body(1, V3::Ones(), V3::Zero());
+        WorldRig::prescribe(base);
+        auto& hinge = rig.hinge(rotor(rig, 0), base, V3::Zero(), law(strength), "hinge");
+        const int frames = int(std::lround(3 / frame));
+        for (int i = 1; i <= frames; ++i) {
+            const bool turns = i * frame < 1 + 1e-9;
+            WorldRig::drive(base, 3 * std::min(1.0, i * frame), turns ? 3 : 0);
+            rig.world().step(frame);
+        }
+        CHECK(hinge.absorbed_energy() == Approx(3 * strength).epsilon(rough ? 1e-2 : 1e-6));
+    }
+}
+
+TEST_CASE("Frames: six elastic axes keep their energy at any stiffness and frame", "[frame]") {
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    for (const double stiffness : {1e3, 1e5, 1e7}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            const auto body = rig.body(10, V3::Ones(), V3::Zero());
+            WorldRig::set_velocity(body, V3(0.2, -0.1, 0.05));
+            WorldRig::set_spin(body, V3(0.1, 0.05, -0.02));
+            auto& link = rig.six_of(
+                body, UsualSixAxisJoint(Ellipsoid<double, 6>({.capacity = Vector6d::Constant(1e9)}),
+                                        Perfect<double>({.strength = 1}), TravelLimit<double>(),
+                                        {.stiffness = Vector6d::Constant(stiffness),
+                                         .damping_time = Vector6d::Zero()}));
+            double first = 0, least = 1e300, most = 0;
+            for (int i = 0; i < 200; ++i) {
+                rig.world().step(frame);
+                const HeldEnergy<double>& held = rig.world().ledger().held();
+                const double now = held.kinetic + link.stored_energy();
+                if (i == 0) first = now;
+                least = std::min(least, now);
+                most = std::max(most, now);
+            }
+            CHECK(link.absorbed_energy() == 0);
+            CHECK(most / least < 1 + (rough ? 1e-2 : 1e-3));
+            CHECK(first == Approx(10 * 0.0525 / 2 + 0.0129 / 2).epsilon(1e-3));
+        }
+    }
+}
+
+TEST_CASE("Frames: what the budget does not allow is said", "[frame]") {
+    Rig rig(false, 1e-3, 8);
+    std::vector<WorldRig::Body> rods;
+    for (int i = 0; i < 8; ++i) {
+        rods.push_back(rig.body(1, V3::Constant(0.1), V3(i + 0.5, 0, 0)));
+        rig.hinge(rods.back(), i == 0 ? nullptr : rods[std::size_t(i - 1)], V3(i, 0, 0), law(100),
+                  "hinge " + std::to_string(i));
+    }
+    WorldRig::set_velocity(rods.back(), V3(0, 10, 0));
+    rig.world().step(1.0 / 30);
+    CHECK(rig.world().frame().solves() <= 9);
+    CHECK(rig.world().frame().left.energy > 0);
+    CHECK_FALSE(rig.world().frame().joints.empty());
+    CHECK_FALSE(rig.world().run().believed());
+    CHECK(rig.world().time() == Approx(1.0 / 30));
+}
+
+TEST_CASE("Frames: parameters and frames are checked by name", "[frame]") {
+    using Catch::Matchers::Contains;
+    WorldRig plain(false);
+    CHECK_THROWS_AS(plain.world().run(), std::logic_error);
+    CHECK_THAT(message_of([] { Rig(false, -0.01); }),
+               Contains("World.tolerance = -0.01: must be finite and > 0"));
+    CHECK_THAT(message_of([] { Rig(false, 0.01, 1); }), Contains("World.budget = 1"));
+    Rig rig;
+    CHECK_THAT(message_of([&] { rig.world().step(0); }), Contains("World.step.dt = 0 s"));
+}
