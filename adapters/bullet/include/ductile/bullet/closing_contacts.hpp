@@ -11,7 +11,8 @@
 // beyond its closing, and what touches overlaps.
 //
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
-// is not asked for. An island is that of Bullet's last tick, and the bodies of the joints.
+// is not asked for; where nothing in the world could, nobody is. An island is that of Bullet's last
+// tick, and the bodies of the joints.
 //
 // Others know contacts before they touch, and these push so that the gap just closes at the end of
 // a part. Where bodies gain speed on the way, by their weight say, that takes the gain away, and
@@ -53,11 +54,23 @@ class ClosingContactsFinder {
     /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed before
     /// [s]; 0 where none did. Those that close with less energy than `apart` [J] do not count.
     /// Islands are those of the last `find`.
-    [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart) const;
+    [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart);
+
+    /// Whether a body is in an island with plastic joints.
+    [[nodiscard]] bool touches_plastic(btDiscreteDynamicsWorld& world, const btRigidBody& body) {
+        if (!found_islands_) find_islands(world);
+        return is_plastic(body);
+    }
 
   private:
+    /// Bounds of all bodies.
+    struct Fastest {
+        double speed;        ///< of any point of one that is awake [m/s]
+        double inverse_mass; ///< of the heaviest [1/kg]
+    };
+    [[nodiscard]] static Fastest find_fastest(const btDiscreteDynamicsWorld& world);
     void find_islands(btDiscreteDynamicsWorld& world);
-    void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least);
+    void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least, btScalar fastest);
     [[nodiscard]] bool is_plastic(const btRigidBody& body) const;
     /// A body of a member that contacts do not push.
     [[nodiscard]] bool is_still_member(const btCollisionObject& object) const;
@@ -71,6 +84,7 @@ class ClosingContactsFinder {
     std::vector<const btRigidBody*> joined_; ///< bodies of plastic joints, sorted
     std::vector<int> islands_;               ///< sorted
     std::vector<Pair> pairs_;
+    bool found_islands_ = false; ///< of the last `find`, which may need none
 };
 
 } // namespace ductile::bullet

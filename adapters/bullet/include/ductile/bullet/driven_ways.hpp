@@ -26,6 +26,7 @@ class DrivenWays {
     void begin(btDiscreteDynamicsWorld& world, btScalar length);
     /// Puts the bodies where they are `time` [s] after the frame's begin.
     void place(btScalar time);
+    [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
 
   private:
     struct Way {

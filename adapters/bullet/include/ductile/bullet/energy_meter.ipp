@@ -52,7 +52,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
 DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
     std::vector<MeteredPlasticJoint>& joints) const {
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const auto* plastic = dynamic_cast<const PlasticConstraint*>(world_.getConstraint(i));
+        const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
         joints.push_back(
             {&plastic->queries(), &plastic->getRigidBodyA(), &plastic->getRigidBodyB()});
@@ -77,10 +77,10 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const btTypedConstraint& constraint = *world_.getConstraint(i);
+        btTypedConstraint& constraint = *world_.getConstraint(i);
         const btJointFeedback* feedback = constraint.getJointFeedback();
         if (feedback == nullptr) continue;
-        const auto* plastic = dynamic_cast<const PlasticConstraint*>(&constraint);
+        const PlasticConstraint* plastic = as_plastic(constraint);
         joints.push_back(
             {&constraint, &constraint.getRigidBodyA(), &constraint.getRigidBodyB(),
              to_core(feedback->m_appliedForceBodyA), to_core(feedback->m_appliedTorqueBodyA),
@@ -125,8 +125,12 @@ DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody
 
 DUCTILE_INLINE void EnergyMeter::damp(MeteredBody& body, double dt) const {
     const auto& of = *static_cast<const btRigidBody*>(body.body);
-    body.velocity = scaled(std::pow(1 - double(of.getLinearDamping()), dt), body.velocity);
-    body.spin = scaled(std::pow(1 - double(of.getAngularDamping()), dt), body.spin);
+    if (of.getLinearDamping() != 0) {
+        body.velocity = scaled(std::pow(1 - double(of.getLinearDamping()), dt), body.velocity);
+    }
+    if (of.getAngularDamping() != 0) {
+        body.spin = scaled(std::pow(1 - double(of.getAngularDamping()), dt), body.spin);
+    }
 }
 
 } // namespace ductile::bullet

@@ -17,7 +17,7 @@ namespace ductile::bullet {
 /// To be called for each step, with what is applied for it.
 inline void share_forces(btDiscreteDynamicsWorld& world, const ForceShare& how) {
     for (int i = 0; i < world.getNumConstraints(); ++i) {
-        auto* plastic = dynamic_cast<PlasticConstraint*>(world.getConstraint(i));
+        PlasticConstraint* plastic = as_plastic(*world.getConstraint(i));
         if (plastic != nullptr) plastic->set_force_share(how);
     }
     if (how.value == 1) return;

@@ -69,6 +69,7 @@ class PlasticConstraint : public btTypedConstraint,
     void require_bodies_in_world() const;
     /// How the constraint's forces act in the coming ticks; of a World that leapfrogs.
     void set_force_share(const ForceShare& share) noexcept { force_share_ = share; }
+    [[nodiscard]] const ForceShare& force_share() const noexcept { return force_share_; }
     // ---- a structure's side (world/structures.hpp)
 
     [[nodiscard]] bool is_awake_member() const override { return is_awake(); }

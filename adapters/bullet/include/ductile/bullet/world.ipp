@@ -78,7 +78,8 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         [this](double h) {
             tell_of_members(); // what opened did so as the part began
             part_stands(h);
-        });
+        },
+        tells_ledger_);
 }
 
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
@@ -107,6 +108,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     keep(joint, [this, &joint] { forget(joint); });
     joints_.push_back(&joint);
     told_ = -1;
+    if (parts_ != nullptr) parts_->forget_numbers();
 }
 DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
     detail::look_after(
@@ -139,8 +141,7 @@ DUCTILE_INLINE void World::add(Member& member, std::string name) {
     require_members();
     front_->set_direct(&members_.direct());
     members_.add(member, [this, &member] { remove(member); });
-    supervisor().add(&member, std::move(name),
-                     [this, &member] { return members_.report(member); });
+    supervisor().add(&member, std::move(name), [this, &member] { return members_.report(member); });
 }
 DUCTILE_INLINE void World::remove(Member& member) {
     if (!members_.has(member)) return;
@@ -184,19 +185,23 @@ DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(detail::address(joint));
     if (meter_) meter_->forget(joint);
+    if (parts_ != nullptr) parts_->forget_numbers();
     sharing_.erase(&joint);
     std::erase(joints_, &joint);
 }
 
 DUCTILE_INLINE void World::share(const ForceShare& how) {
-    share_forces(world_, how);
+    bool told = how.ahead; // in every frame the same
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        auto* joint = dynamic_cast<PlasticConstraint*>(world_.getConstraint(i));
-        if (joint == nullptr || !sharing_.insert(joint).second) continue;
+        PlasticConstraint* joint = as_plastic(*world_.getConstraint(i));
+        if (joint == nullptr || (how.ahead && joint->force_share().ahead)) continue;
+        told = false;
+        if (!sharing_.insert(joint).second) continue;
         if (!supervisor().knows(detail::address(*joint))) {
             keep(*joint, [this, joint] { forget(*joint); });
         }
     }
+    if (!told) share_forces(world_, how);
 }
 
 DUCTILE_INLINE void World::require_leapfrog() const {

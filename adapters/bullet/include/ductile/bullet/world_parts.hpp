@@ -21,13 +21,17 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cstddef>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_forces.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
+#include "ductile/bullet/part_risk.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -45,7 +49,7 @@ class WorldParts final : public PartEngine {
     using Accept = std::function<void(double)>;
 
     WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter,
-               Members& members, Number number, Accept accept);
+               Members& members, Number number, Accept accept, bool keeps_ledger = true);
     ~WorldParts();
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
@@ -54,7 +58,10 @@ class WorldParts final : public PartEngine {
     void begin(double length);
     /// It is over.
     void end();
+    /// Joints have other numbers from now on.
+    void forget_numbers() noexcept { numbers_.clear(); }
 
+    [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;
     DUCTILE_INLINE const PartMotion& part(double h) override;
@@ -70,6 +77,8 @@ class WorldParts final : public PartEngine {
     /// Back to before it, with the sections open that it was beyond.
     void do_again();
     const PartMotion& tell();
+    /// `place`: of the joint among the world's constraints.
+    [[nodiscard]] std::size_t number(int place, const PlasticConstraint& joint);
 
     btDiscreteDynamicsWorld& world_;
     FrontHold& front_;
@@ -80,12 +89,19 @@ class WorldParts final : public PartEngine {
     HalfAhead half_ahead_;
     MeetingIslands* islands_; ///< the world's; null: it kept its own
     DrivenWays ways_;
-    double time_ = 0, kept_time_ = 0; ///< since the frame's begin [s]
+    double length_ = 0;               ///< of the frame [s]
+    double time_ = 0, kept_time_ = 0; ///< since its begin [s]
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
-    double apart_ = 0; ///< energy with which a gap has to close to count [J]
+    double apart_ = 0;    ///< energy with which a gap has to close to count [J]
+    bool closes_ = false; ///< a contact, as the last look ahead found
+    PartRisk risk_;
+    bool same_forces_ = false; ///< as in the last frame
+    bool keeps_ledger_;        ///< else only parts that are judged are metered
+    bool at_risk_ = true;      ///< the coming part
     PartMotion motion_;
+    std::vector<std::pair<const PlasticConstraint*, std::size_t>> numbers_; ///< by place
     bool forces_act_ = false; ///< they are applied for the coming tick
     bool pairs_were_sorted_;  ///< the user's setting
 };

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -23,6 +25,12 @@ struct SingleTick : btDiscreteDynamicsWorld {
         world.applyGravity();
         (world.*(&SingleTick::internalSingleStepSimulation))(h);
         world.clearForces();
+    }
+    /// Whether anybody is called in every tick, beside `actions`.
+    [[nodiscard]] static bool calls_others(const btDiscreteDynamicsWorld& world, int actions) {
+        return world.*(&SingleTick::m_internalTickCallback) != nullptr ||
+               world.*(&SingleTick::m_internalPreTickCallback) != nullptr ||
+               (world.*(&SingleTick::m_actions)).size() != actions;
     }
 };
 
@@ -56,7 +64,7 @@ class WorldParts::Settings {
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
                                       EnergyMeter& meter, Members& members, Number number,
-                                      Accept accept)
+                                      Accept accept, bool keeps_ledger)
     : world_(world),
       front_(front),
       meter_(meter),
@@ -66,6 +74,7 @@ DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold&
       half_ahead_(world),
       islands_(MeetingIslands::enter(world)),
       closing_(members),
+      keeps_ledger_(keeps_ledger),
       pairs_were_sorted_(world.getDispatchInfo().m_deterministicOverlappingPairs) {
     world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
 }
@@ -78,10 +87,11 @@ DUCTILE_INLINE WorldParts::~WorldParts() {
 }
 
 DUCTILE_INLINE void WorldParts::begin(double length) {
-    forces_.hold(world_);
+    same_forces_ = forces_.hold(world_);
     forces_act_ = true;
     ways_.begin(world_, btScalar(length));
     time_ = 0;
+    length_ = length;
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
@@ -96,6 +106,24 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
 }
 
 DUCTILE_INLINE void WorldParts::end() { world_.synchronizeMotionStates(); }
+
+DUCTILE_INLINE bool WorldParts::may_be_put_back() {
+    at_risk_ = closes_ || !same_forces_ || !members_.empty() || !ways_.empty();
+    if (at_risk_) return true;
+    int actions = 1; // half_ahead_'s, and one of each joint
+    bool risk = false;
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world_.getConstraint(i);
+        if (const PlasticConstraint* plastic = as_plastic(constraint)) {
+            ++actions;
+            risk = risk_.is_at_risk(i, *plastic, btScalar(length_)) || risk;
+        } else if (constraint.isEnabled()) {
+            risk = risk || closing_.touches_plastic(world_, constraint.getRigidBodyA()) ||
+                   closing_.touches_plastic(world_, constraint.getRigidBodyB());
+        }
+    }
+    return at_risk_ = risk || detail::SingleTick::calls_others(world_, actions);
+}
 
 DUCTILE_INLINE void WorldParts::save() {
     kept_time_ = time_;
@@ -114,18 +142,19 @@ DUCTILE_INLINE void WorldParts::put_back() {
 DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     if (!std::exchange(forces_act_, false)) forces_.apply();
     members_.apply_forces();
-    meter_.before_step();
+    const bool metered = keeps_ledger_ || at_risk_;
+    if (metered) meter_.before_step();
     if (ahead) {
         half_ahead_.move(btScalar(h), ways_, btScalar(time_));
         time_ += h;
-        meter_.bodies_ahead();
+        if (metered) meter_.bodies_ahead();
     }
     members_.before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), !ahead);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow);
     detail::SingleTick::go(world_, btScalar(h));
     front_.set_kind(TickKind::step);
-    meter_.after_step(double(btScalar(h)));
+    if (metered) meter_.after_step(double(btScalar(h)));
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
@@ -171,21 +200,35 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
         const std::size_t first = motion_.rows.size();
-        plastic->list_part_rows(number_(*plastic), motion_.rows);
+        plastic->list_part_rows(number(i, *plastic), motion_.rows);
         int section = 0;
-        if (members_.key_of(*plastic, section) != nullptr) {
+        if (!members_.empty() && members_.key_of(*plastic, section) != nullptr) {
             for (std::size_t k = first; k < motion_.rows.size(); ++k) {
                 motion_.rows[k].section = section + 1;
             }
         }
+        risk_.note(i, *plastic, std::span(motion_.rows).subspan(first));
         motion_.plastic_work += plastic->queries().absorbed_energy();
     }
     return motion_;
 }
 
+DUCTILE_INLINE std::size_t WorldParts::number(int place, const PlasticConstraint& joint) {
+    if (!members_.empty()) return number_(joint); // their joints come and go
+    if (numbers_.size() <= std::size_t(place)) numbers_.resize(std::size_t(place) + 1);
+    auto& [known, number] = numbers_[std::size_t(place)];
+    if (known != &joint) {
+        known = &joint;
+        number = number_(joint);
+    }
+    return number;
+}
+
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     apart_ = apart;
-    return closing_.find(world_, h, touching, apart);
+    const ClosingContacts found = closing_.find(world_, h, touching, apart);
+    closes_ = found.strikes || found.time < std::numeric_limits<double>::infinity();
+    return found;
 }
 
 DUCTILE_INLINE double WorldParts::kinetic_energy() const {
