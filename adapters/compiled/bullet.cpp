@@ -13,6 +13,8 @@
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/meeting_islands.ipp>
+#include <ductile/bullet/local_scope.ipp>
+#include <ductile/bullet/local_tick.ipp>
 #include <ductile/bullet/member.ipp>
 #include <ductile/bullet/member_snapshot.ipp>
 #include <ductile/bullet/member_tick.ipp>

@@ -125,6 +125,7 @@ TEST_CASE("Locality: what stands is not saved, and what somebody does to it is s
         (void)parts.closing(frame, 1e-9, 1e-9);
         const bool risk = parts.may_be_put_back();
         (void)parts.part(frame);
+        parts.end();
         return risk;
     };
     CHECK(at_risk()); // nothing is known of it
@@ -168,6 +169,7 @@ TEST_CASE("Locality: a motor beside a plastic joint is a risk, one far away is n
         (void)parts.closing(frame, 1e-9, 1e-9);
         const bool risk = parts.may_be_put_back();
         (void)parts.part(frame);
+        parts.end();
         return risk;
     };
     for (int i = 0; i < 3; ++i) (void)at_risk();
@@ -204,4 +206,148 @@ TEST_CASE("Locality: what hands and forces do to what stood is as exact as ever"
           Approx(energy + strength * travel).epsilon(rough ? 1e-4 : 1e-9));
     CHECK(site.world->run().believed());
     CHECK(std::abs(site.world->ledger().unexplained()) < (rough ? 1e-3 : 1e-9) * energy);
+}
+
+namespace {
+
+/// Of places and velocities, bit by bit.
+[[nodiscard]] std::uint64_t hash_of(const std::vector<btRigidBody*>& bodies) {
+    std::uint64_t result = 1469598103934665603u;
+    const auto eat = [&result](double value) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        result = (result ^ bits) * 1099511628211u;
+    };
+    for (const btRigidBody* body : bodies) {
+        for (int k = 0; k < 3; ++k) {
+            for (int j = 0; j < 3; ++j) eat(double(body->getWorldTransform().getBasis()[k][j]));
+            eat(double(body->getWorldTransform().getOrigin()[k]));
+            eat(double(body->getLinearVelocity()[k]));
+            eat(double(body->getAngularVelocity()[k]));
+        }
+    }
+    return result;
+}
+
+/// A post, a ball, and boxes in stacks of four that slide a little.
+struct Scene : Site {
+    std::vector<btRigidBody*> others, mine;
+    int events = 0, worst = 0;
+
+    Scene(int boxes, bool struck) {
+        for (int i = 0; i < boxes; ++i) {
+            const int stack = i / 4;
+            others.push_back(
+                &body(std::make_unique<btBoxShape>(
+                          btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))),
+                      100,
+                      {btScalar(4 + 1.5 * (stack % 16)), btScalar(0.5 + 1.02 * (i % 4)),
+                       btScalar(4 + 1.5 * (stack / 16))}));
+            others.back()->setLinearVelocity({btScalar(0.1) * btScalar(i % 3), 0, 0});
+        }
+        mine = post({0, 0, 0});
+        // nobody is there where it waits
+        mine.push_back(&ball({btScalar(-0.6), btScalar(struck ? 1.9 : 50), 0},
+                             {btScalar(struck ? 5 : 0), 0, 0}));
+        look_after();
+        world->on_event([this](const auto& event) { events += event.kind == EventKind::yielded; });
+    }
+    void step() {
+        world->step(frame);
+        worst = std::max(worst, world->frame().solves());
+    }
+};
+
+} // namespace
+
+TEST_CASE("Locality: others keep their bits while one island is done in parts", "[frame]") {
+    Scene struck(200, true), quiet(200, false);
+    int differ = 0;
+    for (int i = 0; i < 60; ++i) {
+        struck.step();
+        quiet.step();
+        differ += hash_of(struck.others) != hash_of(quiet.others);
+    }
+    CHECK(differ == 0);
+    CHECK(struck.worst > 8);
+    CHECK(quiet.worst == 1);
+    CHECK(struck.world->run().believed());
+    CHECK(std::abs(struck.world->ledger().unexplained()) < (rough ? 2 : 1e-6));
+}
+
+TEST_CASE("Locality: a post among a thousand boxes takes what it takes alone", "[frame]") {
+    Scene alone(0, true), among(1000, true);
+    int differ = 0;
+    for (int i = 0; i < 60; ++i) {
+        alone.step();
+        among.step();
+        differ += hash_of(alone.mine) != hash_of(among.mine);
+    }
+    CHECK(alone.work() > 1000);
+    CHECK(among.work() == alone.work());
+    CHECK(differ == 0);
+    CHECK(among.events == alone.events); // once each, however often a part was done
+    CHECK(among.world->ledger().booked(Account::plastic) ==
+          Approx(alone.work()).epsilon(rough ? 1e-5 : 1e-9));
+    CHECK(std::abs(among.world->ledger().unexplained()) < (rough ? 20 : 1e-6));
+}
+
+namespace {
+
+/// With one of these all is done again.
+struct Nothing final : btActionInterface {
+    void updateAction(btCollisionWorld*, btScalar) override {}
+    void debugDraw(btIDebugDraw*) override {}
+};
+
+/// A post that is bent into a tall box beside it, among others.
+struct Meeting : Site {
+    Nothing nothing;
+    btRigidBody* beside = nullptr;
+    std::vector<btRigidBody*> others;
+
+    Meeting(bool local, bool asleep) {
+        if (!local) engine.addAction(&nothing);
+        const auto tall = [this](const btVector3& place) {
+            btRigidBody& made = body(std::make_unique<btBoxShape>(
+                                         btVector3(btScalar(0.2), btScalar(0.9), btScalar(0.5))),
+                                     200, place);
+            others.push_back(&made);
+            return &made;
+        };
+        post({0, 0, 0});
+        beside = tall({btScalar(0.45), btScalar(0.9), 0});
+        for (int i = 0; i < 60; ++i)
+            tall({btScalar(6 + 2 * (i % 8)), btScalar(0.9), btScalar(4 + 2 * (i / 8))});
+        look_after();
+        for (btRigidBody* body : others) {
+            if (asleep) body->forceActivationState(ISLAND_SLEEPING);
+        }
+        for (int i = 0; i < 3; ++i) world->step(frame);
+        ball({btScalar(-0.6), btScalar(1.9), 0}, {5, 0, 0});
+        for (int i = 0; i < 40; ++i) world->step(frame);
+    }
+    ~Meeting() { engine.removeAction(&nothing); }
+};
+
+} // namespace
+
+TEST_CASE("Locality: islands that meet are one from then on", "[frame]") {
+    for (const bool asleep : {false, true}) {
+        CAPTURE(asleep);
+        const Meeting local(true, asleep), all(false, asleep);
+        CHECK(all.work() > 300);
+        CHECK(local.work() == Approx(all.work()).epsilon(0.02));
+        const auto tilt = [](const Meeting& of) {
+            return double(of.beside->getCenterOfMassPosition().x()) - 0.45;
+        };
+        CHECK(tilt(all) > 0.01);
+        CHECK(tilt(local) == Approx(tilt(all)).epsilon(0.1));
+        for (const Meeting* of : {&local, &all}) {
+            CHECK(std::abs(of->world->ledger().unexplained()) < (rough ? 5 : 1e-6));
+            CHECK(of->world->run().believed());
+        }
+        std::vector<btRigidBody*> far(local.others.begin() + 1, local.others.end());
+        for (const btRigidBody* body : far) CHECK(body->isActive() != asleep);
+    }
 }

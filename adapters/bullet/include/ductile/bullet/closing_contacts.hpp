@@ -30,9 +30,11 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -48,6 +50,12 @@ class ClosingContactsFinder {
   public:
     explicit ClosingContactsFinder(Members& members) : members_(members) {}
 
+    /// From now on it looks at these alone, and at what is static beside them; null: at all again.
+    void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
+    /// Bodies of pairs that the last `find` or `closed_early` found.
+    [[nodiscard]] std::span<const btRigidBody* const> found_bodies() const noexcept {
+        return found_bodies_;
+    }
     /// As PartEngine::closing. A member is struck like an island with plastic joints.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
@@ -68,7 +76,10 @@ class ClosingContactsFinder {
         double speed;        ///< of any point of one that is awake [m/s]
         double inverse_mass; ///< of the heaviest [1/kg]
     };
-    [[nodiscard]] static Fastest find_fastest(const btDiscreteDynamicsWorld& world);
+    [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world) const;
+    [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
+    void add_joint(const btTypedConstraint& constraint);
+    void note_found(const btCollisionObject& a, const btCollisionObject& b);
     void find_islands(btDiscreteDynamicsWorld& world);
     void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least, btScalar fastest);
     [[nodiscard]] bool is_plastic(const btRigidBody& body) const;
@@ -84,6 +95,8 @@ class ClosingContactsFinder {
     std::vector<const btRigidBody*> joined_; ///< bodies of plastic joints, sorted
     std::vector<int> islands_;               ///< sorted
     std::vector<Pair> pairs_;
+    const LocalScope* scope_ = nullptr;
+    std::vector<const btRigidBody*> found_bodies_;
     bool found_islands_ = false; ///< of the last `find`, which may need none
 };
 

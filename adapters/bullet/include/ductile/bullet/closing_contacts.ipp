@@ -96,6 +96,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
                                                            double touching, double apart) {
     ClosingContacts found;
     found_islands_ = false;
+    found_bodies_.clear();
     const double least = std::min(touching, apart);
     const Fastest fastest = find_fastest(world);
     if (4 * fastest.speed * fastest.speed <= 2 * fastest.inverse_mass * least) return found;
@@ -103,19 +104,34 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     if (joined_.empty() && members_.empty()) return found;
     list_pairs(world, btScalar(h), least, btScalar(fastest.speed));
     for (const Pair& pair : pairs_) {
-        detail::ClosestPoints points(found, touching, apart, pair.reach);
+        ClosingContacts of_pair;
+        detail::ClosestPoints points(of_pair, touching, apart, pair.reach);
         world.contactPairTest(pair.a, pair.b, points);
+        found.strikes = found.strikes || of_pair.strikes;
+        found.time = std::min(found.time, of_pair.time);
+        if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
     }
     return found;
 }
 
-DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamicsWorld& world)
+DUCTILE_INLINE void ClosingContactsFinder::note_found(const btCollisionObject& a,
+                                                      const btCollisionObject& b) {
+    for (const btCollisionObject* object : {&a, &b}) {
+        if (const btRigidBody* body = detail::pushed(*object)) found_bodies_.push_back(body);
+    }
+}
+
+DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
+    const btDiscreteDynamicsWorld& world) const {
+    return scope_ != nullptr ? scope_->bodies() : MovingBodies::all(world);
+}
+
+DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamicsWorld& world) const
     -> Fastest {
     btScalar speed = 0, inverse_mass = SIMD_INFINITY;
     detail::ShapeReach reach;
-    const auto& bodies = MovingBodies::of(world);
-    for (int i = 0; i < bodies.size(); ++i) {
-        const btRigidBody& body = *bodies[i];
+    for (const btRigidBody* each : bodies(world)) {
+        const btRigidBody& body = *each;
         if (body.getInvMass() > 0) inverse_mass = std::min(inverse_mass, body.getInvMass());
         if (!body.isActive()) continue;
         speed =
@@ -129,8 +145,13 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
     constexpr double earliest = 0.5; // of the part
     double first = h;
     btDispatcher& dispatcher = *world.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    const int count =
+        scope_ != nullptr ? int(scope_->manifolds().size()) : dispatcher.getNumManifolds();
+    found_bodies_.clear();
+    for (int i = 0; i < count; ++i) {
+        const btPersistentManifold& manifold = scope_ != nullptr
+                                                   ? *scope_->manifolds()[std::size_t(i)]
+                                                   : *dispatcher.getManifoldByIndexInternal(i);
         double impulse = 0;
         const btManifoldPoint* nearest = nullptr;
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
@@ -157,6 +178,7 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
         const double speed = 2 * double(nearest->getDistance()) / h;
         if (!(speed * speed > 2 * yields * apart)) continue;
         const double taken = impulse * yields;
+        note_found(a, b);
         first = std::min(first, h * std::max(earliest, 1 - taken / (2 * (speed + taken))));
     }
     return first < h ? first : 0;
@@ -166,16 +188,10 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld&
     found_islands_ = true;
     joined_.clear();
     islands_.clear();
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        const btTypedConstraint& constraint = *world.getConstraint(i);
-        if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled()) {
-            continue;
-        }
-        for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
-            if (detail::pushed(*body) == nullptr) continue;
-            joined_.push_back(body);
-            if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
-        }
+    if (scope_ != nullptr) {
+        for (const btTypedConstraint* constraint : scope_->constraints()) add_joint(*constraint);
+    } else {
+        for (int i = 0; i < world.getNumConstraints(); ++i) add_joint(*world.getConstraint(i));
     }
     const auto sort_once = [](auto& items) {
         std::sort(items.begin(), items.end());
@@ -183,6 +199,16 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld&
     };
     sort_once(joined_);
     sort_once(islands_);
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::add_joint(const btTypedConstraint& constraint) {
+    if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled())
+        return;
+    for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
+        if (detail::pushed(*body) == nullptr) continue;
+        joined_.push_back(body);
+        if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
+    }
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
@@ -198,6 +224,7 @@ DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObje
 DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
                                                       double least, btScalar fastest) {
     const auto& objects = world.getCollisionObjectArray();
+    const int count = scope_ != nullptr ? int(scope_->bodies().size()) : objects.size();
     detail::ShapeReach reach_of, reach_of_mate;
     constexpr btScalar margin = btScalar(1e-3);
     pairs_.clear();
@@ -209,8 +236,9 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         }
     } near;
     btOverlappingPairCache& cache = *world.getPairCache();
-    for (int i = 0; i < objects.size(); ++i) {
-        btRigidBody* body = btRigidBody::upcast(objects[i]);
+    for (int i = 0; i < count; ++i) {
+        btRigidBody* body =
+            scope_ != nullptr ? scope_->bodies()[std::size_t(i)] : btRigidBody::upcast(objects[i]);
         if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
             !(detail::pushed(*body) != nullptr ? is_plastic(*body) : is_still_member(*body))) {
             continue;
@@ -229,6 +257,10 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         for (btCollisionObject* other : near.found) {
             btRigidBody* mate = btRigidBody::upcast(other);
             if (other == body || other->getBroadphaseHandle() == nullptr) continue;
+            // where it is now is not where it was
+            if (scope_ != nullptr && !other->isStaticOrKinematicObject() && !scope_->has(*other)) {
+                continue;
+            }
             // seen from there
             if (still &&
                 (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {

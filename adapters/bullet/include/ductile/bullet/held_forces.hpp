@@ -42,7 +42,13 @@ class HeldForces {
         return held_ == before_;
     }
     void apply() const {
+        apply([](const btRigidBody&) { return true; });
+    }
+    /// To those of the bodies alone of which `is_meant`.
+    template <class IsMeant>
+    void apply(const IsMeant& is_meant) const {
         for (const auto& [body, force, torque] : held_) {
+            if (!is_meant(*body)) continue;
             body->applyCentralForce(force);
             body->applyTorque(torque);
         }

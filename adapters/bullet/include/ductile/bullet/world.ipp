@@ -77,7 +77,11 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         },
         [this](double h) {
             tell_of_members(); // what opened did so as the part began
-            part_stands(h);
+            if (parts_->is_local()) {
+                part_stands(h, [this](const void* joint) { return parts_->has_joint(joint); });
+            } else {
+                part_stands(h);
+            }
         },
         tells_ledger_);
 }
@@ -91,6 +95,9 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
 }
 DUCTILE_INLINE void World::end_frame() {
     parts_->end();
+    if (parts_->is_local()) { // the joints that were not done again
+        part_stands(0, [this](const void* joint) { return !parts_->has_joint(joint); });
+    }
     members_.drop_forces();
     tell_of_members();
 }

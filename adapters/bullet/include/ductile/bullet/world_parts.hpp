@@ -16,6 +16,20 @@
 // callbacks and actions are called for each tick, also of parts that are put back, and have to
 // allow that. Kinematic bodies go their way over the frame (driven_ways.hpp).
 //
+// Locality. Where little of the world may have to be put back, the first part is one of all, as
+// long as the frame. What was in trouble in it is put back alone, and done in parts by
+// local_tick.hpp, while the rest keeps what it has, bit for bit:
+//
+//   in trouble   islands, before or after that part, with a plastic row that moved, a joint that
+//                broke, a contact that closes; islands that these may reach within the frame
+//   touched      an island that such a part finds in contact with one in trouble, unforeseen, is
+//   put
+//                back to the frame's begin, brought to where the part begins by a part of its own,
+//                and comes along; the part is done again
+//
+// Not so with members, kinematic bodies, continuous collision, callbacks and actions, or worlds and
+// solvers of another kind, nor where half of the bodies are in trouble: then all is done again.
+//
 // Not thread-safe.
 #pragma once
 
@@ -30,6 +44,8 @@
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/local_scope.hpp"
+#include "ductile/bullet/local_tick.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/part_risk.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
@@ -58,6 +74,10 @@ class WorldParts final : public PartEngine {
     void begin(double length);
     /// It is over.
     void end();
+    /// True where the frame, since its begin or until the next one, does some islands again alone.
+    [[nodiscard]] bool is_local() const noexcept { return local_; }
+    /// Whether a joint, by its address as a constraint, is in one of those.
+    [[nodiscard]] bool has_joint(const void* joint) const { return scope_.has_joint(joint); }
     /// Joints have other numbers from now on.
     void forget_numbers() noexcept { numbers_.clear(); }
 
@@ -74,6 +94,24 @@ class WorldParts final : public PartEngine {
   private:
     class Settings;
     void tick(double h, bool ahead);
+    [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
+
+    // ---- islands that are done again alone
+
+    /// Once a frame, where something may have to be put back: whether that is done alone.
+    void decide();
+    void find_risk();
+    [[nodiscard]] bool is_little() const;
+    void try_all();
+    [[nodiscard]] std::vector<btRigidBody*> find_trouble();
+    void add_reached(std::vector<char>& chosen) const;
+    void narrow_to(LocalScope& scope);
+    void widen();
+    void go_back_alone(LocalScope& scope);
+    /// Bodies that the last tick touched come along; true where there were some, and the tick was
+    /// put back.
+    [[nodiscard]] bool join_touched();
+
     /// Back to before it, with the sections open that it was beyond.
     void do_again();
     const PartMotion& tell();
@@ -97,11 +135,23 @@ class WorldParts final : public PartEngine {
     double apart_ = 0;    ///< energy with which a gap has to close to count [J]
     bool closes_ = false; ///< a contact, as the last look ahead found
     PartRisk risk_;
-    bool same_forces_ = false; ///< as in the last frame
-    bool keeps_ledger_;        ///< else only parts that are judged are metered
-    bool at_risk_ = true;      ///< the coming part
+    bool same_forces_ = false;  ///< as in the last frame
+    bool keeps_ledger_;         ///< else only parts that are judged are metered
+    bool at_risk_ = true;       ///< something of the frame
+    bool looked_ = false;       ///< for that
+    bool calls_others_ = false; ///< callbacks and actions of the user's
     PartMotion motion_;
     std::vector<std::pair<const PlasticConstraint*, std::size_t>> numbers_; ///< by place
+    std::vector<std::size_t> first_row_;                                    ///< by place
+    std::vector<PartRow> rows_;                                             ///< of one joint
+    std::vector<const btRigidBody*> suspects_; ///< of joints at risk, and of contacts that close
+    std::vector<char> were_enabled_;           ///< by place, before the trial
+    WorldSnapshot frame_;                      ///< all, as the frame began
+    LocalScope scope_, joining_;
+    LocalTick local_tick_;
+    bool decided_ = false, local_ = false;
+    bool narrow_ = false;     ///< others look at the scope alone
+    double outside_work_ = 0; ///< plastic, of joints outside of the scope [J]
     bool forces_act_ = false; ///< they are applied for the coming tick
     bool pairs_were_sorted_;  ///< the user's setting
 };
