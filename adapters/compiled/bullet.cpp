@@ -3,21 +3,24 @@
 // What of the adapter for Bullet is compiled once (DUCTILE_COMPILED), in either precision.
 #include <ductile/bullet/bullet.hpp>
 
+#include <ductile/bullet/closing_contacts.ipp>
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/driven_body.ipp>
 #include <ductile/bullet/driven_ways.ipp>
 #include <ductile/bullet/energy_meter.ipp>
-#include <ductile/bullet/closing_contacts.ipp>
 #include <ductile/bullet/front_solver.ipp>
 #include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/meeting_islands.ipp>
+#include <ductile/bullet/local_scope.ipp>
+#include <ductile/bullet/local_tick.ipp>
 #include <ductile/bullet/member.ipp>
 #include <ductile/bullet/member_snapshot.ipp>
 #include <ductile/bullet/member_tick.ipp>
 #include <ductile/bullet/members.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
+#include <ductile/bullet/part_risk.ipp>
 #include <ductile/bullet/piece_maker.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>

@@ -23,7 +23,8 @@
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
 // Before a part: a contact that touches and closes gets a blow, at most three in one instant; a gap
-// that would close within the part ends it.
+// that would close within the part ends it. What cannot have to be put back is not saved; where
+// that proves wrong the part stands, and says so.
 // Budget: parts that were put back count. From half of it on what is allowed grows by
 // 10^(4 (used - 1/2)): a frame ends coarser and says so, as one last long part would be worse.
 //

@@ -132,7 +132,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     const bool at_gap = gap < h;
     if (at_gap) h = std::max(gap, detail::hair * shortest);
     if (left - h < shortest) h = left;
-    engine.save();
+    const bool saved = engine.may_be_put_back();
+    if (saved) engine.save();
     double first_error = 0;
     const double first = h;
     bool jump = false, at_event = at_gap;
@@ -145,7 +146,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries == 0) first_error = judged.error;
         const bool good =
             judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
-        const bool done = jump || spent() || tries > detail::most_tries || h <= shortest;
+        const bool done = jump || !saved || spent() || tries > detail::most_tries || h <= shortest;
         if (good || done) {
             stand(engine, motion, judged, h, at_event, jump);
             return h;

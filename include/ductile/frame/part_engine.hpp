@@ -41,6 +41,9 @@ struct ClosingContacts {
 
 class PartEngine {
   public:
+    /// False where the coming part will stand, as far as can be told before it: nothing is near its
+    /// strength, nothing closes, and nobody did anything. Then nothing is saved.
+    [[nodiscard]] virtual bool may_be_put_back() { return true; }
     /// Keeps all that a part may change, for one put_back or more, in place of what was kept.
     virtual void save() = 0;
     /// Everything is as it was at the last `save`, bit for bit.

@@ -114,9 +114,23 @@ class EnergyMeter {
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();
+    // ---- a step of some of the bodies (frames that do again what is in trouble alone)
+
+    /// Keeps what the step just booked needs to be taken back of some of its bodies.
+    void keep_step(double dt);
+    /// From now on the lists are of some of the bodies alone, or again of all (`all`). What the
+    /// others hold is taken to stay.
+    void narrow(bool all = false);
+    /// Takes back what the kept step booked of the bodies listed now, which are as it left them.
+    void take_back();
+    /// They were put elsewhere, by what is no step.
+    void moved_back();
     /// What plastic joints took beside their flow, damping and what they store, as booked in
     /// Account::joints [J].
     [[nodiscard]] double of_plastic_joints() const noexcept { return of_plastic_joints_; }
+    /// Of the last step alone: the same, and what contacts took. No sums that other bodies are in.
+    [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
+    [[nodiscard]] double step_of_contacts() const noexcept { return step_contact_; }
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;
 
@@ -149,6 +163,7 @@ class EnergyMeter {
     struct Course {
         MeteredBody start;                       ///< after damping
         double damped = 0;                       ///< [J]
+        double ahead = 0;                        ///< booked by bodies_ahead [J]
         Vector3<double> velocity_after{0, 0, 0}; ///< after the solve, before a break's release
         Vector3<double> spin_after{0, 0, 0};
         bool asleep_after = false;
@@ -157,6 +172,16 @@ class EnergyMeter {
     struct PlasticStart {
         double absorbed, damped, stored, released;
     };
+    /// A step as it is booked.
+    struct Record {
+        detail::AddressBook course_numbers, plastic_numbers;
+        std::vector<Course> courses;
+        std::vector<PlasticStart> plastic_start;
+        double dt = 0;
+    };
+    void swap_record() noexcept;
+    void book_lists(double dt);
+    void add(Account account, double energy) { ledger_.book(account, sign_ * energy); }
 
     [[nodiscard]] Course* course_of(const void* body);
     /// Null where it is no plastic joint of the step.
@@ -180,8 +205,12 @@ class EnergyMeter {
     };
 
     Kept kept_;
+    Record record_;
+    double sign_ = 1;            ///< -1: what is booked is taken back
+    HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
     double of_plastic_joints_ = 0;
+    double step_plastic_ = 0, step_contact_ = 0; ///< [J]
     HeldEnergy<double> last_;
     detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
@@ -35,7 +36,7 @@ DUCTILE_INLINE void EnergyMeter::open() {
 }
 
 DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
-    HeldEnergy<double> result;
+    HeldEnergy<double> result = outside_;
     plastic_.clear();
     list_plastic_joints(plastic_);
     // joints first: one that books its step now may give a break's energy back to its bodies
@@ -50,6 +51,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 }
 
 DUCTILE_INLINE void EnergyMeter::before_step() {
+    step_plastic_ = step_contact_ = 0;
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
     course_numbers_.clear();
@@ -100,7 +102,8 @@ DUCTILE_INLINE void EnergyMeter::bodies_ahead() {
         const Vector3<double> moved = difference(body.position, start.position);
         const double turning = detail::kinetic_energy(start, start.velocity, start.spin) -
                                detail::kinetic_energy(body, start.velocity, start.spin);
-        ledger_.book(Account::integration, dot(body.weight, moved) + turning);
+        course->ahead = dot(body.weight, moved) + turning;
+        ledger_.book(Account::integration, course->ahead);
         start.position = body.position;
         start.inertia = body.inertia;
     }
@@ -120,6 +123,13 @@ DUCTILE_INLINE void EnergyMeter::after_step(double dt) {
         course->asleep_after = body.asleep;
     }
     undo_releases();
+    book_lists(dt);
+    end_watch();
+    last_ = now;
+    ledger_.update(last_);
+}
+
+DUCTILE_INLINE void EnergyMeter::book_lists(double dt) {
     for (const MeteredBody& body : bodies_) {
         const Course* course = course_of(body.body);
         if (course != nullptr) book_body(*course, body, dt);
@@ -130,8 +140,46 @@ DUCTILE_INLINE void EnergyMeter::after_step(double dt) {
     contacts_.clear();
     list_contacts(dt, contacts_);
     for (const MeteredContact& contact : contacts_) book_contact(contact);
-    end_watch();
-    last_ = now;
+}
+
+// ---- a step of some of the bodies
+
+DUCTILE_INLINE void EnergyMeter::swap_record() noexcept {
+    std::swap(course_numbers_, record_.course_numbers);
+    std::swap(plastic_numbers_, record_.plastic_numbers);
+    courses_.swap(record_.courses);
+    plastic_start_.swap(record_.plastic_start);
+}
+
+DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
+    swap_record();
+    record_.dt = dt;
+}
+
+DUCTILE_INLINE void EnergyMeter::narrow(bool all) {
+    outside_ = {};
+    if (all) return;
+    const HeldEnergy<double> listed = held();
+    outside_ = {last_.kinetic - listed.kinetic, last_.potential - listed.potential,
+                last_.elastic - listed.elastic};
+}
+
+DUCTILE_INLINE void EnergyMeter::take_back() {
+    (void)held(); // lists them
+    swap_record();
+    sign_ = -1;
+    for (const MeteredBody& body : bodies_) {
+        if (const Course* course = course_of(body.body)) {
+            add(Account::integration, course->ahead);
+        }
+    }
+    book_lists(record_.dt, 1);
+    sign_ = 1;
+    swap_record();
+}
+
+DUCTILE_INLINE void EnergyMeter::moved_back() {
+    last_ = held();
     ledger_.update(last_);
 }
 
@@ -174,20 +222,20 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
     const MeteredBody& start = course.start;
     if (course.asleep_after) {
         if (!start.asleep) {
-            ledger_.book(Account::sleep, detail::kinetic_energy(start, start.velocity, start.spin));
+            add(Account::sleep, detail::kinetic_energy(start, start.velocity, start.spin));
         }
         return;
     }
     const Vector3<double> velocities = sum(start.velocity, course.velocity_after);
     const Vector3<double> spins = sum(start.spin, course.spin_after);
-    ledger_.supply(dt * (dot(start.force, velocities) + dot(start.torque, spins)) / 2);
+    ledger_.supply(sign_ * dt * (dot(start.force, velocities) + dot(start.torque, spins)) / 2);
 
     const Vector3<double> moved = difference(now.position, start.position);
     const double potential = dot(now.weight, moved) - dt * dot(now.weight, velocities) / 2;
     const Vector3<double>& w = course.spin_after;
     const double turning = (dot(w, times(start.inertia, w)) - dot(w, times(now.inertia, w))) / 2;
     const double gyroscopic = -dot(gyroscopic_impulse(start, dt), spins) / 2;
-    ledger_.book(Account::integration, course.damped + potential + turning + gyroscopic);
+    add(Account::integration, course.damped + potential + turning + gyroscopic);
 }
 
 /// Work that a force and a torque about the centre of mass do on a body over the step [J].
@@ -208,25 +256,30 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
     if (const PlasticStart* before = start_of(joint.plastic)) {
         const double flow = joint.plastic->absorbed_energy() - before->absorbed;
         const double damped = joint.plastic->damped_energy() - before->damped;
-        ledger_.book(Account::plastic, flow);
-        ledger_.book(Account::damping, damped);
+        add(Account::plastic, flow);
+        add(Account::damping, damped);
         // what a break released was taken by the row and given back after the solve; what was
         // stored then is set free inside the part
         named = flow + damped + joint.plastic->stored_energy() - before->stored +
                 joint.plastic->release().energy - before->released;
     }
-    ledger_.book(Account::joints, taken - named);
-    if (joint.plastic != nullptr) of_plastic_joints_ += taken - named;
+    add(Account::joints, taken - named);
+    if (joint.plastic != nullptr) {
+        of_plastic_joints_ += sign_ * (taken - named);
+        step_plastic_ += taken - named;
+    }
     const std::size_t number = taken_numbers_.enter(joint.joint);
     if (number == taken_.size()) taken_.push_back(0);
-    taken_[number] += taken;
+    taken_[number] += sign_ * taken;
 }
 
 DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {
     const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
                                              velocity_sum(contact.b, contact.point_b));
-    ledger_.book(Account::contact, -dot(contact.normal, twice) / 2);
-    ledger_.book(Account::friction, -dot(contact.tangential, twice) / 2);
+    const double taken = -dot(contact.normal, twice) / 2;
+    add(Account::contact, taken);
+    step_contact_ += taken;
+    add(Account::friction, -dot(contact.tangential, twice) / 2);
 }
 
 DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,

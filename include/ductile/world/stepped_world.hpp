@@ -88,9 +88,9 @@ class SteppedWorld : private JointKeeper {
     using JointKeeper::set_rest_damping;
     /// From the next step on a step is a frame.
     void start_in_frames(const FrameParameters& parameters) { frames_.emplace(parameters); }
-    /// A part of `h` [s], or a blow of none, stands.
-    void part_stands(double h) {
-        supervisor_.look(time() + h);
+    /// A part of `h` [s], or a blow of none, stands; of all joints, or those of which `whom`.
+    void part_stands(double h, const std::function<bool(const void*)>& whom = {}) {
+        supervisor_.look(time() + h, whom);
         look_at_structures();
     }
 

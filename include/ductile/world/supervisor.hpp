@@ -108,14 +108,16 @@ class Supervisor {
     /// Forgets the events of the last step.
     void open() noexcept { watch_.open(time_); }
 
-    /// Asks all joints after a step, or a part of one, that ended at `time` [s].
-    void look(double time) {
+    /// Asks all joints after a step, or a part of one, that ended at `time` [s]; those alone of
+    /// which `whom` where that is given.
+    void look(double time, const std::function<bool(const void*)>& whom = {}) {
         time_ = time;
         watch_.go_on(time);
         const Looking guard(looking_);
         const std::size_t here = joints_.size(); // a listener may add more
         for (std::size_t i = 0; i < here; ++i) {
             if (joints_[i].joint == nullptr || joints_[i].idle) continue;
+            if (whom && !whom(joints_[i].joint)) continue;
             const Report report = joints_[i].ask();
             watch_.see(joints_[i].number, report);
         }

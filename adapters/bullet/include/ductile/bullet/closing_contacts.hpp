@@ -11,7 +11,8 @@
 // beyond its closing, and what touches overlaps.
 //
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
-// is not asked for. An island is that of Bullet's last tick, and the bodies of the joints.
+// is not asked for; where nothing in the world could, nobody is. An island is that of Bullet's last
+// tick, and the bodies of the joints.
 //
 // Others know contacts before they touch, and these push so that the gap just closes at the end of
 // a part. Where bodies gain speed on the way, by their weight say, that takes the gain away, and
@@ -29,9 +30,11 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <span>
 #include <utility>
 #include <vector>
 
+#include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -47,17 +50,38 @@ class ClosingContactsFinder {
   public:
     explicit ClosingContactsFinder(Members& members) : members_(members) {}
 
+    /// From now on it looks at these alone, and at what is static beside them; null: at all again.
+    void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
+    /// Bodies of pairs that the last `find` or `closed_early` found.
+    [[nodiscard]] std::span<const btRigidBody* const> found_bodies() const noexcept {
+        return found_bodies_;
+    }
     /// As PartEngine::closing. A member is struck like an island with plastic joints.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
     /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed before
     /// [s]; 0 where none did. Those that close with less energy than `apart` [J] do not count.
     /// Islands are those of the last `find`.
-    [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart) const;
+    [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart);
+
+    /// Whether a body is in an island with plastic joints.
+    [[nodiscard]] bool touches_plastic(btDiscreteDynamicsWorld& world, const btRigidBody& body) {
+        if (!found_islands_) find_islands(world);
+        return is_plastic(body);
+    }
 
   private:
+    /// Bounds of all bodies.
+    struct Fastest {
+        double speed;        ///< of any point of one that is awake [m/s]
+        double inverse_mass; ///< of the heaviest [1/kg]
+    };
+    [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world) const;
+    [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
+    void add_joint(const btTypedConstraint& constraint);
+    void note_found(const btCollisionObject& a, const btCollisionObject& b);
     void find_islands(btDiscreteDynamicsWorld& world);
-    void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least);
+    void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least, btScalar fastest);
     [[nodiscard]] bool is_plastic(const btRigidBody& body) const;
     /// A body of a member that contacts do not push.
     [[nodiscard]] bool is_still_member(const btCollisionObject& object) const;
@@ -71,6 +95,9 @@ class ClosingContactsFinder {
     std::vector<const btRigidBody*> joined_; ///< bodies of plastic joints, sorted
     std::vector<int> islands_;               ///< sorted
     std::vector<Pair> pairs_;
+    const LocalScope* scope_ = nullptr;
+    std::vector<const btRigidBody*> found_bodies_;
+    bool found_islands_ = false; ///< of the last `find`, which may need none
 };
 
 } // namespace ductile::bullet

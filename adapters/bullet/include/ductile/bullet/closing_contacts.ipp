@@ -12,6 +12,7 @@
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/members.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
 
@@ -39,12 +40,28 @@ namespace detail {
     return body != nullptr ? double(body->computeImpulseDenominator(point, normal)) : 0.0;
 }
 
+/// From the centre of mass to the farthest point of a shape [m]; many bodies have one shape.
+class ShapeReach {
+  public:
+    [[nodiscard]] btScalar of(const btCollisionShape& shape) {
+        if (&shape != last_) {
+            btVector3 centre;
+            btScalar radius;
+            shape.getBoundingSphere(centre, radius);
+            reach_ = radius + centre.length();
+            last_ = &shape;
+        }
+        return reach_;
+    }
+
+  private:
+    const btCollisionShape* last_ = nullptr;
+    btScalar reach_ = 0;
+};
+
 /// No point of the body is faster than |v| plus this [m/s].
-[[nodiscard]] DUCTILE_INLINE btScalar turning_speed(const btRigidBody& body) {
-    btVector3 centre;
-    btScalar radius;
-    body.getCollisionShape()->getBoundingSphere(centre, radius);
-    return body.getAngularVelocity().length() * (radius + centre.length());
+[[nodiscard]] DUCTILE_INLINE btScalar turning_speed(const btRigidBody& body, ShapeReach& reach) {
+    return body.getAngularVelocity().length() * reach.of(*body.getCollisionShape());
 }
 
 struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
@@ -78,23 +95,63 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
 DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWorld& world, double h,
                                                            double touching, double apart) {
     ClosingContacts found;
+    found_islands_ = false;
+    found_bodies_.clear();
+    const double least = std::min(touching, apart);
+    const Fastest fastest = find_fastest(world);
+    if (4 * fastest.speed * fastest.speed <= 2 * fastest.inverse_mass * least) return found;
     find_islands(world);
     if (joined_.empty() && members_.empty()) return found;
-    list_pairs(world, btScalar(h), std::min(touching, apart));
+    list_pairs(world, btScalar(h), least, btScalar(fastest.speed));
     for (const Pair& pair : pairs_) {
-        detail::ClosestPoints points(found, touching, apart, pair.reach);
+        ClosingContacts of_pair;
+        detail::ClosestPoints points(of_pair, touching, apart, pair.reach);
         world.contactPairTest(pair.a, pair.b, points);
+        found.strikes = found.strikes || of_pair.strikes;
+        found.time = std::min(found.time, of_pair.time);
+        if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
     }
     return found;
 }
 
+DUCTILE_INLINE void ClosingContactsFinder::note_found(const btCollisionObject& a,
+                                                      const btCollisionObject& b) {
+    for (const btCollisionObject* object : {&a, &b}) {
+        if (const btRigidBody* body = detail::pushed(*object)) found_bodies_.push_back(body);
+    }
+}
+
+DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
+    const btDiscreteDynamicsWorld& world) const {
+    return scope_ != nullptr ? scope_->bodies() : MovingBodies::all(world);
+}
+
+DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamicsWorld& world) const
+    -> Fastest {
+    btScalar speed = 0, inverse_mass = SIMD_INFINITY;
+    detail::ShapeReach reach;
+    for (const btRigidBody* each : bodies(world)) {
+        const btRigidBody& body = *each;
+        if (body.getInvMass() > 0) inverse_mass = std::min(inverse_mass, body.getInvMass());
+        if (!body.isActive()) continue;
+        speed =
+            std::max(speed, body.getLinearVelocity().length() + detail::turning_speed(body, reach));
+    }
+    return {double(speed), double(inverse_mass)};
+}
+
 DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorld& world, double h,
-                                                          double apart) const {
+                                                          double apart) {
     constexpr double earliest = 0.5; // of the part
     double first = h;
     btDispatcher& dispatcher = *world.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    const int count =
+        scope_ != nullptr ? int(scope_->manifolds().size()) : dispatcher.getNumManifolds();
+    found_bodies_.clear();
+    for (int i = 0; i < count; ++i) {
+        const btPersistentManifold& manifold = scope_ != nullptr
+                                                   ? *scope_->manifolds()[std::size_t(i)]
+                                                   : *dispatcher.getManifoldByIndexInternal(i);
         double impulse = 0;
         const btManifoldPoint* nearest = nullptr;
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
@@ -108,6 +165,7 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
             }
         }
         if (nearest == nullptr) continue;
+        if (!found_islands_) find_islands(world);
         const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
         const btRigidBody *of_a = detail::pushed(a), *of_b = detail::pushed(b);
         const bool plastic = (of_a != nullptr && is_plastic(*of_a)) ||
@@ -120,24 +178,20 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
         const double speed = 2 * double(nearest->getDistance()) / h;
         if (!(speed * speed > 2 * yields * apart)) continue;
         const double taken = impulse * yields;
+        note_found(a, b);
         first = std::min(first, h * std::max(earliest, 1 - taken / (2 * (speed + taken))));
     }
     return first < h ? first : 0;
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld& world) {
+    found_islands_ = true;
     joined_.clear();
     islands_.clear();
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        const btTypedConstraint& constraint = *world.getConstraint(i);
-        if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled()) {
-            continue;
-        }
-        for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
-            if (detail::pushed(*body) == nullptr) continue;
-            joined_.push_back(body);
-            if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
-        }
+    if (scope_ != nullptr) {
+        for (const btTypedConstraint* constraint : scope_->constraints()) add_joint(*constraint);
+    } else {
+        for (int i = 0; i < world.getNumConstraints(); ++i) add_joint(*world.getConstraint(i));
     }
     const auto sort_once = [](auto& items) {
         std::sort(items.begin(), items.end());
@@ -147,9 +201,18 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld&
     sort_once(islands_);
 }
 
+DUCTILE_INLINE void ClosingContactsFinder::add_joint(const btTypedConstraint& constraint) {
+    if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled())
+        return;
+    for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
+        if (detail::pushed(*body) == nullptr) continue;
+        joined_.push_back(body);
+        if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
+    }
+}
+
 DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
-    return std::binary_search(joined_.begin(), joined_.end(), &body) ||
-           members_.is_member(body) ||
+    return std::binary_search(joined_.begin(), joined_.end(), &body) || members_.is_member(body) ||
            (body.getIslandTag() >= 0 &&
             std::binary_search(islands_.begin(), islands_.end(), body.getIslandTag()));
 }
@@ -159,15 +222,10 @@ DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObje
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
-                                                      double least) {
+                                                      double least, btScalar fastest) {
     const auto& objects = world.getCollisionObjectArray();
-    btScalar fastest = 0;
-    for (int i = 0; i < objects.size(); ++i) {
-        const btRigidBody* body = btRigidBody::upcast(objects[i]);
-        if (body == nullptr || body->isStaticObject() || !body->isActive()) continue;
-        fastest =
-            std::max(fastest, body->getLinearVelocity().length() + detail::turning_speed(*body));
-    }
+    const int count = scope_ != nullptr ? int(scope_->bodies().size()) : objects.size();
+    detail::ShapeReach reach_of, reach_of_mate;
     constexpr btScalar margin = btScalar(1e-3);
     pairs_.clear();
     struct Near final : btBroadphaseAabbCallback {
@@ -178,14 +236,15 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         }
     } near;
     btOverlappingPairCache& cache = *world.getPairCache();
-    for (int i = 0; i < objects.size(); ++i) {
-        btRigidBody* body = btRigidBody::upcast(objects[i]);
+    for (int i = 0; i < count; ++i) {
+        btRigidBody* body =
+            scope_ != nullptr ? scope_->bodies()[std::size_t(i)] : btRigidBody::upcast(objects[i]);
         if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
             !(detail::pushed(*body) != nullptr ? is_plastic(*body) : is_still_member(*body))) {
             continue;
         }
         const bool still = detail::pushed(*body) == nullptr;
-        const btScalar turning = detail::turning_speed(*body);
+        const btScalar turning = detail::turning_speed(*body, reach_of);
         const btScalar speed = body->getLinearVelocity().length() + turning;
         const double most = double(speed + fastest);
         if (!(most * most > 2 * double(body->getInvMass()) * least)) continue;
@@ -198,8 +257,13 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         for (btCollisionObject* other : near.found) {
             btRigidBody* mate = btRigidBody::upcast(other);
             if (other == body || other->getBroadphaseHandle() == nullptr) continue;
+            // where it is now is not where it was
+            if (scope_ != nullptr && !other->isStaticOrKinematicObject() && !scope_->has(*other)) {
+                continue;
+            }
             // seen from there
-            if (still && (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
+            if (still &&
+                (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
                 continue;
             }
             // both ways only once
@@ -210,8 +274,9 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
             const btVector3 away =
                 body->getLinearVelocity() -
                 (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
-            const btScalar closing = away.length() + turning +
-                                     (mate != nullptr ? detail::turning_speed(*mate) : btScalar(0));
+            const btScalar closing =
+                away.length() + turning +
+                (mate != nullptr ? detail::turning_speed(*mate, reach_of_mate) : btScalar(0));
             const double yields =
                 double(body->getInvMass()) +
                 (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);

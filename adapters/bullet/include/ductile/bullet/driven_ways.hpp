@@ -28,6 +28,7 @@ class DrivenWays {
     /// Puts the bodies where they are `time` [s] after the frame's begin, with the velocities that
     /// they have at `then`.
     void place(btScalar time, btScalar then);
+    [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
 
   private:
     struct Way {

@@ -25,6 +25,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ductile/bullet/local_scope.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
@@ -37,6 +38,8 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// Takes the feedback it lent away from the constraints again.
     ~EnergyMeter();
 
+    /// From now on it lists these alone; null: all again.
+    void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
     /// To be called for a constraint that leaves the world: takes back the feedback lent to it.
     void forget(btTypedConstraint& constraint);
     /// Energy that all rows of a constraint took from the bodies since the meter was made [J].
@@ -56,7 +59,15 @@ class EnergyMeter final : public ductile::EnergyMeter {
                                                                     double dt) const override;
     DUCTILE_INLINE void damp(MeteredBody& body, double dt) const override;
 
+    static void list_body(const btRigidBody& body, std::vector<MeteredBody>& bodies);
+    /// Of the scope.
+    template <class Visit>
+    void for_each_constraint(const Visit& visit) const;
+    static void list_contacts_of(const btPersistentManifold& manifold,
+                                 std::vector<MeteredContact>& contacts);
+
     btDiscreteDynamicsWorld& world_;
+    const LocalScope* scope_ = nullptr;
     std::unordered_map<const btTypedConstraint*, std::unique_ptr<btJointFeedback>> lent_;
 };
 

@@ -30,38 +30,54 @@ DUCTILE_INLINE void EnergyMeter::forget(btTypedConstraint& constraint) {
 }
 
 DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
+    if (scope_ != nullptr) {
+        for (const btRigidBody* body : scope_->bodies()) list_body(*body, bodies);
+        return;
+    }
     const auto& objects = world_.getCollisionObjectArray();
     for (int i = 0; i < objects.size(); ++i) {
         const btRigidBody* body = btRigidBody::upcast(objects[i]);
-        if (body == nullptr || body->isStaticOrKinematicObject()) continue;
-        const Matrix3<double> axes = to_core(body->getCenterOfMassTransform().getBasis());
-        MeteredBody& entry = bodies.emplace_back();
-        entry.body = body;
-        entry.position = to_core(body->getCenterOfMassPosition());
-        entry.velocity = to_core(body->getLinearVelocity());
-        entry.spin = to_core(body->getAngularVelocity());
-        entry.mass = double(body->getMass());
-        entry.inertia = sandwiched(axes, to_core(body->getLocalInertia()));
-        entry.weight = scaled(entry.mass, to_core(body->getGravity()));
-        entry.force = to_core(body->getTotalForce());
-        entry.torque = to_core(body->getTotalTorque());
-        entry.asleep = !body->isActive();
+        if (body != nullptr && !body->isStaticOrKinematicObject()) list_body(*body, bodies);
     }
+}
+
+template <class Visit>
+void EnergyMeter::for_each_constraint(const Visit& visit) const {
+    if (scope_ != nullptr) {
+        for (btTypedConstraint* constraint : scope_->constraints()) visit(*constraint);
+        return;
+    }
+    for (int i = 0; i < world_.getNumConstraints(); ++i) visit(*world_.getConstraint(i));
+}
+
+DUCTILE_INLINE void EnergyMeter::list_body(const btRigidBody& body,
+                                           std::vector<MeteredBody>& bodies) {
+    const Matrix3<double> axes = to_core(body.getCenterOfMassTransform().getBasis());
+    MeteredBody& entry = bodies.emplace_back();
+    entry.body = &body;
+    entry.position = to_core(body.getCenterOfMassPosition());
+    entry.velocity = to_core(body.getLinearVelocity());
+    entry.spin = to_core(body.getAngularVelocity());
+    entry.mass = double(body.getMass());
+    entry.inertia = sandwiched(axes, to_core(body.getLocalInertia()));
+    entry.weight = scaled(entry.mass, to_core(body.getGravity()));
+    entry.force = to_core(body.getTotalForce());
+    entry.torque = to_core(body.getTotalTorque());
+    entry.asleep = !body.isActive();
 }
 
 DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
     std::vector<MeteredPlasticJoint>& joints) const {
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const auto* plastic = dynamic_cast<const PlasticConstraint*>(world_.getConstraint(i));
-        if (plastic == nullptr) continue;
+    for_each_constraint([&joints](btTypedConstraint& constraint) {
+        const PlasticConstraint* plastic = as_plastic(constraint);
+        if (plastic == nullptr) return;
         joints.push_back(
             {&plastic->queries(), &plastic->getRigidBodyA(), &plastic->getRigidBodyB()});
-    }
+    });
 }
 
 DUCTILE_INLINE void EnergyMeter::watch_step() {
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
+    for_each_constraint([this](btTypedConstraint& constraint) {
         if (constraint.getJointFeedback() == nullptr) {
             auto& lent = lent_[&constraint];
             if (lent == nullptr) lent = std::make_unique<btJointFeedback>();
@@ -72,39 +88,48 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
         feedback.m_appliedTorqueBodyA.setZero();
         feedback.m_appliedForceBodyB.setZero();
         feedback.m_appliedTorqueBodyB.setZero();
-    }
+    });
 }
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const btTypedConstraint& constraint = *world_.getConstraint(i);
+    for_each_constraint([&joints](btTypedConstraint& constraint) {
         const btJointFeedback* feedback = constraint.getJointFeedback();
-        if (feedback == nullptr) continue;
-        const auto* plastic = dynamic_cast<const PlasticConstraint*>(&constraint);
+        if (feedback == nullptr) return;
+        const PlasticConstraint* plastic = as_plastic(constraint);
         joints.push_back(
             {&constraint, &constraint.getRigidBodyA(), &constraint.getRigidBodyB(),
              to_core(feedback->m_appliedForceBodyA), to_core(feedback->m_appliedTorqueBodyA),
              to_core(feedback->m_appliedForceBodyB), to_core(feedback->m_appliedTorqueBodyB),
              plastic != nullptr ? &plastic->queries() : nullptr});
-    }
+    });
 }
 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double /*dt*/,
                                                std::vector<MeteredContact>& contacts) const {
+    if (scope_ != nullptr) {
+        for (const btPersistentManifold* manifold : scope_->manifolds()) {
+            list_contacts_of(*manifold, contacts);
+        }
+        return;
+    }
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-        for (int j = 0; j < manifold.getNumContacts(); ++j) {
-            const btManifoldPoint& point = manifold.getContactPoint(j);
-            // the second one is zero where only one direction was solved (front_solver.hpp)
-            const btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                                      point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
-            contacts.push_back(
-                {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
-                 to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
-                 scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
-                 to_core(lateral)});
-        }
+        list_contacts_of(*dispatcher.getManifoldByIndexInternal(i), contacts);
+    }
+}
+
+DUCTILE_INLINE void EnergyMeter::list_contacts_of(const btPersistentManifold& manifold,
+                                                  std::vector<MeteredContact>& contacts) {
+    for (int j = 0; j < manifold.getNumContacts(); ++j) {
+        const btManifoldPoint& point = manifold.getContactPoint(j);
+        // the second one is zero where only one direction was solved (front_solver.hpp)
+        const btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                  point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
+        contacts.push_back(
+            {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
+             to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
+             scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
+             to_core(lateral)});
     }
 }
 
@@ -125,8 +150,12 @@ DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody
 
 DUCTILE_INLINE void EnergyMeter::damp(MeteredBody& body, double dt) const {
     const auto& of = *static_cast<const btRigidBody*>(body.body);
-    body.velocity = scaled(std::pow(1 - double(of.getLinearDamping()), dt), body.velocity);
-    body.spin = scaled(std::pow(1 - double(of.getAngularDamping()), dt), body.spin);
+    if (of.getLinearDamping() != 0) {
+        body.velocity = scaled(std::pow(1 - double(of.getLinearDamping()), dt), body.velocity);
+    }
+    if (of.getAngularDamping() != 0) {
+        body.spin = scaled(std::pow(1 - double(of.getAngularDamping()), dt), body.spin);
+    }
 }
 
 } // namespace ductile::bullet

@@ -16,6 +16,7 @@
 #include <BulletDynamics/Dynamics/btActionInterface.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <span>
 #include <vector>
 
 #include "ductile/bullet/driven_ways.hpp"
@@ -33,9 +34,11 @@ class HalfAhead final : public btActionInterface {
     HalfAhead(const HalfAhead&) = delete;
     HalfAhead& operator=(const HalfAhead&) = delete;
 
-    /// Moves all bodies that are awake half a step of `h` > 0 [s] ahead, for the coming tick, which
-    /// begins `time` [s] after the frame that `ways` are of.
-    void move(btScalar h, DrivenWays& ways, btScalar time);
+    /// Moves those of `bodies` that are awake half a step of `h` > 0 [s] ahead, for the coming
+    /// tick, which begins `time` [s] after the frame that `ways` are of.
+    void move(std::span<btRigidBody* const> bodies, btScalar h, DrivenWays& ways, btScalar time);
+    /// The rest of the way, in the tick; the same bodies.
+    void finish(std::span<btRigidBody* const> bodies, btScalar h);
 
     DUCTILE_INLINE void updateAction(btCollisionWorld* world, btScalar h) override;
     void debugDraw(btIDebugDraw* /*drawer*/) override {}
@@ -47,7 +50,7 @@ class HalfAhead final : public btActionInterface {
     };
 
     btDiscreteDynamicsWorld& world_;
-    std::vector<Middle> middles_; ///< in the order of the world's objects
+    std::vector<Middle> middles_; ///< in the order of the bodies
     bool moved_ = false;
     DrivenWays* ways_ = nullptr;
     btScalar end_ = 0; ///< of the tick, in its frame [s]

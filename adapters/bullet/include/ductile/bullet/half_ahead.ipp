@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ductile/bullet/half_ahead.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
 
@@ -21,10 +22,8 @@ struct ActionArray : btDiscreteDynamicsWorld {
 };
 
 /// A body that a tick moves; null for any other.
-[[nodiscard]] DUCTILE_INLINE btRigidBody* awake_body(btCollisionObject& object) {
-    btRigidBody* body = btRigidBody::upcast(&object);
-    const bool moves = body != nullptr && !body->isStaticOrKinematicObject() && body->isActive();
-    return moves ? body : nullptr;
+[[nodiscard]] DUCTILE_INLINE btRigidBody* awake_body(btRigidBody& body) {
+    return !body.isStaticOrKinematicObject() && body.isActive() ? &body : nullptr;
 }
 
 [[nodiscard]] DUCTILE_INLINE btTransform moved(const btRigidBody& body, const btTransform& from,
@@ -52,16 +51,16 @@ DUCTILE_INLINE void HalfAhead::leave() {
     actions.pop_back();
 }
 
-DUCTILE_INLINE void HalfAhead::move(btScalar h, DrivenWays& ways, btScalar time) {
+DUCTILE_INLINE void HalfAhead::move(std::span<btRigidBody* const> bodies, btScalar h,
+                                    DrivenWays& ways, btScalar time) {
     ways.place(time + h / 2, time + h);
     ways_ = &ways;
     end_ = time + h;
-    const auto& objects = world_.getCollisionObjectArray();
-    middles_.assign(std::size_t(objects.size()), {});
-    for (int i = 0; i < objects.size(); ++i) {
-        btRigidBody* body = detail::awake_body(*objects[i]);
+    middles_.assign(bodies.size(), {});
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        btRigidBody* body = detail::awake_body(*bodies[i]);
         if (body == nullptr) continue;
-        Middle& middle = middles_[std::size_t(i)];
+        Middle& middle = middles_[i];
         middle.body = body;
         middle.transform = detail::moved(*body, body->getCenterOfMassTransform(), h / 2);
         body->setCenterOfMassTransform(middle.transform);
@@ -70,17 +69,19 @@ DUCTILE_INLINE void HalfAhead::move(btScalar h, DrivenWays& ways, btScalar time)
 }
 
 DUCTILE_INLINE void HalfAhead::updateAction(btCollisionWorld* /*world*/, btScalar h) {
+    finish(MovingBodies::all(world_), h);
+}
+
+DUCTILE_INLINE void HalfAhead::finish(std::span<btRigidBody* const> bodies, btScalar h) {
     if (!std::exchange(moved_, false)) return;
     ways_->place(end_, end_);
-    const auto& objects = world_.getCollisionObjectArray();
-    for (int i = 0; i < objects.size(); ++i) {
-        btRigidBody* body = detail::awake_body(*objects[i]);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        btRigidBody* body = detail::awake_body(*bodies[i]);
         if (body == nullptr) continue;
-        const bool known = i < int(middles_.size()) && middles_[std::size_t(i)].body == body;
+        const bool known = i < middles_.size() && middles_[i].body == body;
         if (known) {
             const btScalar share = std::min(btScalar(0.5), body->getHitFraction());
-            body->setCenterOfMassTransform(
-                detail::moved(*body, middles_[std::size_t(i)].transform, share * h));
+            body->setCenterOfMassTransform(detail::moved(*body, middles_[i].transform, share * h));
         } else {
             body->setCenterOfMassTransform(
                 detail::moved(*body, body->getCenterOfMassTransform(), -h / 2));

@@ -8,6 +8,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btVector3.h>
 
+#include <utility>
 #include <vector>
 
 namespace ductile::bullet {
@@ -25,20 +26,29 @@ namespace ductile::bullet {
 /// Of rigid bodies. Not thread-safe. No body may leave the world between `hold` and `apply`.
 class HeldForces {
   public:
-    void hold(btCollisionWorld& world) {
+    /// True where there are the same as the last time.
+    bool hold(btCollisionWorld& world) {
+        std::swap(held_, before_);
         held_.clear();
         const auto& objects = world.getCollisionObjectArray();
         for (int i = 0; i < objects.size(); ++i) {
             btRigidBody* body = btRigidBody::upcast(objects[i]);
             if (body == nullptr || body->isStaticOrKinematicObject()) continue;
+            if (body->getTotalForce().isZero() && body->getTotalTorque().isZero()) continue;
             const btVector3 force = unweighted(body->getTotalForce(), body->getLinearFactor());
             const btVector3 torque = unweighted(body->getTotalTorque(), body->getAngularFactor());
-            if (force.isZero() && torque.isZero()) continue;
             held_.push_back({body, force, torque});
         }
+        return held_ == before_;
     }
     void apply() const {
+        apply([](const btRigidBody&) { return true; });
+    }
+    /// To those of the bodies alone of which `is_meant`.
+    template <class IsMeant>
+    void apply(const IsMeant& is_meant) const {
         for (const auto& [body, force, torque] : held_) {
+            if (!is_meant(*body)) continue;
             body->applyCentralForce(force);
             body->applyTorque(torque);
         }
@@ -48,9 +58,12 @@ class HeldForces {
     struct Held {
         btRigidBody* body;
         btVector3 force, torque;
+        [[nodiscard]] bool operator==(const Held& other) const {
+            return body == other.body && force == other.force && torque == other.torque;
+        }
     };
 
-    std::vector<Held> held_;
+    std::vector<Held> held_, before_;
 };
 
 } // namespace ductile::bullet

@@ -6,12 +6,20 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <cstddef>
+#include <span>
+
 namespace ductile::bullet {
 
 struct MovingBodies : btDiscreteDynamicsWorld {
     [[nodiscard]] static const btAlignedObjectArray<btRigidBody*>& of(
         const btDiscreteDynamicsWorld& world) {
         return world.*(&MovingBodies::m_nonStaticRigidBodies);
+    }
+    [[nodiscard]] static std::span<btRigidBody* const> all(const btDiscreteDynamicsWorld& world) {
+        const auto& bodies = of(world);
+        if (bodies.size() == 0) return {};
+        return {&bodies[0], std::size_t(bodies.size())};
     }
 };
 

@@ -68,6 +68,7 @@ class PlasticConstraint : public btTypedConstraint,
     void require_bodies_in_world() const;
     /// In the coming ticks the bodies are half a step ahead (half_ahead.hpp).
     void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
+    [[nodiscard]] bool is_ahead() const noexcept { return ahead_; }
     // ---- a structure's side (world/structures.hpp)
 
     [[nodiscard]] bool is_awake_member() const override { return is_awake(); }

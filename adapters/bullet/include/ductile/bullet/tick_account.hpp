@@ -33,6 +33,12 @@ class TickAccount {
 /// A joint of it.
 class TickMember : public SharesWork {
   public:
+    /// Of joints that were ticked without the rest of their world.
+    static void end_tick_of(std::span<TickMember* const> joints) {
+        for (TickMember* joint : joints) joint->end_tick();
+        share_work(joints, [joints] { return islands_of(joints); });
+        for (TickMember* joint : joints) joint->finish_tick();
+    }
     TickMember(const TickMember&) = delete;
     TickMember& operator=(const TickMember&) = delete;
 
@@ -58,15 +64,16 @@ class TickMember : public SharesWork {
             joint->end_tick();
             joint->ended_ = joint != this;
         }
-        share_work(std::span<TickMember* const>(all), [&all] {
-            std::vector<std::size_t> islands;
-            for (const TickMember* joint : all) islands.push_back(joint->island());
-            return islands;
-        });
+        share_work(std::span<TickMember* const>(all), [&all] { return islands_of(all); });
         for (TickMember* joint : all) joint->finish_tick();
     }
 
   private:
+    [[nodiscard]] static std::vector<std::size_t> islands_of(std::span<TickMember* const> joints) {
+        std::vector<std::size_t> islands;
+        for (const TickMember* joint : joints) islands.push_back(joint->island());
+        return islands;
+    }
     /// Worlds may be in several threads.
     [[nodiscard]] static std::shared_ptr<TickAccount> account_of(const btDynamicsWorld& world) {
         static std::mutex mutex;

@@ -75,8 +75,13 @@ DUCTILE_INLINE void World::start_frames(double tolerance, int budget) {
         },
         [this](double h) {
             tell_of_members(); // what opened did so as the part began
-            part_stands(h);
-        });
+            if (parts_->is_local()) {
+                part_stands(h, [this](const void* joint) { return parts_->has_joint(joint); });
+            } else {
+                part_stands(h);
+            }
+        },
+        tells_ledger_);
 }
 
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
@@ -88,6 +93,9 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
 }
 DUCTILE_INLINE void World::end_frame() {
     parts_->end();
+    if (parts_->is_local()) { // the joints that were not done again
+        part_stands(0, [this](const void* joint) { return !parts_->has_joint(joint); });
+    }
     members_.drop_forces();
     tell_of_members();
 }
@@ -104,6 +112,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
         [&] { joint.add_to(world_); });
     keep(joint, [this, &joint] { forget(joint); });
     joints_.push_back(&joint);
+    if (parts_ != nullptr) parts_->forget_numbers();
 }
 DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string name) {
     detail::look_after(
@@ -177,6 +186,7 @@ DUCTILE_INLINE void World::remove(MultiBodyPlasticConstraint& joint) {
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(detail::address(joint));
     if (meter_) meter_->forget(joint);
+    if (parts_ != nullptr) parts_->forget_numbers();
     told_ahead_.erase(&joint);
     std::erase(joints_, &joint);
 }
@@ -184,7 +194,7 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
 DUCTILE_INLINE void World::tell_ahead() {
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* joint = as_plastic(*world_.getConstraint(i));
-        if (joint == nullptr) continue;
+        if (joint == nullptr || joint->is_ahead()) continue; // in every frame the same
         joint->set_ahead(true);
         if (!told_ahead_.insert(joint).second) continue;
         if (!supervisor().knows(detail::address(*joint))) {

@@ -13,18 +13,38 @@
 // callbacks and actions are called for each tick, also of parts that are put back, and have to
 // allow that. Kinematic bodies go their way over the frame (driven_ways.hpp).
 //
+// Locality. Where little of the world may have to be put back, the first part is one of all, as
+// long as the frame. What was in trouble in it is put back alone, and done in parts by
+// local_tick.hpp, while the rest keeps what it has, bit for bit:
+//
+//   in trouble   islands, before or after that part, with a plastic row that moved, a joint that
+//                broke, a contact that closes; islands that these may reach within the frame
+//   touched      an island that such a part finds in contact with one in trouble, unforeseen, is
+//   put
+//                back to the frame's begin, brought to where the part begins by a part of its own,
+//                and comes along; the part is done again
+//
+// Not so with members, kinematic bodies, continuous collision, callbacks and actions, or worlds and
+// solvers of another kind, nor where half of the bodies are in trouble: then all is done again.
+//
 // Not thread-safe.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cstddef>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/local_scope.hpp"
+#include "ductile/bullet/local_tick.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
+#include "ductile/bullet/part_risk.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -42,7 +62,7 @@ class WorldParts final : public PartEngine {
     using Accept = std::function<void(double)>;
 
     WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter,
-               Members& members, Number number, Accept accept);
+               Members& members, Number number, Accept accept, bool keeps_ledger = true);
     ~WorldParts();
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
@@ -51,7 +71,14 @@ class WorldParts final : public PartEngine {
     void begin(double length);
     /// It is over.
     void end();
+    /// True where the frame, since its begin or until the next one, does some islands again alone.
+    [[nodiscard]] bool is_local() const noexcept { return local_; }
+    /// Whether a joint, by its address as a constraint, is in one of those.
+    [[nodiscard]] bool has_joint(const void* joint) const { return scope_.has_joint(joint); }
+    /// Joints have other numbers from now on.
+    void forget_numbers() noexcept { numbers_.clear(); }
 
+    [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;
     DUCTILE_INLINE const PartMotion& part(double h) override;
@@ -64,9 +91,29 @@ class WorldParts final : public PartEngine {
   private:
     class Settings;
     void tick(double h, bool ahead);
+    [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
+
+    // ---- islands that are done again alone
+
+    /// Once a frame, where something may have to be put back: whether that is done alone.
+    void decide();
+    void find_risk();
+    [[nodiscard]] bool is_little() const;
+    void try_all();
+    [[nodiscard]] std::vector<btRigidBody*> find_trouble();
+    void add_reached(std::vector<char>& chosen) const;
+    void narrow_to(LocalScope& scope);
+    void widen();
+    void go_back_alone(LocalScope& scope);
+    /// Bodies that the last tick touched come along; true where there were some, and the tick was
+    /// put back.
+    [[nodiscard]] bool join_touched();
+
     /// Back to before it, with the sections open that it was beyond.
     void do_again();
     const PartMotion& tell();
+    /// `place`: of the joint among the world's constraints.
+    [[nodiscard]] std::size_t number(int place, const PlasticConstraint& joint);
 
     btDiscreteDynamicsWorld& world_;
     FrontHold& front_;
@@ -77,13 +124,31 @@ class WorldParts final : public PartEngine {
     HalfAhead half_ahead_;
     MeetingIslands* islands_; ///< the world's; null: it kept its own
     DrivenWays ways_;
-    double time_ = 0, kept_time_ = 0; ///< since the frame's begin [s]
-    double frame_ = 1;                ///< its length [s]
+    double length_ = 0;               ///< of the frame [s]
+    double time_ = 0, kept_time_ = 0; ///< since its begin [s]
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
-    double apart_ = 0; ///< energy with which a gap has to close to count [J]
+    double apart_ = 0;    ///< energy with which a gap has to close to count [J]
+    bool closes_ = false; ///< a contact, as the last look ahead found
+    PartRisk risk_;
+    bool same_forces_ = false;  ///< as in the last frame
+    bool keeps_ledger_;         ///< else only parts that are judged are metered
+    bool at_risk_ = true;       ///< something of the frame
+    bool looked_ = false;       ///< for that
+    bool calls_others_ = false; ///< callbacks and actions of the user's
     PartMotion motion_;
+    std::vector<std::pair<const PlasticConstraint*, std::size_t>> numbers_; ///< by place
+    std::vector<std::size_t> first_row_;                                    ///< by place
+    std::vector<PartRow> rows_;                                             ///< of one joint
+    std::vector<const btRigidBody*> suspects_; ///< of joints at risk, and of contacts that close
+    std::vector<char> were_enabled_;           ///< by place, before the trial
+    WorldSnapshot frame_;                      ///< all, as the frame began
+    LocalScope scope_, joining_;
+    LocalTick local_tick_;
+    bool decided_ = false, local_ = false;
+    bool narrow_ = false;     ///< others look at the scope alone
+    double outside_work_ = 0; ///< plastic, of joints outside of the scope [J]
     bool forces_act_ = false; ///< they are applied for the coming tick
     bool pairs_were_sorted_;  ///< the user's setting
 };

@@ -30,18 +30,28 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
+#include "ductile/bullet/local_scope.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
 class WorldSnapshot {
   public:
-    /// `solver`: who solves what is no plastic joint's.
-    void take(btDiscreteDynamicsWorld& world, btConstraintSolver& solver);
-    /// To what was last taken.
-    void put_back(btDiscreteDynamicsWorld& world, btConstraintSolver& solver);
+    /// `solver`: who solves what is no plastic joint's. `scope`: of what alone; null: of all.
+    void take(btDiscreteDynamicsWorld& world, btConstraintSolver& solver,
+              const LocalScope* scope = nullptr);
+    /// To what was last taken, which may be more than what of it is put back: `scope`, as there.
+    /// `collide` looks for the contacts of the scope's bodies.
+    void put_back(btDiscreteDynamicsWorld& world, btConstraintSolver& solver,
+                  LocalScope* scope = nullptr, const std::function<void()>& collide = {});
+    /// What island each body was in, of all bodies that move if all were taken.
+    template <class Tell>
+    void tell_islands(const Tell& tell) const {
+        for (const Body& body : bodies_) tell(*body.body, body.island);
+    }
 
   private:
     struct Body {
@@ -67,12 +77,15 @@ class WorldSnapshot {
     };
 
     /// All that there are now, sorted, into `manifolds`.
-    static void list_manifolds(btDispatcher& dispatcher, std::vector<Manifold>& manifolds,
+    static void list_manifolds(btDispatcher& dispatcher, const LocalScope* scope,
+                               std::vector<Manifold>& manifolds,
                                std::vector<btPersistentManifold*>& in_order);
     static void sort(std::vector<Manifold>& manifolds);
-    void take_manifolds(btDispatcher& dispatcher);
+    void take_body(btRigidBody& body);
+    void take_constraint(btTypedConstraint& constraint);
+    void take_manifolds(btDispatcher& dispatcher, const LocalScope* scope);
     /// False where one is missing.
-    [[nodiscard]] bool write_manifolds(btDispatcher& dispatcher);
+    [[nodiscard]] bool write_manifolds(btDispatcher& dispatcher, const LocalScope* scope);
 
     std::vector<Body> bodies_;
     std::vector<Manifold> manifolds_, now_;

@@ -25,37 +25,45 @@ DUCTILE_INLINE bool WorldSnapshot::Manifold::is_before(const Manifold& other) co
     return order < other.order;
 }
 
-DUCTILE_INLINE void WorldSnapshot::take(btDiscreteDynamicsWorld& world,
-                                        btConstraintSolver& solver) {
+DUCTILE_INLINE void WorldSnapshot::take(btDiscreteDynamicsWorld& world, btConstraintSolver& solver,
+                                        const LocalScope* scope) {
     bodies_.clear();
-    const auto& moving = MovingBodies::of(world);
-    for (int i = 0; i < moving.size(); ++i) {
-        btRigidBody* body = moving[i];
-        bodies_.push_back(
-            {body, body->getWorldTransform(), body->getInterpolationWorldTransform(),
-             body->getLinearVelocity(), body->getAngularVelocity(),
-             body->getInterpolationLinearVelocity(), body->getInterpolationAngularVelocity(),
-             unweighted(body->getTotalForce(), body->getLinearFactor()),
-             unweighted(body->getTotalTorque(), body->getAngularFactor()),
-             body->getDeactivationTime(), body->getHitFraction(), body->getActivationState(),
-             body->getIslandTag(), body->getCompanionId()});
-    }
-    take_manifolds(*world.getDispatcher());
     constraints_.clear();
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        btTypedConstraint* constraint = world.getConstraint(i);
-        if (PlasticConstraint* plastic = as_plastic(*constraint)) plastic->keep_all();
-        constraints_.push_back(
-            {constraint, constraint->internalGetAppliedImpulse(), constraint->isEnabled()});
+    if (scope != nullptr) {
+        for (btRigidBody* body : scope->bodies()) take_body(*body);
+        for (btTypedConstraint* constraint : scope->constraints()) take_constraint(*constraint);
+    } else {
+        for (btRigidBody* body : MovingBodies::all(world)) take_body(*body);
+        for (int i = 0; i < world.getNumConstraints(); ++i)
+            take_constraint(*world.getConstraint(i));
     }
+    take_manifolds(*world.getDispatcher(), scope);
     const auto* sweeps = dynamic_cast<btSequentialImpulseConstraintSolver*>(&solver);
     if (sweeps != nullptr) seed_ = sweeps->getRandSeed();
 }
 
+DUCTILE_INLINE void WorldSnapshot::take_body(btRigidBody& body) {
+    bodies_.push_back({&body, body.getWorldTransform(), body.getInterpolationWorldTransform(),
+                       body.getLinearVelocity(), body.getAngularVelocity(),
+                       body.getInterpolationLinearVelocity(),
+                       body.getInterpolationAngularVelocity(),
+                       unweighted(body.getTotalForce(), body.getLinearFactor()),
+                       unweighted(body.getTotalTorque(), body.getAngularFactor()),
+                       body.getDeactivationTime(), body.getHitFraction(), body.getActivationState(),
+                       body.getIslandTag(), body.getCompanionId()});
+}
+DUCTILE_INLINE void WorldSnapshot::take_constraint(btTypedConstraint& constraint) {
+    if (PlasticConstraint* plastic = as_plastic(constraint)) plastic->keep_all();
+    constraints_.push_back(
+        {&constraint, constraint.internalGetAppliedImpulse(), constraint.isEnabled()});
+}
+
 DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
-                                            btConstraintSolver& solver) {
+                                            btConstraintSolver& solver, LocalScope* scope,
+                                            const std::function<void()>& collide) {
     for (const Body& kept : bodies_) {
         btRigidBody& body = *kept.body;
+        if (scope != nullptr && !scope->has(body)) continue;
         body.setWorldTransform(kept.transform);
         body.setLinearVelocity(kept.velocity);
         body.setAngularVelocity(kept.spin);
@@ -72,11 +80,15 @@ DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
         body.setIslandTag(kept.island);
         body.setCompanionId(kept.companion);
     }
-    if (!write_manifolds(*world.getDispatcher())) {
-        world.performDiscreteCollisionDetection();
-        (void)write_manifolds(*world.getDispatcher());
+    if (!write_manifolds(*world.getDispatcher(), scope)) {
+        scope != nullptr ? collide() : world.performDiscreteCollisionDetection();
+        (void)write_manifolds(*world.getDispatcher(), scope);
     }
     for (const Constraint& kept : constraints_) {
+        if (scope != nullptr && !scope->has(kept.constraint->getRigidBodyA()) &&
+            !scope->has(kept.constraint->getRigidBodyB())) {
+            continue;
+        }
         if (PlasticConstraint* plastic = as_plastic(*kept.constraint)) {
             plastic->put_all_back();
             continue;
@@ -88,15 +100,21 @@ DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
     if (sweeps != nullptr) sweeps->setRandSeed(seed_);
 }
 
-DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher,
+DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher, const LocalScope* scope,
                                                   std::vector<Manifold>& manifolds,
                                                   std::vector<btPersistentManifold*>& in_order) {
     manifolds.clear();
     in_order.clear();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
-        manifolds.push_back({manifold->getBody0(), manifold->getBody1(), i});
-        in_order.push_back(manifold);
+    const auto list = [&](btPersistentManifold& manifold) {
+        manifolds.push_back({manifold.getBody0(), manifold.getBody1(), int(in_order.size())});
+        in_order.push_back(&manifold);
+    };
+    if (scope != nullptr) {
+        for (btPersistentManifold* manifold : scope->manifolds()) list(*manifold);
+    } else {
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            list(*dispatcher.getManifoldByIndexInternal(i));
+        }
     }
     sort(manifolds);
 }
@@ -106,30 +124,42 @@ DUCTILE_INLINE void WorldSnapshot::sort(std::vector<Manifold>& manifolds) {
     std::sort(manifolds.begin(), manifolds.end(), before);
 }
 
-DUCTILE_INLINE void WorldSnapshot::take_manifolds(btDispatcher& dispatcher) {
+DUCTILE_INLINE void WorldSnapshot::take_manifolds(btDispatcher& dispatcher,
+                                                  const LocalScope* scope) {
     manifolds_.clear();
     points_.clear();
     sorted_ = false;
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    const auto take = [this](const btPersistentManifold& manifold) {
         const int count = manifold.getNumContacts();
-        manifolds_.push_back({manifold.getBody0(), manifold.getBody1(), i, points_.size(), count});
+        manifolds_.push_back({manifold.getBody0(), manifold.getBody1(), int(manifolds_.size()),
+                              points_.size(), count});
         for (int k = 0; k < count; ++k) points_.push_back(manifold.getContactPoint(k));
+    };
+    if (scope != nullptr) {
+        for (const btPersistentManifold* manifold : scope->manifolds()) take(*manifold);
+    } else {
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            take(*dispatcher.getManifoldByIndexInternal(i));
+        }
     }
 }
 
-DUCTILE_INLINE bool WorldSnapshot::write_manifolds(btDispatcher& dispatcher) {
+DUCTILE_INLINE bool WorldSnapshot::write_manifolds(btDispatcher& dispatcher,
+                                                   const LocalScope* scope) {
     if (!std::exchange(sorted_, true)) sort(manifolds_);
-    list_manifolds(dispatcher, now_, listed_);
+    list_manifolds(dispatcher, scope, now_, listed_);
     auto kept = manifolds_.cbegin();
     const std::less<const btCollisionObject*> before;
     bool all = true;
+    const auto is_missed = [scope](const Manifold& gone) {
+        return gone.count > 0 && (scope == nullptr || scope->has(*gone.a) || scope->has(*gone.b));
+    };
     for (const Manifold& here : now_) {
         btPersistentManifold& manifold = *listed_[std::size_t(here.order)];
         const auto gone = [&] {
             return before(kept->a, here.a) || (kept->a == here.a && before(kept->b, here.b));
         };
-        for (; kept != manifolds_.cend() && gone(); ++kept) all = all && kept->count == 0;
+        for (; kept != manifolds_.cend() && gone(); ++kept) all = all && !is_missed(*kept);
         // its points are overwritten: what a user keeps with a point has to outlive this
         manifold.setNumContacts(0);
         if (kept == manifolds_.cend() || kept->a != here.a || kept->b != here.b) continue;
@@ -138,7 +168,7 @@ DUCTILE_INLINE bool WorldSnapshot::write_manifolds(btDispatcher& dispatcher) {
         }
         ++kept;
     }
-    for (; kept != manifolds_.cend(); ++kept) all = all && kept->count == 0;
+    for (; kept != manifolds_.cend(); ++kept) all = all && !is_missed(*kept);
     return all;
 }
 

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+//
+// Some of a world's bodies, with all that holds or touches them: what is put back, metered, moved
+// and ticked alone while the rest of the world stays as it is (local_tick.hpp).
+//
+// Not thread-safe. Bodies and constraints must stay in the world as long as they are in it.
+#pragma once
+
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
+#include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
+#include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::bullet {
+
+class LocalScope {
+  public:
+    static constexpr int nowhere = -1;
+
+    /// Of bodies that are not static, in any order.
+    void set(btDiscreteDynamicsWorld& world, std::vector<btRigidBody*> bodies);
+    void clear();
+
+    [[nodiscard]] bool has(const btCollisionObject& object) const noexcept {
+        return number(object) != nowhere;
+    }
+    /// Among `bodies`.
+    [[nodiscard]] int number(const btCollisionObject& object) const noexcept {
+        const int place = object.getWorldArrayIndex();
+        const bool known = place >= 0 && place < int(numbers_.size());
+        return known ? numbers_[std::size_t(place)] : nowhere;
+    }
+    /// In the world's order.
+    [[nodiscard]] std::span<btRigidBody* const> bodies() const noexcept { return bodies_; }
+    /// Of a constraint that has one of the bodies; in the world's order.
+    [[nodiscard]] std::span<btTypedConstraint* const> constraints() const noexcept {
+        return constraints_;
+    }
+    /// Those of them that are plastic joints, and their places among the world's constraints.
+    struct Joint {
+        PlasticConstraint* joint;
+        int place;
+    };
+    [[nodiscard]] std::span<const Joint> joints() const noexcept { return joints_; }
+    [[nodiscard]] bool has_joint(const void* constraint) const noexcept;
+    /// That have one of the bodies, with contact points or without.
+    [[nodiscard]] std::span<btPersistentManifold* const> manifolds() const noexcept {
+        return manifolds_;
+    }
+    void find_manifolds(btDispatcher& dispatcher);
+    [[nodiscard]] std::vector<btPersistentManifold*>& listed_manifolds() noexcept {
+        return manifolds_;
+    }
+
+  private:
+    std::vector<btRigidBody*> bodies_;
+    std::vector<btTypedConstraint*> constraints_;
+    std::vector<Joint> joints_;
+    std::vector<const void*> sorted_joints_;
+    std::vector<btPersistentManifold*> manifolds_;
+    std::vector<int> numbers_; ///< by place in the world
+};
+
+} // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/local_scope.ipp"
+#endif

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames with a tolerance in Bullet do again what is in trouble alone, and save nothing where
+// nothing happens.
+#include <btBulletDynamicsCommon.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/world_parts.hpp"
+
+namespace {
+
+using namespace ductile;
+using bullet::World;
+using bullet::WorldParameters;
+using Law = OneAxisJoint<Perfect<double>>;
+using Hinge = bullet::PlasticHinge<Law>;
+
+constexpr bool rough = sizeof(btScalar) == sizeof(float);
+constexpr double frame = 1.0 / 60;
+
+[[nodiscard]] Law law(double strength) { return Law(Perfect<double>({.strength = strength})); }
+[[nodiscard]] btTransform at(const btVector3& origin) {
+    btTransform result;
+    result.setIdentity();
+    result.setOrigin(origin);
+    return result;
+}
+
+/// A world on a floor.
+struct Site {
+    btDefaultCollisionConfiguration configuration;
+    btCollisionDispatcher dispatcher{&configuration};
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver solver;
+    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
+    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    std::unique_ptr<World> world;
+
+    Site() {
+        engine.setGravity(btVector3(0, btScalar(-9.81), 0));
+        engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
+        body(std::make_unique<btBoxShape>(btVector3(200, 1, 200)), 0, {0, -1, 0});
+    }
+    ~Site() {
+        hinges.clear();
+        world.reset();
+        for (auto& body : bodies) engine.removeRigidBody(body.get());
+    }
+    Site(const Site&) = delete;
+    Site& operator=(const Site&) = delete;
+
+    void look_after(const WorldParameters& parameters = {
+                        .tolerance = 0.01, .rest_damping = 0, .warn = {}}) {
+        world = std::make_unique<World>(engine, parameters);
+        for (auto& hinge : hinges) world->add(*hinge);
+    }
+    btRigidBody& body(std::unique_ptr<btCollisionShape> shape, double mass,
+                      const btVector3& place) {
+        btVector3 inertia(0, 0, 0);
+        if (mass > 0) shape->calculateLocalInertia(btScalar(mass), inertia);
+        shapes.push_back(std::move(shape));
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, shapes.back().get(),
+                                                      inertia);
+        info.m_startWorldTransform = at(place);
+        bodies.push_back(std::make_unique<btRigidBody>(info));
+        if (mass > 0) bodies.back()->setActivationState(DISABLE_DEACTIVATION);
+        engine.addRigidBody(bodies.back().get());
+        return *bodies.back();
+    }
+    /// Five pieces on hinges, 2 m high.
+    std::vector<btRigidBody*> post(const btVector3& foot, double strength = 4000) {
+        std::vector<btRigidBody*> pieces;
+        for (int i = 0; i < 5; ++i) {
+            btRigidBody& piece = body(std::make_unique<btBoxShape>(
+                                          btVector3(btScalar(0.05), btScalar(0.2), btScalar(0.05))),
+                                      12, foot + btVector3(0, btScalar(0.25 + 0.4 * i), 0));
+            const btVector3 low(0, btScalar(-0.2), 0), high(0, btScalar(0.2), 0);
+            hinges.push_back(i == 0 ? std::make_unique<Hinge>(piece, at(low), law(strength))
+                                    : std::make_unique<Hinge>(piece, *pieces.back(), at(low),
+                                                              at(high), law(strength)));
+            pieces.push_back(&piece);
+        }
+        return pieces;
+    }
+    btRigidBody& ball(const btVector3& place, const btVector3& velocity) {
+        btRigidBody& made = body(std::make_unique<btSphereShape>(btScalar(0.2)), 100, place);
+        made.setGravity({0, 0, 0});
+        made.setLinearVelocity(velocity);
+        return made;
+    }
+    [[nodiscard]] double work() const {
+        double sum = 0;
+        for (const auto& hinge : hinges) sum += hinge->absorbed_energy();
+        return sum;
+    }
+};
+
+} // namespace
+
+TEST_CASE("Locality: what stands is not saved, and what somebody does to it is seen", "[frame]") {
+    Site site;
+    const auto pieces = site.post({0, 0, 0});
+    bullet::FrontHold front(site.engine);
+    bullet::EnergyMeter meter(site.engine);
+    bullet::Members members(site.engine);
+    bullet::WorldParts parts(
+        site.engine, front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
+        [](double) {});
+    for (auto& hinge : site.hinges) {
+        hinge->add_to(site.engine);
+        hinge->set_ahead(true);
+    }
+    const auto at_risk = [&] {
+        parts.begin(frame);
+        (void)parts.closing(frame, 1e-9, 1e-9);
+        const bool risk = parts.may_be_put_back();
+        (void)parts.part(frame);
+        parts.end();
+        return risk;
+    };
+    CHECK(at_risk()); // nothing is known of it
+    for (int i = 0; i < 10; ++i) CHECK_FALSE(at_risk());
+    pieces[4]->setLinearVelocity({btScalar(1e-6), 0, 0});
+    CHECK(at_risk());
+    for (int i = 0; i < 3; ++i) (void)at_risk();
+    CHECK_FALSE(at_risk());
+    pieces[4]->applyCentralForce({1, 0, 0});
+    CHECK(at_risk());
+    CHECK(at_risk()); // it ended
+    CHECK_FALSE(at_risk());
+    pieces[4]->setGravity({0, -9, 0});
+    CHECK(at_risk());
+    CHECK_FALSE(at_risk());
+    btRigidBody& ball = site.ball({-1, btScalar(1.9), 0}, {50, 0, 0});
+    CHECK(at_risk()); // it would be there within the frame
+    site.engine.removeRigidBody(&ball);
+    site.bodies.pop_back();
+    for (auto& hinge : site.hinges) hinge->remove_from(site.engine);
+}
+
+TEST_CASE("Locality: a motor beside a plastic joint is a risk, one far away is none", "[frame]") {
+    Site site;
+    const auto pieces = site.post({0, 0, 0});
+    btRigidBody& far = site.body(std::make_unique<btSphereShape>(btScalar(0.1)), 1, {9, 1, 0});
+    btHingeConstraint motor(far, btVector3(0, 0, 0), btVector3(0, 0, 1));
+    site.engine.addConstraint(&motor);
+    bullet::FrontHold front(site.engine);
+    bullet::EnergyMeter meter(site.engine);
+    bullet::Members members(site.engine);
+    bullet::WorldParts parts(
+        site.engine, front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
+        [](double) {});
+    for (auto& hinge : site.hinges) {
+        hinge->add_to(site.engine);
+        hinge->set_ahead(true);
+    }
+    const auto at_risk = [&] {
+        parts.begin(frame);
+        (void)parts.closing(frame, 1e-9, 1e-9);
+        const bool risk = parts.may_be_put_back();
+        (void)parts.part(frame);
+        parts.end();
+        return risk;
+    };
+    for (int i = 0; i < 3; ++i) (void)at_risk();
+    CHECK_FALSE(at_risk());
+    btHingeConstraint near(*pieces[4], btVector3(0, btScalar(0.2), 0), btVector3(0, 0, 1));
+    site.engine.addConstraint(&near);
+    for (int i = 0; i < 3; ++i) CHECK(at_risk());
+    site.engine.removeConstraint(&near);
+    site.engine.removeConstraint(&motor);
+    for (auto& hinge : site.hinges) hinge->remove_from(site.engine);
+}
+
+TEST_CASE("Locality: what hands and forces do to what stood is as exact as ever", "[frame]") {
+    // a rotor that stood ten frames is pushed by hand, then by a moment beyond its strength
+    constexpr double inertia = 2, spin = 7, strength = 40;
+    Site site;
+    btRigidBody& rotor = site.body(std::make_unique<btSphereShape>(btScalar(0.1)), 1, {0, 5, 0});
+    rotor.setGravity({0, 0, 0});
+    rotor.setMassProps(1, btVector3(inertia, inertia, inertia));
+    site.hinges.push_back(std::make_unique<Hinge>(rotor, at({0, 0, 0}), law(strength)));
+    site.look_after();
+    Hinge& hinge = *site.hinges.back();
+    for (int i = 0; i < 10; ++i) site.world->step(frame);
+    rotor.setAngularVelocity({0, 0, btScalar(spin)});
+    for (int i = 0; i < 40; ++i) site.world->step(frame);
+    const double energy = inertia * spin * spin / 2;
+    CHECK(hinge.absorbed_energy() == Approx(energy).epsilon(rough ? 1e-4 : 1e-9));
+    for (int i = 0; i < 10; ++i) site.world->step(frame);
+    // 2 M for a frame, and to rest again: θ = M t²/(2 I) + the same
+    rotor.applyTorque({0, 0, btScalar(2 * strength)});
+    for (int i = 0; i < 10; ++i) site.world->step(frame);
+    const double travel = 2 * strength * frame * frame / (2 * inertia);
+    CHECK(hinge.absorbed_energy() ==
+          Approx(energy + strength * travel).epsilon(rough ? 1e-4 : 1e-9));
+    CHECK(site.world->run().believed());
+    CHECK(std::abs(site.world->ledger().unexplained()) < (rough ? 1e-3 : 1e-9) * energy);
+}
+
+namespace {
+
+/// Of places and velocities, bit by bit.
+[[nodiscard]] std::uint64_t hash_of(const std::vector<btRigidBody*>& bodies) {
+    std::uint64_t result = 1469598103934665603u;
+    const auto eat = [&result](double value) {
+        std::uint64_t bits = 0;
+        std::memcpy(&bits, &value, sizeof bits);
+        result = (result ^ bits) * 1099511628211u;
+    };
+    for (const btRigidBody* body : bodies) {
+        for (int k = 0; k < 3; ++k) {
+            for (int j = 0; j < 3; ++j) eat(double(body->getWorldTransform().getBasis()[k][j]));
+            eat(double(body->getWorldTransform().getOrigin()[k]));
+            eat(double(body->getLinearVelocity()[k]));
+            eat(double(body->getAngularVelocity()[k]));
+        }
+    }
+    return result;
+}
+
+/// A post, a ball, and boxes in stacks of four that slide a little.
+struct Scene : Site {
+    std::vector<btRigidBody*> others, mine;
+    int events = 0, worst = 0;
+
+    Scene(int boxes, bool struck) {
+        for (int i = 0; i < boxes; ++i) {
+            const int stack = i / 4;
+            others.push_back(
+                &body(std::make_unique<btBoxShape>(
+                          btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))),
+                      100,
+                      {btScalar(4 + 1.5 * (stack % 16)), btScalar(0.5 + 1.02 * (i % 4)),
+                       btScalar(4 + 1.5 * (stack / 16))}));
+            others.back()->setLinearVelocity({btScalar(0.1) * btScalar(i % 3), 0, 0});
+        }
+        mine = post({0, 0, 0});
+        // nobody is there where it waits
+        mine.push_back(&ball({btScalar(-0.6), btScalar(struck ? 1.9 : 50), 0},
+                             {btScalar(struck ? 5 : 0), 0, 0}));
+        look_after();
+        world->on_event([this](const auto& event) { events += event.kind == EventKind::yielded; });
+    }
+    void step() {
+        world->step(frame);
+        worst = std::max(worst, world->frame().solves());
+    }
+};
+
+} // namespace
+
+TEST_CASE("Locality: others keep their bits while one island is done in parts", "[frame]") {
+    Scene struck(200, true), quiet(200, false);
+    int differ = 0;
+    for (int i = 0; i < 60; ++i) {
+        struck.step();
+        quiet.step();
+        differ += hash_of(struck.others) != hash_of(quiet.others);
+    }
+    CHECK(differ == 0);
+    CHECK(struck.worst > 8);
+    CHECK(quiet.worst == 1);
+    CHECK(struck.world->run().believed());
+    CHECK(std::abs(struck.world->ledger().unexplained()) < (rough ? 2 : 1e-6));
+}
+
+TEST_CASE("Locality: a post among a thousand boxes takes what it takes alone", "[frame]") {
+    Scene alone(0, true), among(1000, true);
+    int differ = 0;
+    for (int i = 0; i < 60; ++i) {
+        alone.step();
+        among.step();
+        differ += hash_of(alone.mine) != hash_of(among.mine);
+    }
+    CHECK(alone.work() > 1000);
+    CHECK(among.work() == alone.work());
+    CHECK(differ == 0);
+    CHECK(among.events == alone.events); // once each, however often a part was done
+    CHECK(among.world->ledger().booked(Account::plastic) ==
+          Approx(alone.work()).epsilon(rough ? 1e-5 : 1e-9));
+    CHECK(std::abs(among.world->ledger().unexplained()) < (rough ? 20 : 1e-6));
+}
+
+namespace {
+
+/// With one of these all is done again.
+struct Nothing final : btActionInterface {
+    void updateAction(btCollisionWorld*, btScalar) override {}
+    void debugDraw(btIDebugDraw*) override {}
+};
+
+/// A post that is bent into a tall box beside it, among others.
+struct Meeting : Site {
+    Nothing nothing;
+    btRigidBody* beside = nullptr;
+    std::vector<btRigidBody*> others;
+
+    Meeting(bool local, bool asleep) {
+        if (!local) engine.addAction(&nothing);
+        const auto tall = [this](const btVector3& place) {
+            btRigidBody& made = body(std::make_unique<btBoxShape>(
+                                         btVector3(btScalar(0.2), btScalar(0.9), btScalar(0.5))),
+                                     200, place);
+            others.push_back(&made);
+            return &made;
+        };
+        post({0, 0, 0});
+        beside = tall({btScalar(0.45), btScalar(0.9), 0});
+        for (int i = 0; i < 60; ++i)
+            tall({btScalar(6 + 2 * (i % 8)), btScalar(0.9), btScalar(4 + 2 * (i / 8))});
+        look_after();
+        for (btRigidBody* body : others) {
+            if (asleep) body->forceActivationState(ISLAND_SLEEPING);
+        }
+        for (int i = 0; i < 3; ++i) world->step(frame);
+        ball({btScalar(-0.6), btScalar(1.9), 0}, {5, 0, 0});
+        for (int i = 0; i < 40; ++i) world->step(frame);
+    }
+    ~Meeting() { engine.removeAction(&nothing); }
+};
+
+} // namespace
+
+TEST_CASE("Locality: islands that meet are one from then on", "[frame]") {
+    for (const bool asleep : {false, true}) {
+        CAPTURE(asleep);
+        const Meeting local(true, asleep), all(false, asleep);
+        CHECK(all.work() > 300);
+        CHECK(local.work() == Approx(all.work()).epsilon(0.02));
+        const auto tilt = [](const Meeting& of) {
+            return double(of.beside->getCenterOfMassPosition().x()) - 0.45;
+        };
+        CHECK(tilt(all) > 0.01);
+        CHECK(tilt(local) == Approx(tilt(all)).epsilon(0.1));
+        for (const Meeting* of : {&local, &all}) {
+            CHECK(std::abs(of->world->ledger().unexplained()) < (rough ? 5 : 1e-6));
+            CHECK(of->world->run().believed());
+        }
+        std::vector<btRigidBody*> far(local.others.begin() + 1, local.others.end());
+        for (const btRigidBody* body : far) CHECK(body->isActive() != asleep);
+    }
+}
