@@ -31,6 +31,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/joint/usual_joints.hpp"
@@ -127,17 +128,21 @@ class Member {
     void make_joints(const ForceShare& share);
     void make_attachments();
     void drop_attachment(Attachment& attachment);
-    void let_pieces_pass() const;
+    void let_pieces_pass();
+    /// Sections that broke since pieces were last told whom they meet.
+    void note_broken();
 
     btRigidBody& user_;
     MemberCourse course_;
     std::unique_ptr<PieceMaker> maker_;
     JointFrame<double> held_; ///< where a held segment is
     btDiscreteDynamicsWorld* world_ = nullptr;
-    std::function<void()> ends_;    ///< tells the World that it was added to
-    std::function<void()> pushed_;  ///< tells it that a force was applied, the first one
+    std::function<void()> ends_;       ///< tells the World that it was added to
+    std::function<void()> pushed_;     ///< tells it that a force was applied, the first one
     std::function<void()> rearranged_; ///< that its bodies are others
-    std::vector<PieceBody> pieces_; ///< by piece
+    std::vector<PieceBody> pieces_;    ///< by piece
+    PassingBodies passing_;            ///< of them; ends before they do
+    int broken_ = 0;                   ///< sections
     std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;
     std::vector<Force> forces_;

@@ -184,9 +184,10 @@ DUCTILE_INLINE void Member::require_free(const btDiscreteDynamicsWorld& world) c
         if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
             continue;
         }
-        const bool own = std::any_of(
-            attachments_.begin(), attachments_.end(),
-            [&](const Attachment& attachment) { return attachment.constraint.get() == &constraint; });
+        const bool own = std::any_of(attachments_.begin(), attachments_.end(),
+                                     [&](const Attachment& attachment) {
+                                         return attachment.constraint.get() == &constraint;
+                                     });
         if (own) continue;
         throw std::invalid_argument(
             "World.add.member: no constraint of the world may hold its body but by "
@@ -277,6 +278,7 @@ DUCTILE_INLINE void Member::close(std::span<const int> sections, const ForceShar
 DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces,
                                    const ForceShare& share) {
     if (pieces_.size() == 1) maker_->take_out();
+    passing_.clear();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     const auto take_kept = [&old](const MemberRun& run) {
         for (PieceBody& piece : old) {
@@ -324,14 +326,22 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces,
     make_attachments();
 }
 
-DUCTILE_INLINE void Member::let_pieces_pass() const {
+/// Pieces that hang together do, those with a broken section between them meet.
+DUCTILE_INLINE void Member::let_pieces_pass() {
+    passing_.clear();
+    broken_ = 0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        bool broken = false;
+        broken_ += i > 0 && course_.section(pieces_[i].run.first - 1).joint.broken;
         for (std::size_t j = i + 1; j < pieces_.size(); ++j) {
-            broken = broken || course_.section(pieces_[j].run.first - 1).joint.broken;
-            pieces_[i].body->setIgnoreCollisionCheck(pieces_[j].body, !broken);
+            if (course_.section(pieces_[j].run.first - 1).joint.broken) break;
+            if (pieces_[i].own != nullptr) passing_.add(*pieces_[i].body, *pieces_[j].body);
         }
     }
+}
+DUCTILE_INLINE void Member::note_broken() {
+    int broken = 0;
+    for (const OpenSection& open : joints_) broken += course_.section(open.section).joint.broken;
+    if (broken != broken_) let_pieces_pass();
 }
 
 DUCTILE_INLINE void Member::make_joints(const ForceShare& share) {

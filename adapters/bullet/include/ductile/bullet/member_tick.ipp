@@ -63,7 +63,10 @@ DUCTILE_INLINE bool MemberTick::close_held(const ForceShare& share,
     if (member_.joints_.empty()) return false;
     member_.note_sections();
     const std::vector<int> held = member_.course_.held();
-    if (held.empty()) return false;
+    if (held.empty()) {
+        member_.note_broken();
+        return false;
+    }
     member_.close(held, share);
     for (const int section : held) told.push_back({&member_, section});
     return true;
@@ -155,9 +158,8 @@ DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const Body
         const double fastest = std::max(norm(spin), norm(before_spin));
         moved = dt * norm(velocity);
         turned = dt * fastest;
-        const Vector3<double> change =
-            difference(difference(velocity, to_core(was.velocity)),
-                       scaled(dt, to_core(body.getGravity())));
+        const Vector3<double> change = difference(difference(velocity, to_core(was.velocity)),
+                                                  scaled(dt, to_core(body.getGravity())));
         const btVector3& inverse = body.getInvInertiaDiagLocal();
         const double least = double(std::min({inverse.x(), inverse.y(), inverse.z()}));
         // the user's inertia may be another than the member's
@@ -172,10 +174,10 @@ DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const Body
     for (const Touch& touch : touches_) {
         for (int k = 0; k < touch.manifold->getNumContacts(); ++k) {
             const btManifoldPoint& point = touch.manifold->getContactPoint(k);
-            const Vector3<double> impulse = to_core(
-                point.m_appliedImpulse * point.m_normalWorldOnB +
-                point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2);
+            const Vector3<double> impulse =
+                to_core(point.m_appliedImpulse * point.m_normalWorldOnB +
+                        point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                        point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2);
             const Vector3<double> arm = difference(
                 to_core(touch.of_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB()),
                 start);
@@ -218,7 +220,8 @@ DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifol
         ++piece;
     }
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
-        const ContactLoad contact = contact_load(manifold, manifold.getContactPoint(k), of_a, before);
+        const ContactLoad contact =
+            contact_load(manifold, manifold.getContactPoint(k), of_a, before);
         if (contact.impulse.isZero()) continue;
         MemberLoad& load = loads_.emplace_back();
         load.point = to_core(contact.at);

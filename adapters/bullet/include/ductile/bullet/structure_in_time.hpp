@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "ductile/bullet/divisible.hpp"
+#include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/structure/built_structure.hpp"
@@ -77,7 +78,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     };
     [[nodiscard]] static Vector6<double> forces_of(const Joint& joint) {
         Vector6<double> six;
-        for (const JointAxis axis : all_joint_axes) six[Eigen::Index(index(axis))] = joint.force(axis);
+        for (const JointAxis axis : all_joint_axes)
+            six[Eigen::Index(index(axis))] = joint.force(axis);
         return six;
     }
     struct Force {
@@ -158,9 +160,10 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     btVector3 gravity_;
     StructureCourse course_;
     bool left_ = false;
-    std::vector<DivisionReport> reports_;             ///< by joint
-    std::vector<std::unique_ptr<btBoxShape>> boxes_;  ///< by body
-    std::vector<PieceBody> pieces_;                   ///< by cluster
+    std::vector<DivisionReport> reports_;            ///< by joint
+    std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by body
+    std::vector<PieceBody> pieces_;                  ///< by cluster
+    PassingBodies passing_;                          ///< of them; ends before they do
     std::vector<OpenJoint> joints_;
     std::vector<Force> forces_;
     // a tick

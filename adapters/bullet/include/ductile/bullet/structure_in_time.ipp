@@ -61,9 +61,8 @@ DUCTILE_INLINE btRigidBody& StructureInTime::body_of(std::string_view member,
 
 DUCTILE_INLINE const StructureInTime::OpenJoint* StructureInTime::open_joint(
     std::size_t joint) const {
-    const auto found = std::find_if(joints_.begin(), joints_.end(), [joint](const auto& open) {
-        return open.joint == joint;
-    });
+    const auto found = std::find_if(joints_.begin(), joints_.end(),
+                                    [joint](const auto& open) { return open.joint == joint; });
     return found != joints_.end() ? &*found : nullptr;
 }
 
@@ -154,6 +153,7 @@ DUCTILE_INLINE PieceBody StructureInTime::make_cluster(std::size_t c, const btRi
 DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change,
                                             const ForceShare& share) {
     proved_.reset();
+    passing_.clear();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     std::vector<const btRigidBody*> now(change.kept.size(), nullptr);
     for (std::size_t c = 0; c < change.kept.size(); ++c) {
@@ -190,7 +190,7 @@ DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
         if (!has_body(a) || !has_body(b)) continue;
         btRigidBody &one = *pieces_[course_.cluster_of(a)].body,
                     &other = *pieces_[course_.cluster_of(b)].body;
-        if (&one != &other) one.setIgnoreCollisionCheck(&other, true);
+        if (&one != &other) passing_.add(one, other);
     }
 }
 
@@ -201,8 +201,7 @@ DUCTILE_INLINE void StructureInTime::make_joints(const ForceShare& share) {
         const auto side = [&](std::size_t body, const JointFrame<double>& frame) {
             const std::size_t c = course_.cluster_of(body);
             return std::pair<btRigidBody&, btTransform>(
-                *pieces_[c].body,
-                to_bullet(placed(course_.clusters()[c].place(body), frame)));
+                *pieces_[c].body, to_bullet(placed(course_.clusters()[c].place(body), frame)));
         };
         const auto& [in_a, in_b] = course_.frames(j);
         const bool ground = joint.b.kind == PlanSeat::Kind::ground;
@@ -228,9 +227,8 @@ DUCTILE_INLINE void StructureInTime::make_joints(const ForceShare& share) {
 DUCTILE_INLINE JointFrame<double> StructureInTime::frame_of(const PlanSeat& seat) const {
     const std::size_t c = course_.cluster_of(seat.index);
     const Cluster& cluster = course_.clusters()[c];
-    const JointFrame<double> pose = cluster.held
-                                        ? JointFrame<double>{}
-                                        : to_core(pieces_[c].body->getCenterOfMassTransform());
+    const JointFrame<double> pose =
+        cluster.held ? JointFrame<double>{} : to_core(pieces_[c].body->getCenterOfMassTransform());
     return placed(pose, cluster.place(seat.index));
 }
 
@@ -280,9 +278,7 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
     }
 }
 
-DUCTILE_INLINE void StructureInTime::begin() {
-    touches_.clear();
-}
+DUCTILE_INLINE void StructureInTime::begin() { touches_.clear(); }
 
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(double /*dt*/,
                                                    std::span<const BodyBefore> /*before*/,
@@ -332,8 +328,7 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         const PlanJoint& joint = plan().joints[open.joint];
         add(open.feedback->m_appliedForceBodyA, open.feedback->m_appliedTorqueBodyA, joint.a);
         if (joint.b.kind != PlanSeat::Kind::body) continue;
-        add(open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB,
-            joint.b.index);
+        add(open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB, joint.b.index);
     }
     for (const Force& force : forces_) {
         const std::size_t c = course_.cluster_of(force.body);
