@@ -74,7 +74,10 @@ class Member {
     /// Of a section, accumulated plastic rotation [rad], and how far it is bent now [rad].
     [[nodiscard]] double plastic_rotation(int section) const;
     [[nodiscard]] double bend(int section) const;
-    [[nodiscard]] double absorbed_energy() const; ///< by all sections [J]
+    /// By all sections, what blows leave in vibration left out [J].
+    [[nodiscard]] double absorbed_energy() const;
+    /// What an elastic member gives back of what its sections took (member/blow.hpp) [J].
+    [[nodiscard]] double vibration() const noexcept { return course_.vibration().lost; }
     /// All of it: member_snapshot.hpp.
     [[nodiscard]] MemberState state() const;
     /// Largest share of what acted on it that was left over in the last step that was looked at

@@ -120,7 +120,7 @@ DUCTILE_INLINE MemberState Member::state() const {
 }
 
 DUCTILE_INLINE double Member::absorbed_energy() const {
-    double sum = course_.closed_work();
+    double sum = course_.closed_work() - vibration();
     for (const OpenSection& open : joints_) sum += open.hinge->absorbed_energy();
     return sum;
 }

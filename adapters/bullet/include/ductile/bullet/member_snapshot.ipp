@@ -12,7 +12,7 @@
 
 namespace ductile::bullet {
 
-DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member) : state_(member.state()) {
+DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member) : state_(member.state()), vibration_(member.course_.vibration()) {
     for (const PieceBody& piece : member.pieces_) {
         bodies_.push_back({piece.body->getCenterOfMassTransform(),
                            piece.body->getLinearVelocity(), piece.body->getAngularVelocity()});
@@ -35,6 +35,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     }
     MemberCourse& course = member.course_;
     course.restore(state_);
+    course.restore(vibration_);
     std::vector<PlacedPiece> pieces;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const MemberPiece& piece = course.pieces()[i];

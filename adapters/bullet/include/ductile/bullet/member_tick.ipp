@@ -58,6 +58,11 @@ DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, const ForceS
     member_.open(sections, share);
     for (const int section : sections) told.push_back({&member_, section});
 }
+DUCTILE_INLINE double MemberTick::count_vibration() {
+    if (member_.joints_.empty()) return 0;
+    member_.note_sections();
+    return member_.course_.count_vibration();
+}
 DUCTILE_INLINE bool MemberTick::close_held(const ForceShare& share,
                                            std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;

@@ -153,6 +153,7 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, const ForceShare& share,
                              std::vector<DivisionChange>& told) override;
+    double count_vibration() override { return 0; }
     DUCTILE_INLINE bool close_held(const ForceShare& share,
                                    std::vector<DivisionChange>& told) override;
 
