@@ -150,6 +150,23 @@ struct Struck {
     }
 };
 
+/// Holds a member across at `place` along it, at `z` in the world [m]; it may slide along, turn
+/// about x.
+inline void hold_across(bullet::Member& member, double place, double z, bool slides, bool turns) {
+    member.attach(place, [z, slides, turns](btRigidBody& piece, const btTransform& at) {
+        // the older one of six axes lets go where there is no error
+        auto held = std::make_unique<btGeneric6DofSpring2Constraint>(
+            btTypedConstraint::getFixedBody(), piece,
+            btTransform(btQuaternion::getIdentity(), {0, 0, btScalar(z)}), at);
+        const btScalar free = slides ? 1 : 0, turn = turns ? 1 : 0;
+        held->setLinearLowerLimit({0, 0, free});
+        held->setLinearUpperLimit({0, 0, -free});
+        held->setAngularLowerLimit({turn, 0, 0});
+        held->setAngularUpperLimit({-turn, 0, 0});
+        return held;
+    });
+}
+
 /// A ball that strikes the end of a clamped post, 0 ... 2 s.
 struct BallOnPost {
     Rig rig;

@@ -175,6 +175,13 @@ DUCTILE_INLINE void Member::require_possible() const {
     if (whole() && user_.getBroadphaseHandle() == nullptr) {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
     }
+    if (user_.isKinematicObject()) throw std::logic_error("Member.body: must not be kinematic");
+    for (const PieceBody& piece : pieces_) {
+        if (piece.own == nullptr || piece.body->getBroadphaseHandle() != nullptr) continue;
+        throw std::logic_error(
+            "Member.pieces: must stay in the world while the member is open: addRigidBody them, or "
+            "end the member");
+    }
 }
 
 /// Of a member that is whole.

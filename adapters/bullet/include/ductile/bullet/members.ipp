@@ -134,7 +134,8 @@ DUCTILE_INLINE void Members::apply_forces() {
     for (Course& course : members_) {
         if (course.member == nullptr) course.of->apply_forces();
     }
-    for (Member* member : pushed_) members_[owners_[member->pieces_.back().body]].of->apply_forces();
+    for (Member* member : pushed_)
+        members_[owners_[member->pieces_.back().body]].of->apply_forces();
 }
 DUCTILE_INLINE void Members::drop_forces() {
     for (Course& course : members_) {
@@ -164,9 +165,8 @@ DUCTILE_INLINE void Members::before_solve() {
     const auto& moving = MovingBodies::of(world_);
     for (int i = 0; i < moving.size(); ++i) {
         const btRigidBody& body = *moving[i];
-        before_[std::size_t(body.getWorldArrayIndex())] = {body.getCenterOfMassTransform(),
-                                                           body.getLinearVelocity(),
-                                                           body.getAngularVelocity()};
+        before_[std::size_t(body.getWorldArrayIndex())] = {
+            body.getCenterOfMassTransform(), body.getLinearVelocity(), body.getAngularVelocity()};
     }
     for (Course* course : here_) course->here = false;
     here_.clear();

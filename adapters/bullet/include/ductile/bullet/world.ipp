@@ -139,8 +139,7 @@ DUCTILE_INLINE void World::add(Member& member, std::string name) {
     require_members();
     front_->set_direct(&members_.direct());
     members_.add(member, [this, &member] { remove(member); });
-    supervisor().add(&member, std::move(name),
-                     [this, &member] { return members_.report(member); });
+    supervisor().add(&member, std::move(name), [this, &member] { return members_.report(member); });
 }
 DUCTILE_INLINE void World::remove(Member& member) {
     if (!members_.has(member)) return;
