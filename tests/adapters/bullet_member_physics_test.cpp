@@ -93,7 +93,7 @@ struct FreeBar {
 };
 
 /// 2 kg/m, M_p = 100 N m, `length` [m] in equal segments or those given.
-Member bar(const std::vector<double>& lengths, Lumping lumping, bool clamped = false) {
+Member bar(const std::vector<double>& lengths, Lumping lumping) {
     MemberParameters p;
     for (const double s : lengths) {
         const double m = 2 * s, inertia = (lumping == Lumping::rods ? 1.0 / 12 : 0.251) * m * s * s;
@@ -143,14 +143,16 @@ TEST_CASE("what a blow leaves is the same in any frame and from any gap", "[bull
     };
     // stops the ball; turns far and is struck again and again
     const std::vector<Blow> blows{{heavy_post(), 1, 2e-3, 2e-2},
-                                  {heavy_post(10, 1500), 3, 1e-2, 2e-2}};
+                                  {heavy_post(10, 1500), 3, 3e-3, 2e-2},
+                                  {heavy_post(10, 1500), 5, 1e-2, 2e-2}};
     for (const Blow& blow : blows) {
         std::vector<double> absorbed, tip;
         for (const double gap : {0.00713, 0.01, 0.033}) {
             for (const double frame : all_frames) {
                 BallOnPost scene(blow.of, 100, blow.speed, 0.01, 0.05, gap);
                 scene.go(1, frame);
-                CHECK(scene.world.run().believed());
+                // a frame of 1/30 s has no budget for all that the fastest does in it
+                if (blow.speed < 5 || frame < 1.0 / 60) CHECK(scene.world.run().believed());
                 absorbed.push_back(scene.post->absorbed_energy());
                 const btVector3 end(0, 0, btScalar(0.1));
                 tip.push_back(double((scene.post->pose(10) * end).y()));
@@ -206,12 +208,11 @@ TEST_CASE("a struck cantilever of fine segments at its tip takes Parkes's shape"
     for (const Case& p : {Case{"a", 1, 4, 0.050301183, 1.0 / 30, 0.04, 0.01},
                           Case{"b", 0.2, 10, 0.0294456818, 0.012037037, 0.02, 0.05},
                           Case{"c", 20, 1, 0.096799584, 0.0937263794, 0.2, 0.01}}) {
-        std::vector<double> lengths(32, 1.0 / 32);
-        for (int i = 0; i < 4; ++i) { // what the contact takes is that of the last segment
-            lengths.back() /= 2;
-            lengths.push_back(lengths.back());
-        }
-        const Member of = bar(lengths, Lumping::ends, true);
+        MemberParameters halved;
+        halved.segments = lumped_segments(1, 2, 32, 4, {1e-9, 1e-9, 1e-6});
+        halved.segments.insert(halved.segments.begin(), {.length = 0, .mass = 0, .held = true});
+        halved.sections.assign(36, UsualAxisJoint(Perfect<double>({.strength = 100})));
+        const Member of(halved);
         Struck scene(of, true, 0.003);
         scene.mass->setMassProps(btScalar(p.mass), {1, 1, 1});
         scene.strike(p.speed);
@@ -296,5 +297,49 @@ TEST_CASE("a pulse on a beam on two supports moves it as far as Symonds says", "
         CHECK(scene.middle() == Approx(0.106666667).epsilon(rough ? 0.02 : 0.01));
         // the first frame of 1/60 s may spend its budget: all sections flow at once
         if (frame < 0.01) CHECK(scene.world.run().believed());
+    }
+}
+
+TEST_CASE("a column clamped at both ends that is struck at mid-height absorbs what its rods do",
+          "[bullet][member]") {
+    // P33: HEB 200, 3.5 m, 61.3 kg/m, 500 kg at 20 m/s
+    struct Case {
+        int half;
+        double centre, support, work;
+    };
+    for (const Case& c : {Case{1, 0.173892803, 0.0993673159, 87486.5125},
+                          Case{5, 0.177624906, 0.0931666563, 97582.4728}}) {
+        for (const double frame : {1.0 / 60, 1.0 / 1000}) {
+            MemberParameters p;
+            const double s = 3.5 / (2 * c.half), m = 61.3 * s;
+            p.segments.assign(
+                std::size_t(2 * c.half),
+                {.length = s, .mass = m, .inertia = {m * s * s / 12, m * s * s / 12, 1e-3 * m}});
+            p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+            // a stub that cannot turn, so that the section before it is the clamped one
+            p.segments.push_back({.length = 1e-6, .mass = 1, .inertia = {1, 1, 1}});
+            p.sections.assign(p.segments.size() - 1,
+                              UsualAxisJoint(Perfect<double>({.strength = 220108.875})));
+            const Member of(p);
+            Rig rig;
+            World world(rig.engine, {.tolerance = 0.01, .warn = {}});
+            btRigidBody& mass = rig.body(500, {100, 100, 100}, {0, 0, btScalar(1.75)});
+            bullet::Member member(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
+            member.attach(1.75, [&mass](btRigidBody& piece, const btTransform& place) {
+                return std::make_unique<btPoint2PointConstraint>(piece, mass, place.getOrigin(),
+                                                                 btVector3(0, 0, 0));
+            });
+            hold_across(member, of.length(), of.length(), true, false);
+            world.add(member);
+            mass.setLinearVelocity({0, 20, 0});
+            for (int i = 0; i < int(1.2 / frame); ++i) world.step(frame);
+            CAPTURE(c.half, frame);
+            CHECK(member.absorbed_energy() == Approx(c.work).epsilon(rough ? 0.01 : 2e-3));
+            // small rotations in theory: 0.2 % of the deflection
+            CHECK(double(mass.getCenterOfMassPosition().y()) ==
+                  Approx(c.centre).epsilon(rough ? 0.02 : 5e-3));
+            CHECK(-member.bend(0) == Approx(c.support).epsilon(rough ? 0.02 : 5e-3));
+            if (!rough) CHECK(member.whole());
+        }
     }
 }

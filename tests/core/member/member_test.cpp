@@ -155,6 +155,22 @@ TEST_CASE("a cantilever yields where a blow takes more than its strain energy at
     CHECK(member_blow(rigid, straight(rigid), in_rigid, 1e-9, 0, 8).plastic_share() == 1);
 }
 
+TEST_CASE("a beam is finer towards an end that is struck, and as heavy and long", "[member]") {
+    const Rectangle<double> section({.width = 0.064, .height = 0.004});
+    const Material<double> steel(s355<double>());
+    const Member equal = beam(section, steel, {.length = 2, .segments = 8, .clamped = true});
+    const Member finer =
+        beam(section, steel, {.length = 2, .segments = 8, .halvings = 3, .clamped = true});
+    REQUIRE(finer.segments() == equal.segments() + 3);
+    CHECK(finer.segment(7).length == Approx(0.25));
+    const double halves[] = {0.125, 0.0625, 0.03125, 0.03125};
+    for (int i = 0; i < 4; ++i) CHECK(finer.segment(8 + i).length == Approx(halves[i]));
+    CHECK(finer.length() == Approx(2).epsilon(1e-15));
+    CHECK(finer.mass() == Approx(equal.mass()).epsilon(1e-14));
+    CHECK(message_of([&] { (void)beam(section, steel, {.length = 2, .halvings = -1}); }) ==
+          "Beam.halvings = -1: must be 0 or more");
+}
+
 TEST_CASE("in a blow the section nearest to it opens, in a step the worst", "[member]") {
     const Member member = strip(4);
     const auto at_end = [](double impulse) {
