@@ -100,7 +100,6 @@ Member bar(const std::vector<double>& lengths, Lumping lumping) {
         p.segments.push_back(
             {.length = s, .mass = m, .inertia = {inertia + 1e-9, inertia + 1e-9, 1e-4 * m}});
     }
-    if (clamped) p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
     p.sections.assign(p.segments.size() - 1, UsualAxisJoint(Perfect<double>({.strength = 100})));
     return Member(p);
 }
@@ -332,7 +331,7 @@ TEST_CASE("a column clamped at both ends that is struck at mid-height absorbs wh
             hold_across(member, of.length(), of.length(), true, false);
             world.add(member);
             mass.setLinearVelocity({0, 20, 0});
-            for (int i = 0; i < int(1.2 / frame); ++i) world.step(frame);
+            for (int i = 0; i < int(3 / frame); ++i) world.step(frame);
             CAPTURE(c.half, frame);
             CHECK(member.absorbed_energy() == Approx(c.work).epsilon(rough ? 0.01 : 2e-3));
             // small rotations in theory: 0.2 % of the deflection
