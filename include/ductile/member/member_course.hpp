@@ -179,8 +179,11 @@ class MemberCourse {
     }
     /// Of a blow of `energy` [J] that loads it to n.
     void expect_vibration(double energy, double n) noexcept {
-        vibration_.share = 1 / (n * n);
-        vibration_.ahead += energy * vibration_.share;
+        const double share = 1 / (n * n);
+        // one that follows does not end what is left of the one before
+        const bool left = vibration_.ahead > 0;
+        vibration_.share = left ? std::max(vibration_.share, share) : share;
+        vibration_.ahead += energy * share;
         vibration_.counted = all_work();
     }
     std::vector<PlacedPiece> rearrange(std::span<const PlacedPiece> bodies) {
