@@ -2,7 +2,7 @@
 //
 // Members in Bullet: one body until a section yields, against the same segments with a hinge
 // between each and the next, and against energies that do not depend on the step.
-#include <btBulletDynamicsCommon.h>
+#include "adapters/member_rig.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,193 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "core/member/strips.hpp"
-#include "ductile/bullet/bullet.hpp"
 #include "ductile/material/named.hpp"
 #include "ductile/section/rectangle.hpp"
 #include "support/throws.hpp"
 
-namespace {
-
 using namespace ductile;
+using namespace ductile::test;
 using bullet::World;
 using bullet::WorldParameters;
-using ductile::test::Lumping;
-using ductile::test::message_of;
-using ductile::test::strip;
-using Hinge = bullet::PlasticHinge<UsualAxisJoint>;
-
-constexpr bool rough = sizeof(btScalar) == sizeof(float);
-const btTransform here = btTransform::getIdentity();
-
-/// A world with what a test puts into it. It outlives its joints and members.
-struct Rig {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
-    std::vector<std::unique_ptr<btTypedConstraint>> constraints;
-
-    explicit Rig(const btVector3& gravity = {0, 0, 0}) {
-        engine.setGravity(gravity);
-        engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
-    }
-    ~Rig() {
-        for (auto& constraint : constraints) engine.removeConstraint(constraint.get());
-        for (auto& body : bodies) engine.removeRigidBody(body.get());
-    }
-    Rig(const Rig&) = delete;
-    Rig& operator=(const Rig&) = delete;
-
-    btCollisionShape* shape(std::unique_ptr<btCollisionShape> made) {
-        shapes.push_back(std::move(made));
-        return shapes.back().get();
-    }
-    /// `group` 0: it meets nothing.
-    btRigidBody& body(double mass, const btVector3& inertia, const btVector3& at,
-                      btCollisionShape* shape = nullptr, int group = 0, int mask = 0) {
-        if (shape == nullptr) shape = this->shape(std::make_unique<btSphereShape>(btScalar(0.01)));
-        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, shape, inertia);
-        info.m_startWorldTransform.setOrigin(at);
-        bodies.push_back(std::make_unique<btRigidBody>(info));
-        engine.addRigidBody(bodies.back().get(), group, mask);
-        bodies.back()->setActivationState(DISABLE_DEACTIVATION);
-        bodies.back()->setFriction(0);
-        return *bodies.back();
-    }
-    /// A box along z from the origin on, half a width `half` wide.
-    btCollisionShape* post(double half, double length) {
-        auto around = std::make_unique<btCompoundShape>();
-        around->addChildShape(
-            btTransform(btQuaternion::getIdentity(), btVector3(0, 0, btScalar(length / 2))),
-            shape(std::make_unique<btBoxShape>(
-                btVector3(btScalar(half), btScalar(half), btScalar(length / 2)))));
-        return shape(std::move(around));
-    }
-};
-
-constexpr int everything = btBroadphaseProxy::AllFilter, usual = btBroadphaseProxy::DefaultFilter;
-
-/// The same segments, each a body of its own.
-struct AlwaysJointed {
-    AlwaysJointed(Rig& rig, World& world, const Member& member) {
-        // hinges turn about z, members bend about x
-        const btMatrix3x3 turned(0, 0, 1, 1, 0, 0, 0, 1, 0);
-        double place = 0;
-        btRigidBody* before = nullptr;
-        for (int k = 0; k < member.segments(); ++k) {
-            const MemberSegment& segment = member.segment(k);
-            if (segment.held) continue;
-            const auto half = btScalar(segment.length / 2);
-            btRigidBody& body =
-                rig.body(segment.mass,
-                         {btScalar(segment.inertia[0]), btScalar(segment.inertia[1]),
-                          btScalar(segment.inertia[2])},
-                         {0, 0, btScalar(place) + half});
-            const btTransform start(turned, {0, 0, -half});
-            if (k > 0) {
-                const bool ground = before == nullptr;
-                const auto half_before = btScalar(member.segment(k - 1).length / 2);
-                hinges.push_back(std::make_unique<Hinge>(
-                    body, ground ? btTypedConstraint::getFixedBody() : *before, start,
-                    btTransform(turned, {0, 0, ground ? btScalar(0) : half_before}),
-                    member.section(k - 1)));
-                world.add(*hinges.back());
-            }
-            before = &body;
-            place += segment.length;
-        }
-        last = before;
-    }
-    [[nodiscard]] double absorbed_energy() const {
-        double sum = 0;
-        for (const auto& hinge : hinges) sum += hinge->absorbed_energy();
-        return sum;
-    }
-
-    std::vector<std::unique_ptr<Hinge>> hinges;
-    btRigidBody* last = nullptr;
-};
-
-/// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
-struct Struck {
-    Rig rig;
-    World world;
-    Member description;
-    std::unique_ptr<AlwaysJointed> always;
-    std::unique_ptr<bullet::Member> member;
-    btRigidBody* mass;
-
-    Struck(const Member& of, bool just_in_time, double tolerance = 0)
-        : world(rig.engine, {.tolerance = tolerance, .warn = {}}), description(of) {
-        mass = &rig.body(1, {1, 1, 1}, {0, 0, 1});
-        const btVector3 none(0, 0, 0);
-        if (!just_in_time) {
-            always = std::make_unique<AlwaysJointed>(rig, world, of);
-            const auto half = btScalar(of.segment(of.segments() - 1).length / 2);
-            rig.constraints.push_back(std::make_unique<btPoint2PointConstraint>(
-                *always->last, *mass, btVector3(0, 0, half), none));
-            rig.engine.addConstraint(rig.constraints.back().get());
-            return;
-        }
-        member = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
-        member->attach(1, [this](btRigidBody& piece, const btTransform& place) {
-            return std::make_unique<btPoint2PointConstraint>(piece, *mass, place.getOrigin(),
-                                                             btVector3(0, 0, 0));
-        });
-        world.add(*member, "post");
-    }
-    void strike(double speed) { mass->setLinearVelocity({0, btScalar(speed), 0}); }
-    [[nodiscard]] double absorbed_energy() const {
-        return member ? member->absorbed_energy() : always->absorbed_energy();
-    }
-    [[nodiscard]] double bend(int section) const {
-        return member ? member->bend(section) : always->hinges[std::size_t(section)]->rotation();
-    }
-};
-
-/// A ball that strikes the end of a clamped post, 0 ... 2 s.
-struct BallOnPost {
-    Rig rig;
-    World world;
-    std::unique_ptr<bullet::Member> post;
-    btRigidBody* ball;
-
-    BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
-               double half = 0.05, double gap = 0.00713)
-        : world(rig.engine, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
-        constexpr double radius = 0.1;
-        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(radius)));
-        btVector3 inertia;
-        sphere->calculateLocalInertia(btScalar(mass), inertia);
-        ball = &rig.body(mass, inertia,
-                         {0, btScalar(-half - radius - gap), btScalar(of.length() - 0.03)}, sphere,
-                         usual, everything);
-        ball->setLinearVelocity({0, btScalar(speed), 0});
-        post = std::make_unique<bullet::Member>(
-            rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(half, of.length()), usual, everything), of,
-            here, bullet::MemberBox{half, half});
-        world.add(*post, "post");
-    }
-    void go(double time, double frame) {
-        const int count = int(std::lround(time / frame));
-        for (int i = 0; i < count; ++i) world.step(frame);
-    }
-};
-
-Member heavy_post(int segments = 10, double strength = 500) {
-    MemberParameters p;
-    p.segments = lumped_segments(2, 24, segments, {1e-4, 1e-4, 2e-4});
-    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
-    p.sections.assign(p.segments.size() - 1,
-                      UsualAxisJoint(Perfect<double>({.strength = strength})));
-    return Member(p);
-}
-
-} // namespace
 
 TEST_CASE("just in time a struck cantilever moves as one whose sections are always open",
           "[bullet][member]") {

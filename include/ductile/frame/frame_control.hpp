@@ -22,6 +22,8 @@
 // predicted, u = -a t; the last two parts of a frame share what is left of it.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
+// Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
+// its accelerations are not compared with what follows.
 // Before a part: a contact that touches and closes gets a blow, at most three in one instant; a gap
 // that would close within the part ends it. What cannot have to be put back is not saved; where
 // that proves wrong the part stands, and says so.
@@ -72,6 +74,7 @@ class FrameControl {
     /// A part, judged [J].
     struct Judgement {
         double error = 0;
+        double of_rows = 0;   ///< of that, by flows
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
@@ -103,6 +106,7 @@ class FrameControl {
                                          double h, int tries);
     [[nodiscard]] double strike(PartEngine& engine, double h);
     void remember(const PartMotion& motion, double h);
+    void forget_accelerations() noexcept;
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
                bool at_event, bool jump);

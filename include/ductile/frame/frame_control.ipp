@@ -125,6 +125,11 @@ DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
     if (h > 0) before_ = h;
 }
 
+DUCTILE_INLINE void FrameControl::forget_accelerations() noexcept {
+    for (Past& past : past_) past.acceleration = 0;
+    before_ = 0;
+}
+
 /// Does a part of `h` or less, not past `gap`, of the frame's `left`; returns its length [s].
 DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double gap, double left) {
     constexpr int tries_at_gaps = 6;
@@ -197,6 +202,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.stop = off.stop;
         }
         ahead += work_ahead(row, h);
+        judged.of_rows = judged.error;
         power += row.strength * std::abs(row.start + row.end) / 2;
     }
     judged.moves = !(ahead <= 0); // also where it is no number
@@ -243,6 +249,8 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, judged, h);
     const bool began = fresh_; // a first short part, which says nothing of the next one's length
     remember(motion, h);
+    // a kick from elsewhere: what it accelerated by says nothing of the forces that follow
+    if (h <= engine.shortest_part() && judged.of_rows > judged.allowed) forget_accelerations();
     fresh_ = judged.ended || at_event;
     next_ = judged.moves && !began && !jump
                 ? h * detail::growth(judged.allowed, judged.error, 0.2, 3)

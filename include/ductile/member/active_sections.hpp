@@ -14,9 +14,12 @@
 //
 // Closed again is a section that held, moment within its strength, in some steps in a row. It does
 // not move then, so nothing is lost but the drift of its joint; and opening it too early or late
-// changes no motion, only what it costs.
+// changes no motion, only what it costs. Where a member is held more than once, impulses of the
+// closed one may be beyond a section that holds when it is open: after some such alarms each
+// doubles the steps.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -58,8 +61,13 @@ inline constexpr int no_section = -1;
 
 /// Counts the step that an open section's joint has committed; true where it closes.
 [[nodiscard]] inline bool closes(SectionState& section, const ActiveSections& rule = {}) noexcept {
-    section.held = section.joint.flowing || section.joint.broken ? 0 : section.held + 1;
-    return section.held >= rule.hold;
+    constexpr int few_alarms = 8, most_doublings = 10;
+    if (section.joint.flowing || section.joint.broken) {
+        section.held = section.alarms = 0;
+        return false;
+    }
+    ++section.held;
+    return section.held >= rule.hold << std::clamp(section.alarms - few_alarms, 0, most_doublings);
 }
 
 } // namespace ductile

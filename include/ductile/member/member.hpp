@@ -125,8 +125,13 @@ class Member {
 
 struct BeamParameters {
     double length = std::numeric_limits<double>::quiet_NaN(); ///< [m], > 0
-    int segments = 32;                                        ///< >= 1, beside one that is held
-    bool clamped = false;                                     ///< at its start
+    int segments = 32; ///< equal, >= 1, beside one that is held
+    /// Of the last segment, >= 0: into a half and what is halved again. A contact takes of a blow
+    /// what the segment that it meets takes, x/(1 + x) with x = μ s/(2 G) at an end and μ s/G
+    /// within the span, of a striker of mass G: 3 % of P13a's with 32 equal ones, 0.3 % with 4
+    /// halvings.
+    int halvings = 0;
+    bool clamped = false; ///< at its start
     /// Plastic rotation at which a section breaks [rad], > 0; infinite: never.
     double largest_bending = std::numeric_limits<double>::infinity();
 };
@@ -146,6 +151,19 @@ struct BeamParameters {
     return std::vector<MemberSegment>(std::size_t(count), segment);
 }
 
+/// The last of equal segments halved towards its end, `halvings` times.
+[[nodiscard]] inline std::vector<MemberSegment> lumped_segments(double length, double mass,
+                                                                int count, int halvings,
+                                                                const Vector3<double>& across) {
+    std::vector<MemberSegment> segments = lumped_segments(length, mass, count, across);
+    for (int i = 0; i < halvings; ++i) {
+        const MemberSegment last = segments.back();
+        segments.back() = lumped_segments(last.length, last.mass, 2, across).front();
+        segments.push_back(segments.back());
+    }
+    return segments;
+}
+
 /// A beam of one section and material that bends about the section's x axis.
 /// @throws std::invalid_argument where a number is missing or out of range.
 template <BiaxialSection T>
@@ -156,12 +174,15 @@ requires std::same_as<typename T::Scalar, double>
     if (parameters.segments < 1) {
         check::fail("Beam.segments", double(parameters.segments), "", "1 or more");
     }
+    if (parameters.halvings < 0) {
+        check::fail("Beam.halvings", double(parameters.halvings), "", "0 or more");
+    }
     const double area = section.area(), x = section.second_moment(SectionAxis::x) / area,
                  y = section.second_moment(SectionAxis::y) / area;
     MemberParameters member;
     member.segments =
         lumped_segments(parameters.length, material.density() * area * parameters.length,
-                        parameters.segments, {x, y, x + y});
+                        parameters.segments, parameters.halvings, {x, y, x + y});
     if (parameters.clamped) {
         member.segments.insert(member.segments.begin(),
                                MemberSegment{.length = 0, .mass = 0, .held = true});

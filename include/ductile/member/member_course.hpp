@@ -76,6 +76,20 @@ class MemberCourse {
                    ? 0
                    : least_strength_ * member_.section(0).parameters().least_travel;
     }
+    /// What blows leave in vibration of an elastic member, of what its sections did.
+    [[nodiscard]] const MemberVibration& vibration() const noexcept { return vibration_; }
+    void restore(const MemberVibration& vibration) noexcept { vibration_ = vibration; }
+    /// To be called where a step stands, `state` being of then; what it left in vibration [J].
+    double count_vibration() noexcept {
+        if (!(vibration_.ahead > 0)) return 0;
+        const double work = all_work();
+        const double lost =
+            std::clamp(vibration_.share * (work - vibration_.counted), 0.0, vibration_.ahead);
+        vibration_.counted = work;
+        vibration_.lost += lost;
+        vibration_.ahead = whole() ? 0 : vibration_.ahead - lost;
+        return lost;
+    }
     /// Largest left_over of the last `beyond` [-].
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
 
@@ -95,26 +109,35 @@ class MemberCourse {
     }
 
     /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { largest_ = 0; }
+    void begin_blow() noexcept {
+        largest_ = 0;
+        yields_ = false;
+    }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                              const MemberStrike& strike) {
         int nearest = no_section, least = std::numeric_limits<int>::max();
+        double utilisation = 0;
+        constexpr double lumped = 0.02; // of the largest that the blow would have loaded
         const bool first = largest_ == 0;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             const MemberBlow blow =
                 member_blow(member_, state_, forces_, strike.energy, strike.speed, strike.segment);
+            utilisation = std::max(utilisation, blow.utilisation);
+            yields_ = yields_ || blow.yields();
             for (const SectionForce& carried : forces_.sections) {
                 const double moment = std::abs(carried.bending);
                 if (first) largest_ = std::max(largest_, moment);
-                if (!beyond_in_blow(blow, carried)) continue;
+                // what is not left over from segments that are not quite lumped
+                if (!yields_ || !(moment > lumped * largest_)) continue;
                 const int away = std::abs(2 * carried.section + 1 - 2 * strike.segment);
                 if (away >= least) continue;
                 least = away;
                 nearest = carried.section;
             }
         }
+        if (first && nearest != no_section) expect_vibration(strike.energy, utilisation);
         return nearest;
     }
 
@@ -124,6 +147,7 @@ class MemberCourse {
         for (const int i : sections) {
             section(i).open = true;
             section(i).held = 0;
+            ++section(i).alarms;
         }
         return rearrange(bodies);
     }
@@ -148,17 +172,19 @@ class MemberCourse {
     }
 
   private:
-    /// Of an elastic member what its profile comes to; of a rigid one what is not left over from
-    /// segments that are not quite lumped.
-    [[nodiscard]] bool beyond_in_blow(const MemberBlow& blow, const SectionForce& carried) const {
-        constexpr double lumped = 0.02; // of the largest that the blow would have loaded
-        const double moment = std::abs(carried.bending);
-        if (member_.bending_stiffness() == std::numeric_limits<double>::infinity()) {
-            return moment > lumped * largest_;
-        }
-        SectionForce peak = carried;
-        peak.bending = peak_moment(member_, blow, carried);
-        return moment > lumped * largest_ && utilisation_of(member_, state_, peak, 1) > 1;
+    [[nodiscard]] double all_work() const noexcept {
+        double sum = 0;
+        for (const SectionState& section : state_) sum += section.joint.plastic_work;
+        return sum;
+    }
+    /// Of a blow of `energy` [J] that loads it to n.
+    void expect_vibration(double energy, double n) noexcept {
+        const double share = 1 / (n * n);
+        // one that follows does not end what is left of the one before
+        const bool left = vibration_.ahead > 0;
+        vibration_.share = left ? std::max(vibration_.share, share) : share;
+        vibration_.ahead += energy * share;
+        vibration_.counted = all_work();
     }
     std::vector<PlacedPiece> rearrange(std::span<const PlacedPiece> bodies) {
         before_ = std::move(pieces_);
@@ -191,7 +217,9 @@ class MemberCourse {
     std::vector<int> found_;
     InternalForces forces_;
     double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
-    double largest_ = 0; ///< moment of the blow's first solve [N m s]
+    MemberVibration vibration_;
+    bool yields_ = false; ///< this blow does, as a rigid-plastic member then
+    double largest_ = 0;  ///< moment of the blow's first solve [N m s]
 };
 
 } // namespace ductile

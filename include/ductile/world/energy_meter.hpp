@@ -111,6 +111,8 @@ class EnergyMeter {
     /// Between two steps bodies of members were split or made one, or what `account` says happened
     /// to them; `before`: held().total() before [J].
     void bodies_rearranged(double before, Account account = Account::members);
+    /// Of the flow that was booked, `energy` was elastic and rings down [J].
+    void rings_down(double energy);
     /// Keeps the account for one put_back or more, before `before_step`.
     void keep();
     void put_back();

@@ -77,6 +77,11 @@ DUCTILE_INLINE void EnergyMeter::bodies_rearranged(double before, Account accoun
     ledger_.update(last_);
 }
 
+DUCTILE_INLINE void EnergyMeter::rings_down(double energy) {
+    ledger_.book(Account::plastic, -energy);
+    ledger_.book(Account::vibration, energy);
+}
+
 DUCTILE_INLINE void EnergyMeter::keep() {
     kept_.ledger = ledger_;
     kept_.last = last_;

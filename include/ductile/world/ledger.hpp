@@ -5,9 +5,10 @@
 //   held(now) = kinetic + potential + elastic
 //   unexplained = held(at open) + supplied - held(now) - Σ booked
 //
-// Every booked entry is energy that left the world's bodies [J], positive when they lost it. With the
-// work of a row taken as impulse × mean of the velocities before and after, the entries add up to
-// the change of kinetic energy exactly, so `unexplained` is round-off unless an entry is missing.
+// Every booked entry is energy that left the world's bodies [J], positive when they lost it. With
+// the work of a row taken as impulse × mean of the velocities before and after, the entries add up
+// to the change of kinetic energy exactly, so `unexplained` is round-off unless an entry is
+// missing.
 //
 // Thread-safety: one ledger per thread.
 #pragma once
@@ -41,12 +42,14 @@ enum class Account : std::size_t {
                  ///< kinetic energy changed by turning an inertia tensor or by damping
     members,     ///< bodies of members that were split or made one: motion of pieces against each
                  ///< other, and what pieces of a static body brought or took with their weight
+    vibration,   ///< elastic energy of members that a blow yielded, which rings down
     count
 };
 
 [[nodiscard]] constexpr std::string_view to_string(Account account) noexcept {
     constexpr std::array<std::string_view, std::size_t(Account::count)> names{
-        "plastic", "friction", "contact", "joints", "damping", "sleep", "integration", "members"};
+        "plastic", "friction",    "contact", "joints",   "damping",
+        "sleep",   "integration", "members", "vibration"};
     return account < Account::count ? names[std::size_t(account)] : "unknown";
 }
 
@@ -70,9 +73,7 @@ class Ledger {
     [[nodiscard]] const HeldEnergy<S>& opened() const noexcept { return opened_; }
     [[nodiscard]] const HeldEnergy<S>& held() const noexcept { return now_; }
     [[nodiscard]] S supplied() const noexcept { return supplied_; }
-    [[nodiscard]] S booked(Account account) const noexcept {
-        return booked_[std::size_t(account)];
-    }
+    [[nodiscard]] S booked(Account account) const noexcept { return booked_[std::size_t(account)]; }
 
     /// Energy that no entry names [J]; round-off in a complete ledger.
     [[nodiscard]] S unexplained() const noexcept {

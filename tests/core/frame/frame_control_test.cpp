@@ -196,6 +196,22 @@ TEST_CASE("An error that does not come from the length of a part is a jump", "[f
     CHECK(report.left.energy >= 0.5);
 }
 
+TEST_CASE("A kick from elsewhere says nothing of the forces after it", "[frame]") {
+    // a mass that is tied to another one while it is faster; these slide on rows that stop late and
+    // early in the frame
+    constexpr double mass = 4, common = 3.75, early = 5e3, late = 500;
+    Engine engine;
+    engine.masses = {{.mass = 3, .velocity = 5}, {.mass = 1}, {.mass = 0.5}};
+    engine.rows = {{ground, 1, late}, {1, 2, early}};
+    engine.ties = {{0, 1}};
+    FrameControl control;
+    run(engine, control, 0.1);
+    const double energy = mass * common * common / 2;
+    CHECK(engine.rows[0].work + engine.rows[1].work == Approx(energy).epsilon(0.01));
+    CHECK(control.run().believed());
+    CHECK(control.run().worst_frame <= 20); // 22 where they are compared
+}
+
 TEST_CASE("What is no number is never believed, and ends", "[frame]") {
     Engine engine = sliding_mass();
     engine.breaks_down = true;

@@ -28,11 +28,17 @@ struct Contact {
     int a, b;
 };
 
+/// Holds b to a, whatever it takes, and says nothing of it.
+struct Tie {
+    int a, b;
+};
+
 class Engine final : public ductile::PartEngine {
   public:
     std::vector<Mass> masses;
     std::vector<PlasticRow> rows;
     std::vector<Contact> contacts;
+    std::vector<Tie> ties;
     bool foresees = true;     ///< gaps that close
     double kick = 0;          ///< rigid_work of every part, whatever its length [J]
     bool breaks_down = false; ///< its answers are no numbers
@@ -102,7 +108,7 @@ class Engine final : public ductile::PartEngine {
         for (Mass& m : masses) m.position += m.velocity * moves / 2;
         for (const Contact& c : contacts) closing.push_back(relative(c.a, c.b));
         for (Mass& m : masses) m.velocity += (m.force - m.spring * m.position) / m.mass * h;
-        std::vector<double> impulse(rows.size() + contacts.size(), 0);
+        std::vector<double> impulse(rows.size() + contacts.size() + ties.size(), 0);
         for (int sweep = 0; sweep < 4000; ++sweep) {
             double most = 0;
             const auto relax = [&](std::size_t i, int a, int b, double low, double high) {
@@ -118,6 +124,9 @@ class Engine final : public ductile::PartEngine {
             for (std::size_t i = 0; i < contacts.size(); ++i) {
                 if (gap(contacts[i]) >= closed) continue;
                 relax(rows.size() + i, contacts[i].a, contacts[i].b, 0, 1e30);
+            }
+            for (std::size_t i = 0; i < ties.size(); ++i) {
+                relax(rows.size() + contacts.size() + i, ties[i].a, ties[i].b, -1e30, 1e30);
             }
             if (most < 1e-14) break;
         }

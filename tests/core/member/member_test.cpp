@@ -155,6 +155,54 @@ TEST_CASE("a cantilever yields where a blow takes more than its strain energy at
     CHECK(member_blow(rigid, straight(rigid), in_rigid, 1e-9, 0, 8).plastic_share() == 1);
 }
 
+TEST_CASE("what a blow leaves in vibration outlasts a stronger one that follows", "[member]") {
+    const Rectangle<double> section({.width = 0.064, .height = 0.004});
+    const Material<double> steel(s355<double>());
+    MemberCourse course(beam(section, steel, {.length = 1, .segments = 8, .clamped = true}));
+    const std::vector<MemberLoad> loads{{.segment = 8, .point = {0, 0, 1}, .impulse = {0, 3, 0}}};
+    const double at_yield =
+        energy_at_yield(course.member(), course.state(), of_whole(course.member(), {}, loads));
+    const std::vector<PieceStep> steps(1);
+    const auto strike = [&](double energy) {
+        course.begin_blow();
+        return course.struck(steps, loads, {.energy = energy, .speed = 0, .segment = 8});
+    };
+    CHECK(strike(0.9 * at_yield) == no_section);
+    CHECK(course.vibration() == MemberVibration{});
+    CHECK(strike(4 * at_yield) == 7);
+    CHECK(course.vibration().share == Approx(0.25));
+    CHECK(course.vibration().ahead == Approx(at_yield));
+    CHECK(strike(100 * at_yield) == 7);
+    CHECK(course.vibration().share == Approx(0.25));
+    CHECK(course.vibration().ahead == Approx(2 * at_yield));
+    // a quarter of what flows, no more than what is ahead
+    const std::vector<int> opened{7};
+    const std::vector<PlacedPiece> whole{{&course.pieces().front(), {}, {}}};
+    CHECK(course.open(opened, whole).size() == 2);
+    course.section(7).joint.plastic_work = at_yield;
+    CHECK(course.count_vibration() == Approx(0.25 * at_yield));
+    CHECK(course.count_vibration() == 0);
+    course.section(7).joint.plastic_work = 100 * at_yield;
+    CHECK(course.count_vibration() == Approx(1.75 * at_yield));
+    CHECK(course.vibration().lost == Approx(2 * at_yield));
+}
+
+TEST_CASE("a beam is finer towards an end that is struck, and as heavy and long", "[member]") {
+    const Rectangle<double> section({.width = 0.064, .height = 0.004});
+    const Material<double> steel(s355<double>());
+    const Member equal = beam(section, steel, {.length = 2, .segments = 8, .clamped = true});
+    const Member finer =
+        beam(section, steel, {.length = 2, .segments = 8, .halvings = 3, .clamped = true});
+    REQUIRE(finer.segments() == equal.segments() + 3);
+    CHECK(finer.segment(7).length == Approx(0.25));
+    const double halves[] = {0.125, 0.0625, 0.03125, 0.03125};
+    for (int i = 0; i < 4; ++i) CHECK(finer.segment(8 + i).length == Approx(halves[i]));
+    CHECK(finer.length() == Approx(2).epsilon(1e-15));
+    CHECK(finer.mass() == Approx(equal.mass()).epsilon(1e-14));
+    CHECK(message_of([&] { (void)beam(section, steel, {.length = 2, .halvings = -1}); }) ==
+          "Beam.halvings = -1: must be 0 or more");
+}
+
 TEST_CASE("in a blow the section nearest to it opens, in a step the worst", "[member]") {
     const Member member = strip(4);
     const auto at_end = [](double impulse) {

@@ -26,5 +26,6 @@ TEST_CASE("accounts have names", "[energy]") {
     CHECK(to_string(Account::contact) == "contact");
     CHECK(to_string(Account::joints) == "joints");
     CHECK(to_string(Account::integration) == "integration");
+    CHECK(to_string(Account::vibration) == "vibration");
     CHECK(to_string(Account::count) == "unknown");
 }

@@ -85,7 +85,9 @@ class Divisible {
     virtual void find_struck(std::vector<int>& sections) = 0;
     virtual void open(std::span<const int> sections, bool ahead,
                       std::vector<DivisionChange>& told) = 0;
-    /// A tick stands: closes what held, false where nothing did.
+    /// A tick stands: what it left in vibration, of what its sections took [J].
+    virtual double count_vibration() = 0;
+    /// The same: closes what held, false where nothing did.
     virtual bool close_held(bool ahead, std::vector<DivisionChange>& told) = 0;
 };
 

@@ -31,6 +31,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/joint/usual_joints.hpp"
@@ -73,7 +74,10 @@ class Member {
     /// Of a section, accumulated plastic rotation [rad], and how far it is bent now [rad].
     [[nodiscard]] double plastic_rotation(int section) const;
     [[nodiscard]] double bend(int section) const;
-    [[nodiscard]] double absorbed_energy() const; ///< by all sections [J]
+    /// By all sections, what blows leave in vibration left out [J].
+    [[nodiscard]] double absorbed_energy() const;
+    /// What an elastic member gives back of what its sections took (member/blow.hpp) [J].
+    [[nodiscard]] double vibration() const noexcept { return course_.vibration().lost; }
     /// All of it: member_snapshot.hpp.
     [[nodiscard]] MemberState state() const;
     /// Largest share of what acted on it that was left over in the last step that was looked at
@@ -127,7 +131,9 @@ class Member {
     void make_joints(bool ahead);
     void make_attachments();
     void drop_attachment(Attachment& attachment);
-    void let_pieces_pass() const;
+    void let_pieces_pass();
+    /// Sections that broke since pieces were last told whom they meet.
+    void note_broken();
 
     btRigidBody& user_;
     MemberCourse course_;
@@ -138,6 +144,8 @@ class Member {
     std::function<void()> pushed_;     ///< tells it that a force was applied, the first one
     std::function<void()> rearranged_; ///< that its bodies are others
     std::vector<PieceBody> pieces_;    ///< by piece
+    PassingBodies passing_;            ///< of them; ends before they do
+    int broken_ = 0;                   ///< sections
     std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;
     std::vector<Force> forces_;

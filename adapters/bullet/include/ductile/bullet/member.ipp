@@ -120,7 +120,7 @@ DUCTILE_INLINE MemberState Member::state() const {
 }
 
 DUCTILE_INLINE double Member::absorbed_energy() const {
-    double sum = course_.closed_work();
+    double sum = course_.closed_work() - vibration();
     for (const OpenSection& open : joints_) sum += open.hinge->absorbed_energy();
     return sum;
 }
@@ -173,6 +173,13 @@ DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
 DUCTILE_INLINE void Member::require_possible() const {
     if (whole() && user_.getBroadphaseHandle() == nullptr) {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
+    }
+    if (user_.isKinematicObject()) throw std::logic_error("Member.body: must not be kinematic");
+    for (const PieceBody& piece : pieces_) {
+        if (piece.own == nullptr || piece.body->getBroadphaseHandle() != nullptr) continue;
+        throw std::logic_error(
+            "Member.pieces: must stay in the world while the member is open: addRigidBody them, or "
+            "end the member");
     }
 }
 
@@ -276,6 +283,7 @@ DUCTILE_INLINE void Member::close(std::span<const int> sections, bool ahead) {
 
 DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool ahead) {
     if (pieces_.size() == 1) maker_->take_out();
+    passing_.clear();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     const auto take_kept = [&old](const MemberRun& run) {
         for (PieceBody& piece : old) {
@@ -323,14 +331,22 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     make_attachments();
 }
 
-DUCTILE_INLINE void Member::let_pieces_pass() const {
+/// Pieces that hang together do, those with a broken section between them meet.
+DUCTILE_INLINE void Member::let_pieces_pass() {
+    passing_.clear();
+    broken_ = 0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        bool broken = false;
+        broken_ += i > 0 && course_.section(pieces_[i].run.first - 1).joint.broken;
         for (std::size_t j = i + 1; j < pieces_.size(); ++j) {
-            broken = broken || course_.section(pieces_[j].run.first - 1).joint.broken;
-            pieces_[i].body->setIgnoreCollisionCheck(pieces_[j].body, !broken);
+            if (course_.section(pieces_[j].run.first - 1).joint.broken) break;
+            if (pieces_[i].own != nullptr) passing_.add(*pieces_[i].body, *pieces_[j].body);
         }
     }
+}
+DUCTILE_INLINE void Member::note_broken() {
+    int broken = 0;
+    for (const OpenSection& open : joints_) broken += course_.section(open.section).joint.broken;
+    if (broken != broken_) let_pieces_pass();
 }
 
 DUCTILE_INLINE void Member::make_joints(bool ahead) {

@@ -33,6 +33,7 @@ class MemberSnapshot {
         btVector3 velocity, spin;
     };
     MemberState state_;
+    MemberVibration vibration_;
     std::vector<Body> bodies_;                                ///< by piece
     std::vector<PlasticHinge<UsualAxisJoint>::State> joints_; ///< of open sections, from the start
 };

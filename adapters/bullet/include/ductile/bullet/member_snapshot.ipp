@@ -12,10 +12,11 @@
 
 namespace ductile::bullet {
 
-DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member) : state_(member.state()) {
+DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
+    : state_(member.state()), vibration_(member.course_.vibration()) {
     for (const PieceBody& piece : member.pieces_) {
-        bodies_.push_back({piece.body->getCenterOfMassTransform(),
-                           piece.body->getLinearVelocity(), piece.body->getAngularVelocity()});
+        bodies_.push_back({piece.body->getCenterOfMassTransform(), piece.body->getLinearVelocity(),
+                           piece.body->getAngularVelocity()});
     }
     for (std::size_t i = 0; i + 1 < member.pieces_.size(); ++i) {
         for (const Member::OpenSection& open : member.joints_) {
@@ -35,6 +36,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     }
     MemberCourse& course = member.course_;
     course.restore(state_);
+    course.restore(vibration_);
     std::vector<PlacedPiece> pieces;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const MemberPiece& piece = course.pieces()[i];

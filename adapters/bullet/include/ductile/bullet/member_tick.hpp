@@ -53,6 +53,7 @@ class MemberTick final : public Divisible {
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE double count_vibration() override;
     DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
 
   private:

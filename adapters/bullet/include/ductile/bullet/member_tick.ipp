@@ -58,11 +58,19 @@ DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, bool ahead,
     member_.open(sections, ahead);
     for (const int section : sections) told.push_back({&member_, section});
 }
+DUCTILE_INLINE double MemberTick::count_vibration() {
+    if (member_.joints_.empty()) return 0;
+    member_.note_sections();
+    return member_.course_.count_vibration();
+}
 DUCTILE_INLINE bool MemberTick::close_held(bool ahead, std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;
     member_.note_sections();
     const std::vector<int> held = member_.course_.held();
-    if (held.empty()) return false;
+    if (held.empty()) {
+        member_.note_broken();
+        return false;
+    }
     member_.close(held, ahead);
     for (const int section : held) told.push_back({&member_, section});
     return true;

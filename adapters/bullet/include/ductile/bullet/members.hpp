@@ -86,6 +86,8 @@ class Members {
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
     [[nodiscard]] bool close_held();
+    /// What the tick that stands left in vibration of members that blows opened [J].
+    [[nodiscard]] double count_vibration();
     /// What opened and closed since the last call.
     void tell(const Tell& tell);
     /// Whose reports may change without being touched, or not any more, since the last call.

@@ -292,6 +292,12 @@ DUCTILE_INLINE void Members::open_found() {
     happened(EventKind::split);
 }
 
+DUCTILE_INLINE double Members::count_vibration() {
+    double sum = 0;
+    for (Course* course : here_) sum += course->of->count_vibration();
+    return sum;
+}
+
 DUCTILE_INLINE bool Members::close_held() {
     bool changed = false;
     for (Course* course : here_) {

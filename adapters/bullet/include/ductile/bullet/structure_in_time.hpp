@@ -32,6 +32,7 @@
 #include <vector>
 
 #include "ductile/bullet/divisible.hpp"
+#include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/structure/built_structure.hpp"
@@ -152,6 +153,7 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
+    double count_vibration() override { return 0; }
     DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
 
     World& world_;
@@ -161,6 +163,7 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     std::vector<DivisionReport> reports_;            ///< by joint
     std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by body
     std::vector<PieceBody> pieces_;                  ///< by cluster
+    PassingBodies passing_;                          ///< of them; ends before they do
     std::vector<OpenJoint> joints_;
     std::vector<Force> forces_;
     // a tick

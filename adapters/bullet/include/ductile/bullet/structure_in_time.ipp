@@ -152,6 +152,7 @@ DUCTILE_INLINE PieceBody StructureInTime::make_cluster(std::size_t c, const btRi
 
 DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change, bool ahead) {
     proved_.reset();
+    passing_.clear();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
     std::vector<const btRigidBody*> now(change.kept.size(), nullptr);
     for (std::size_t c = 0; c < change.kept.size(); ++c) {
@@ -188,7 +189,7 @@ DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
         if (!has_body(a) || !has_body(b)) continue;
         btRigidBody &one = *pieces_[course_.cluster_of(a)].body,
                     &other = *pieces_[course_.cluster_of(b)].body;
-        if (&one != &other) one.setIgnoreCollisionCheck(&other, true);
+        if (&one != &other) passing_.add(one, other);
     }
 }
 

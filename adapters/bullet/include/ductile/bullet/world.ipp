@@ -263,6 +263,8 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
         });
     }
     if (meter_) meter_->after_step(double(btScalar(dt)));
+    const double vibration = members_.count_vibration();
+    if (meter_) meter_->rings_down(vibration);
     rearrange([this] { return members_.close_held(); });
     tell_of_members();
     members_.drop_forces();

@@ -233,6 +233,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) {
+    if (h > 0) meter_.rings_down(members_.count_vibration());
     accept_(h);
     if (!(h > 0) || members_.empty()) return;
     const double before = meter_.held().total();
