@@ -74,6 +74,7 @@ class FrameControl {
     /// A part, judged [J].
     struct Judgement {
         double error = 0;
+        double given = 0;     ///< of it: by dampers
         double of_rows = 0;   ///< of that, by flows
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
@@ -109,7 +110,7 @@ class FrameControl {
     void forget_accelerations() noexcept;
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
-               bool at_event, bool jump);
+               bool at_event, bool jump, bool rings);
     void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);
 
     FrameParameters parameters_;

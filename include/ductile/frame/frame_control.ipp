@@ -141,7 +141,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     if (saved) engine.save();
     double first_error = 0;
     const double first = h;
-    bool jump = false, at_event = at_gap;
+    bool jump = false, at_event = at_gap, rings = false;
     for (int tries = 0;; ++tries) {
         const PartMotion& motion = engine.part(h);
         ++solves_;
@@ -153,11 +153,12 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
         const bool done = jump || !saved || spent() || tries > detail::most_tries || h <= shortest;
         if (good || done) {
-            stand(engine, motion, judged, h, at_event, jump);
+            stand(engine, motion, judged, h, at_event, jump, rings);
             return h;
         }
         engine.put_back();
         ++report_.rejected;
+        rings = rings || judged.given > judged.allowed;
         constexpr double of_length = 0.1, of_error = 0.7;
         if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
             jump = true;
@@ -192,6 +193,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         const PartRow& row = motion.rows[i];
         unmissed += row.strength * row.least * detail::unmissed;
         judged.too_far = std::max(judged.too_far, row.too_far);
+        judged.given += row.given;
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = row.strength * off.travel;
@@ -205,6 +207,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.of_rows = judged.error;
         power += row.strength * std::abs(row.start + row.end) / 2;
     }
+    judged.error += judged.given;
     judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
         judged.error += std::abs(motion.rigid_work);
@@ -238,10 +241,11 @@ DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMot
     return {h * detail::growth(judged.allowed, judged.error, 0.1, 0.7), false};
 }
 
-/// The part stands; `at_event`: it ends where a flow stopped or a gap closed.
+/// The part stands; `at_event`: it ends where a flow stopped or a gap closed; `rings`: it is as
+/// short as it is for a wave, which the next part has too.
 DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& motion,
-                                        const Judgement& judged, double h, bool at_event,
-                                        bool jump) {
+                                        const Judgement& judged, double h, bool at_event, bool jump,
+                                        bool rings) {
     ++report_.parts;
     report_.jumps += jump;
     report_.error += judged.error;
@@ -252,7 +256,7 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     // a kick from elsewhere: what it accelerated by says nothing of the forces that follow
     if (h <= engine.shortest_part() && judged.of_rows > judged.allowed) forget_accelerations();
     fresh_ = judged.ended || at_event;
-    next_ = judged.moves && !began && !jump
+    next_ = (judged.moves || rings) && !began && !jump
                 ? h * detail::growth(judged.allowed, judged.error, 0.2, 3)
                 : 0;
     engine.accept(h);

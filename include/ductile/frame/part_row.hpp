@@ -46,6 +46,7 @@ struct PartRow {
                            ///< [m/s | rad/s]
     double least = 0;      ///< travel that nobody misses [m | rad]
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
+    double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
     bool elastic = false;  ///< below its strength it is a spring
 
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }

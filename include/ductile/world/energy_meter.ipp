@@ -178,7 +178,7 @@ DUCTILE_INLINE void EnergyMeter::take_back() {
             add(Account::integration, course->ahead);
         }
     }
-    book_lists(record_.dt, 1);
+    book_lists(record_.dt);
     sign_ = 1;
     swap_record();
 }

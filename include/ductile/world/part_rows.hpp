@@ -3,8 +3,10 @@
 // What the joints of any engine tell a frame of their last part (frame/part_row.hpp).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "ductile/frame/part_row.hpp"
@@ -20,6 +22,7 @@ inline constexpr double resting_share = 0.01;
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
     const double share = acts ? link.utilisation() : 0;
+    double given = acts ? std::max(0.0, -link.last().damped) : 0;
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
         PartRow& row = rows.emplace_back();
@@ -34,6 +37,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.end = link.end_velocities()[i];
         row.share = share;
         row.strength = link.strength(axis);
+        row.given = std::exchange(given, 0);
     }
 }
 
