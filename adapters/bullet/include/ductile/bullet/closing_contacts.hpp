@@ -8,7 +8,8 @@
 //   K = 1/effective mass of the point
 //
 // Many of Bullet's algorithms know no contact before shapes overlap, so a gap is aimed at a hair
-// beyond its closing, and what touches overlaps.
+// beyond its closing, and what touches overlaps. What was just put down on something has no speed
+// yet, and would fall through it for a part: its gap closes by its weight.
 //
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
 // is not asked for; where nothing in the world could, nobody is. An island is that of Bullet's last
@@ -76,7 +77,9 @@ class ClosingContactsFinder {
         double speed;        ///< of any point of one that is awake [m/s]
         double inverse_mass; ///< of the heaviest [1/kg]
     };
-    [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world) const;
+    [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world, btScalar h) const;
+    void find_falling(const btDiscreteDynamicsWorld& world, btScalar h);
+    [[nodiscard]] btVector3 falls(const btCollisionObject& object) const;
     [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
     void add_joint(const btTypedConstraint& constraint);
     void note_found(const btCollisionObject& a, const btCollisionObject& b);
@@ -92,8 +95,9 @@ class ClosingContactsFinder {
         btScalar reach; ///< how far they can come in time [m]
     };
     Members& members_;
-    std::vector<const btRigidBody*> joined_; ///< bodies of plastic joints, sorted
-    std::vector<int> islands_;               ///< sorted
+    std::vector<const btRigidBody*> joined_;  ///< bodies of plastic joints, sorted
+    std::vector<const btRigidBody*> falling_; ///< what nothing holds, and just begins to, sorted
+    std::vector<int> islands_;                ///< sorted
     std::vector<Pair> pairs_;
     const LocalScope* scope_ = nullptr;
     std::vector<const btRigidBody*> found_bodies_;

@@ -8,6 +8,7 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "ductile/bullet/closing_contacts.hpp"
@@ -67,9 +68,17 @@ class ShapeReach {
 struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     ClosingContacts& found;
     double touching, apart;
-    ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach)
-        : found(result), touching(touch), apart(open) {
+    double h;       ///< of the part [s]
+    btVector3 fall; ///< acceleration of the first body beside the second [m/s²]
+    const btCollisionObject* first;
+    ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
+                  const btCollisionObject* a, const btVector3& falls)
+        : found(result), touching(touch), apart(open), h(length), fall(falls), first(a) {
         m_closestDistanceThreshold = reach;
+    }
+    /// Towards the second body, of who begins to fall on it [m/s²].
+    [[nodiscard]] double gain(const btCollisionObject& a, const btVector3& normal) const {
+        return std::max(0.0, (&a == first ? -1 : 1) * double(normal.dot(fall)));
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
@@ -78,9 +87,17 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const btVector3& normal = point.m_normalWorldOnB;
         const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
+        const double faster = gain(of_a, normal), distance = double(point.getDistance());
+        if (faster > 0 && yields > 0 && distance > -closed_gap / 2) {
+            const double end = std::max(speed, 0.0) + faster * h;
+            if (!(end * end > 2 * yields * apart)) return 0;
+            const double way = std::max(distance, 0.0) + closed_gap / 2;
+            const double at = std::sqrt(speed * speed + 2 * faster * way);
+            found.time = std::min(found.time, 2 * way / (speed + at));
+            return 0;
+        }
         if (!(speed > 0) || !(yields > 0)) return 0;
         const double energy = speed * speed / (2 * yields);
-        const double distance = double(point.getDistance());
         if (distance < closed_gap) {
             found.strikes = found.strikes || energy > touching;
         } else if (energy > apart) {
@@ -98,14 +115,16 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     found_islands_ = false;
     found_bodies_.clear();
     const double least = std::min(touching, apart);
-    const Fastest fastest = find_fastest(world);
+    find_falling(world, btScalar(h));
+    const Fastest fastest = find_fastest(world, btScalar(h));
     if (4 * fastest.speed * fastest.speed <= 2 * fastest.inverse_mass * least) return found;
     find_islands(world);
     if (joined_.empty() && members_.empty()) return found;
     list_pairs(world, btScalar(h), least, btScalar(fastest.speed));
     for (const Pair& pair : pairs_) {
         ClosingContacts of_pair;
-        detail::ClosestPoints points(of_pair, touching, apart, pair.reach);
+        detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a,
+                                     falls(*pair.a) - falls(*pair.b));
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);
@@ -126,8 +145,48 @@ DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
     return scope_ != nullptr ? scope_->bodies() : MovingBodies::all(world);
 }
 
-DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamicsWorld& world) const
-    -> Fastest {
+/// Many of Bullet's algorithms see no contact before shapes overlap: what was just put down on
+/// something falls for a part, and then strikes it.
+DUCTILE_INLINE void ClosingContactsFinder::find_falling(const btDiscreteDynamicsWorld& world,
+                                                        btScalar h) {
+    falling_.clear();
+    if (scope_ != nullptr) return; // the frame's first look is at all
+    std::vector<const btRigidBody*> slow;
+    for (const btRigidBody* body : bodies(world)) {
+        const btScalar gain = body->getGravity().length() * h;
+        if (body->isActive() && body->getNumConstraintRefs() == 0 && body->getInvMass() > 0 &&
+            body->getLinearVelocity().length2() < gain * gain) {
+            slow.push_back(body);
+        }
+    }
+    if (slow.empty()) return;
+    std::vector<char> touched(std::size_t(world.getNumCollisionObjects()));
+    const btDispatcher& dispatcher = *world.getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold =
+            *const_cast<btDispatcher&>(dispatcher).getManifoldByIndexInternal(i);
+        if (manifold.getNumContacts() == 0) continue;
+        for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
+            const int place = object->getWorldArrayIndex();
+            if (place >= 0) touched[std::size_t(place)] = 1;
+        }
+    }
+    std::erase_if(slow, [&touched](const btRigidBody* body) {
+        return touched[std::size_t(body->getWorldArrayIndex())] != 0;
+    });
+    falling_ = std::move(slow);
+    std::sort(falling_.begin(), falling_.end());
+}
+
+/// Acceleration of a body that nothing holds and that just begins to move, else zero [m/s²].
+DUCTILE_INLINE btVector3 ClosingContactsFinder::falls(const btCollisionObject& object) const {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    const bool does = body != nullptr && std::binary_search(falling_.begin(), falling_.end(), body);
+    return does ? body->getGravity() : btVector3(0, 0, 0);
+}
+
+DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamicsWorld& world,
+                                                        btScalar h) const -> Fastest {
     btScalar speed = 0, inverse_mass = SIMD_INFINITY;
     detail::ShapeReach reach;
     for (const btRigidBody* each : bodies(world)) {
@@ -136,6 +195,9 @@ DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamics
         if (!body.isActive()) continue;
         speed =
             std::max(speed, body.getLinearVelocity().length() + detail::turning_speed(body, reach));
+    }
+    for (const btRigidBody* body : falling_) {
+        speed = std::max(speed, 2 * h * body->getGravity().length());
     }
     return {double(speed), double(inverse_mass)};
 }
@@ -275,7 +337,7 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
                 body->getLinearVelocity() -
                 (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
             const btScalar closing =
-                away.length() + turning +
+                away.length() + turning + h * (falls(*body) - falls(*other)).length() +
                 (mate != nullptr ? detail::turning_speed(*mate, reach_of_mate) : btScalar(0));
             const double yields =
                 double(body->getInvMass()) +
