@@ -26,6 +26,7 @@ struct Options {
     bool quick = false;  ///< QuickStep
     bool hash = true;    ///< the space
     double limit = 1e9;  ///< travel at which hinges break [rad]
+    bool sleeps = false; ///< bodies may fall asleep, one island after the other
     bool motors = false; ///< in place of hinges PlasticMotors on ODE's own
 };
 
@@ -99,6 +100,13 @@ struct Pile {
         dBodySetMass(body, &mass);
         dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
         dGeomSetBody(dCreateBox(engine.space, 1, 1, 1), body);
+        if (options.sleeps) {
+            dBodySetAutoDisableFlag(body, 1);
+            dBodySetAutoDisableTime(body, 0);
+            dBodySetAutoDisableSteps(body, 2);
+            dBodySetAutoDisableLinearThreshold(body, dReal(0.3));
+            dBodySetAutoDisableAngularThreshold(body, dReal(0.3));
+        }
         bodies.push_back(body);
         meter.add(body);
     }
@@ -246,6 +254,11 @@ TEST_CASE("A pile that broke a hinge in a trial has it again, bit for bit", "[fr
         CAPTURE(motors);
         CHECK(frames_that_differ({.quick = true, .limit = 0.2, .motors = motors}, 16, 2, 100) == 0);
     }
+}
+
+TEST_CASE("A pile that falls asleep and is woken goes on bit for bit", "[frame]") {
+    CHECK(frames_that_differ({.quick = true, .sleeps = true}, 4, 1, 150) == 0);
+    CHECK(frames_that_differ({.quick = true, .hash = false, .sleeps = true}, 16, 2, 150) == 0);
 }
 
 TEST_CASE("A pile with motors that are plastic goes on bit for bit", "[frame]") {
