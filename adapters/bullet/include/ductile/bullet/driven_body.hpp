@@ -30,15 +30,13 @@ class DrivenBody {
     /// The body at the start of a tick of `dt` [s]; `only_tick`: stepSimulation has no other.
     [[nodiscard]] BodyState<double> at_start(const btRigidBody& body, double dt, bool only_tick);
     /// The same where bodies are half a step ahead, as driven_ways.hpp puts them.
-    [[nodiscard]] BodyState<double> at_start_ahead(const btRigidBody& body, double dt) {
-        dt_ = dt;
+    [[nodiscard]] BodyState<double> at_start_ahead(const btRigidBody& body) {
         known_ = false; // its place is not that of the end of a tick
-        return velocity_.at_start(body_motion(body), dt);
-    }
-    [[nodiscard]] BodyState<double> at_end_ahead(const btRigidBody& body) {
-        const BodyState<double> now = body_motion(body);
-        velocity_.booked(now, dt_);
-        return now;
+        velocity_.forget();
+        BodyState<double> start = body_motion(body);
+        start.velocity = to_core(body.getInterpolationLinearVelocity());
+        start.spin = to_core(body.getInterpolationAngularVelocity());
+        return start;
     }
     /// The same body at the end of that tick, booked herewith.
     const BodyState<double>& at_end() noexcept {

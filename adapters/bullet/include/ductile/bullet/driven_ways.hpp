@@ -26,8 +26,8 @@ class DrivenWays {
     /// has a motion state goes where that says.
     void begin(btDiscreteDynamicsWorld& world, btScalar length);
     /// Puts the bodies where they are `time` [s] after the frame's begin, with the velocities that
-    /// they have at `then`.
-    void place(btScalar time, btScalar then);
+    /// they have at `then`; as those of the interpolation with the ones they had at `begun`.
+    void place(btScalar time, btScalar begun, btScalar then);
     [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
 
   private:

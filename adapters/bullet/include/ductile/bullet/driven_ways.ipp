@@ -35,10 +35,10 @@ DUCTILE_INLINE void DrivenWays::begin(btDiscreteDynamicsWorld& world, btScalar l
         way.course.begin(mean, double(length));
         ways_.push_back(way);
     }
-    place(0, 0);
+    place(0, 0, 0);
 }
 
-DUCTILE_INLINE void DrivenWays::place(btScalar time, btScalar then) {
+DUCTILE_INLINE void DrivenWays::place(btScalar time, btScalar begun, btScalar then) {
     for (const auto& [body, from, to, course] : ways_) {
         btTransform now = from;
         if (time >= length_ * (1 - SIMD_EPSILON)) {
@@ -53,12 +53,10 @@ DUCTILE_INLINE void DrivenWays::place(btScalar time, btScalar then) {
         }
         body->setWorldTransform(now);
         body->setInterpolationWorldTransform(now);
-        const btVector3 velocity = to_bullet(course.velocity(double(then)));
-        const btVector3 spin = to_bullet(course.spin(double(then)));
-        body->setLinearVelocity(velocity);
-        body->setAngularVelocity(spin);
-        body->setInterpolationLinearVelocity(velocity);
-        body->setInterpolationAngularVelocity(spin);
+        body->setLinearVelocity(to_bullet(course.velocity(double(then))));
+        body->setAngularVelocity(to_bullet(course.spin(double(then))));
+        body->setInterpolationLinearVelocity(to_bullet(course.velocity(double(begun))));
+        body->setInterpolationAngularVelocity(to_bullet(course.spin(double(begun))));
     }
 }
 

@@ -53,7 +53,7 @@ DUCTILE_INLINE void HalfAhead::leave() {
 
 DUCTILE_INLINE void HalfAhead::move(std::span<btRigidBody* const> bodies, btScalar h,
                                     DrivenWays& ways, btScalar time) {
-    ways.place(time + h / 2, time + h);
+    ways.place(time + h / 2, time, time + h);
     ways_ = &ways;
     end_ = time + h;
     middles_.assign(bodies.size(), {});
@@ -74,7 +74,7 @@ DUCTILE_INLINE void HalfAhead::updateAction(btCollisionWorld* /*world*/, btScala
 
 DUCTILE_INLINE void HalfAhead::finish(std::span<btRigidBody* const> bodies, btScalar h) {
     if (!std::exchange(moved_, false)) return;
-    ways_->place(end_, end_);
+    ways_->place(end_, end_, end_);
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         btRigidBody* body = detail::awake_body(*bodies[i]);
         if (body == nullptr) continue;

@@ -170,14 +170,14 @@ DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double ti
         return with_mass ? body_state(body) : body_motion(body);
     }
     if (driven == nullptr) driven = std::make_unique<DrivenBody>();
-    if (ahead_) return driven->at_start_ahead(body, tick);
+    if (ahead_) return driven->at_start_ahead(body);
     const bool counts_ticks = world_ != nullptr;
     return driven->at_start(body, tick, !counts_ticks);
 }
 
 DUCTILE_INLINE BodyState<double> PlasticConstraint::at_end(int side, bool late) {
     DrivenBody* driven = driven_[std::size_t(side)].get();
-    if (driven != nullptr) return ahead_ ? driven->at_end_ahead(body(side)) : driven->at_end();
+    if (driven != nullptr) return ahead_ ? body_motion(body(side)) : driven->at_end();
     return late ? body_motion_of_last_tick(body(side)) : body_motion(body(side));
 }
 

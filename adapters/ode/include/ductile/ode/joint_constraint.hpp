@@ -87,6 +87,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     DUCTILE_INLINE void stand() override;
 
     DUCTILE_INLINE void begin_frame() override;
+    DUCTILE_INLINE void driven_begins(dBodyID body, const Vector3<double>& velocity,
+                                      const Vector3<double>& spin) override;
     DUCTILE_INLINE void keep_all() override;
     DUCTILE_INLINE void put_all_back() override;
     DUCTILE_INLINE void list_part_rows(std::size_t joint,

@@ -258,6 +258,13 @@ DUCTILE_INLINE void JointConstraint::begin_frame() {
     if (!std::exchange(put_back_, false)) link_.teleport(a, b);
 }
 
+DUCTILE_INLINE void JointConstraint::driven_begins(dBodyID body, const Vector3<double>& velocity,
+                                                   const Vector3<double>& spin) {
+    for (const int side : {0, 1}) {
+        if ((side == 0 ? a_ : b_) == body) driven_.begins_part(side, velocity, spin);
+    }
+}
+
 DUCTILE_INLINE void JointConstraint::keep_all() {
     link_.keep();
     kept_ = {release_, outside_, driven_, silent_};

@@ -33,20 +33,37 @@ class DrivenPair {
   public:
     [[nodiscard]] BodyState<double> at_start(int side, dBodyID body, const BodyState<double>& now,
                                              double dt) const {
-        return is_driven(body) ? velocity_[std::size_t(side)].at_start(now, dt) : now;
+        if (!is_driven(body)) return now;
+        const Part& part = part_[std::size_t(side)];
+        if (!part.known) return velocity_[std::size_t(side)].at_start(now, dt);
+        BodyState<double> start = now;
+        start.velocity = part.velocity;
+        start.spin = part.spin;
+        return start;
+    }
+    /// It has these velocities where the coming part of a frame begins.
+    void begins_part(int side, const Vector3<double>& velocity, const Vector3<double>& spin) {
+        part_[std::size_t(side)] = {true, velocity, spin};
     }
     void booked(int side, dBodyID body, double dt) {
         if (is_driven(body)) velocity_[std::size_t(side)].booked(body_motion(body), dt);
     }
     void forget() {
         for (DrivenVelocity& velocity : velocity_) velocity.forget();
+        part_ = {};
     }
     [[nodiscard]] static bool is_driven(dBodyID body) {
         return body != nullptr && dBodyIsKinematic(body) != 0;
     }
 
   private:
+    struct Part {
+        bool known = false;
+        Vector3<double> velocity{0, 0, 0}, spin{0, 0, 0};
+    };
+
     std::array<DrivenVelocity, 2> velocity_;
+    std::array<Part, 2> part_{};
 };
 
 class PlasticConstraint : public SteppedConstraint, public SharesWork {
@@ -66,6 +83,9 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
 
     /// A frame begins: what hands did to the bodies is seen now, before they are half a step ahead.
     virtual void begin_frame() = 0;
+    /// A kinematic body has these velocities where the coming part begins.
+    virtual void driven_begins(dBodyID /*body*/, const Vector3<double>& /*velocity*/,
+                               const Vector3<double>& /*spin*/) {}
     /// Keeps all that a part may change, for one put_all_back or more.
     virtual void keep_all() = 0;
     /// Everything is as it was at the last `keep_all`, bit for bit; the bodies are already.

@@ -82,6 +82,13 @@ DUCTILE_INLINE void WorldParts::begin_driven() {
     }
 }
 
+/// Kinematic bodies have the velocities that they have `time` [s] after the frame's begin.
+DUCTILE_INLINE void WorldParts::drive_as_at(double time) const {
+    for (const Driven& driven : driven_) {
+        drive(driven.course.velocity(time), driven.course.spin(time), driven.body);
+    }
+}
+
 DUCTILE_INLINE void WorldParts::drive(const Vector3<double>& velocity, const Vector3<double>& spin,
                                       dBodyID body) const {
     dBodySetLinearVel(body, dReal(velocity.x()), dReal(velocity.y()), dReal(velocity.z()));
@@ -137,13 +144,18 @@ DUCTILE_INLINE void WorldParts::put_back() {
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     const double half = blow ? 0 : h / 2;
+    const double end = blow ? time_ : time_ + h;
     for (const Driven& driven : driven_) {
-        drive(driven.course.velocity(time_ + half), driven.course.spin(time_ + half), driven.body);
+        for (PlasticConstraint* joint : of_.joints) {
+            joint->driven_begins(driven.body, driven.course.velocity(time_),
+                                 driven.course.spin(time_));
+        }
     }
-    if (!blow) time_ += h;
+    drive_as_at(time_ + half / 2); // the mean of the first half
     forces_.apply();
     of_.meter.before_step();
     half_ahead_.move(of_.bodies, half);
+    drive_as_at(end);
     if (!blow) of_.meter.bodies_ahead();
     look(blow ? nullptr : &snapshot_);
     closed_ = std::numeric_limits<double>::infinity();
@@ -161,7 +173,10 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
         closed_ = closing_.closed(half, half, apart_);
         closing_.remember();
     }
+    drive_as_at(end - half / 2);
     half_ahead_.move_on(half);
+    drive_as_at(end);
+    time_ = end;
     of_.book(h);
     drop_forces(); // those of bodies that sleep stay in ODE
     of_.meter.after_step(h);
