@@ -131,7 +131,14 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const double rigid = meter_.of_plastic_joints();
     const double contact = meter_.ledger().booked(Account::contact);
-    for (tick(h, true); members_.look(double(btScalar(h))); tick(h, true)) do_again();
+    // so short a part closes what is left of a gap: its impulses are a blow's
+    const bool instant = h < shortest_part();
+    if (instant) members_.begin_blow();
+    const auto look = [&] {
+        const auto length = double(btScalar(h));
+        return instant ? members_.look_blow(length) : members_.look(length);
+    };
+    for (tick(h, true); look(); tick(h, true)) do_again();
     tell();
     motion_.rigid_work = meter_.of_plastic_joints() - rigid;
     motion_.contact_work = meter_.ledger().booked(Account::contact) - contact;
