@@ -151,7 +151,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries == 0) first_error = judged.error;
         const bool good =
             judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
-        const bool done = jump || !saved || spent() || tries > detail::most_tries || h <= shortest;
+        const bool done = jump || !saved || spent() || tries > detail::most_tries ||
+                          (h <= shortest && judged.closed == 0);
         if (good || done) {
             stand(engine, motion, judged, h, at_event, jump, rings);
             return h;
@@ -166,12 +167,12 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             h = first;
         } else {
             // nothing is known of what was before: a short part first
-            const bool start = tries == 0 && past_.empty();
+            const bool start = tries == 0 && past_.empty() && judged.closed == 0;
             const Shorter next =
                 start ? Shorter{detail::start_share * h, false} : shorter(judged, motion, h, tries);
             fresh_ = fresh_ || start;
             at_event = next.at_event;
-            h = std::max(next.length, shortest);
+            h = std::max(next.length, (judged.closed > 0 ? detail::hair : 1) * shortest);
         }
     }
 }

@@ -203,7 +203,14 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
         return motion_;
     }
-    for (tick(h, true); members_.look(double(btScalar(h))); tick(h, true)) do_again();
+    // so short a part closes what is left of a gap: its impulses are a blow's
+    const bool instant = h < shortest_part();
+    if (instant) members_.begin_blow();
+    const auto look = [&] {
+        const auto length = double(btScalar(h));
+        return instant ? members_.look_blow(length) : members_.look(length);
+    };
+    for (tick(h, true); look(); tick(h, true)) do_again();
     while (local_ && join_touched()) tick(h, true);
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
