@@ -22,6 +22,7 @@ class DrivenCourse {
   public:
     /// A frame of `length` > 0 [s] with the mean velocities of `mean`.
     void begin(const BodyState<double>& mean, double length) noexcept {
+        const Vector3<double> velocity = this->velocity(length_), spin = this->spin(length_);
         const BodyState<double> last = past_.at_start(mean, length);
         past_.booked(mean, length);
         velocity_ = mean.velocity;
@@ -29,6 +30,8 @@ class DrivenCourse {
         change_ = difference(mean.velocity, last.velocity);
         turning_ = difference(mean.spin, last.spin);
         length_ = length;
+        first_velocity_ = is_zero(change_) ? this->velocity(0) : velocity;
+        first_spin_ = is_zero(turning_) ? this->spin(0) : spin;
     }
 
     /// `time` [s] after the frame's begin, as all that follows.
@@ -37,6 +40,14 @@ class DrivenCourse {
     }
     [[nodiscard]] Vector3<double> spin(double time) const noexcept {
         return sum(spin_, scaled(time / length_ - 0.5, turning_));
+    }
+    /// The same where a part begins that is then: what it jumps by between two frames it gains in
+    /// the first part, as a jump would be a blow to its joints.
+    [[nodiscard]] Vector3<double> part_velocity(double time) const noexcept {
+        return time > 0 ? velocity(time) : first_velocity_;
+    }
+    [[nodiscard]] Vector3<double> part_spin(double time) const noexcept {
+        return time > 0 ? spin(time) : first_spin_;
     }
     /// From where the frame began [m].
     [[nodiscard]] Vector3<double> way(double time) const noexcept {
@@ -55,6 +66,8 @@ class DrivenCourse {
     DrivenVelocity past_;
     Vector3<double> velocity_ = Vector3<double>::Zero(), spin_ = Vector3<double>::Zero();
     Vector3<double> change_ = Vector3<double>::Zero(), turning_ = Vector3<double>::Zero();
+    Vector3<double> first_velocity_ = Vector3<double>::Zero(),
+                    first_spin_ = Vector3<double>::Zero();
     double length_ = 1;
 };
 

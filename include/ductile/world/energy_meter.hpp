@@ -64,6 +64,7 @@ struct MeteredJoint {
     Vector3<double> force_b{0, 0, 0};
     Vector3<double> torque_b{0, 0, 0};
     const PairQueries* plastic = nullptr; ///< whose flow is a part of this; null: nobody's
+    bool driven = false; ///< of a body whose motion is prescribed: what moves that pays too
 };
 
 /// One contact point of a step.

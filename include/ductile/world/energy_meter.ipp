@@ -269,7 +269,7 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
                 joint.plastic->release().energy - before->released;
     }
     add(Account::joints, taken - named);
-    if (joint.plastic != nullptr) {
+    if (joint.plastic != nullptr && !joint.driven) {
         of_plastic_joints_ += sign_ * (taken - named);
         step_plastic_ += taken - named;
     }

@@ -100,7 +100,9 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
             {&constraint, &constraint.getRigidBodyA(), &constraint.getRigidBodyB(),
              to_core(feedback->m_appliedForceBodyA), to_core(feedback->m_appliedTorqueBodyA),
              to_core(feedback->m_appliedForceBodyB), to_core(feedback->m_appliedTorqueBodyB),
-             plastic != nullptr ? &plastic->queries() : nullptr});
+             plastic != nullptr ? &plastic->queries() : nullptr,
+             constraint.getRigidBodyA().isKinematicObject() ||
+                 constraint.getRigidBodyB().isKinematicObject()});
     });
 }
 

@@ -68,7 +68,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
             continue;
         }
         joints.push_back({id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
-                          to_core(feedback->f2), to_core(feedback->t2), nullptr});
+                          to_core(feedback->f2), to_core(feedback->t2), nullptr, false});
     }
     for (const PlasticConstraint* constraint : plastic_) {
         const auto found = of_plastic.find(constraint->id());
@@ -83,7 +83,9 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
                  outside.torque_a,
                  scaled(-1, outside.force),
                  outside.torque_b,
-                 &constraint->queries()};
+                 &constraint->queries(),
+                 (a != nullptr && dBodyIsKinematic(a) != 0) ||
+                     (b != nullptr && dBodyIsKinematic(b) != 0)};
         // all motors of one of ODE's joints share its feedback: the first has it
         const dJointFeedback* feedback = std::exchange(found->second, nullptr);
         if (feedback == nullptr) continue;

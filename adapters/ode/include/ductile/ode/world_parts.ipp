@@ -147,8 +147,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     const double end = blow ? time_ : time_ + h;
     for (const Driven& driven : driven_) {
         for (PlasticConstraint* joint : of_.joints) {
-            joint->driven_begins(driven.body, driven.course.velocity(time_),
-                                 driven.course.spin(time_));
+            joint->driven_begins(driven.body, driven.course.part_velocity(time_),
+                                 driven.course.part_spin(time_));
         }
     }
     drive_as_at(time_ + half / 2); // the mean of the first half
