@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing, builds, among it every public header alone, and runs every test.
+# Installs what is missing, builds, among it every public header alone, and runs every test. The
+# benchmarks are compiled without being made (bench/run.sh makes them).
 #   tests/run.sh [PRESET ...]     presets of CMakePresets.json; default: release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 cmake/install-packages.sh
 for preset in "${@:-release}"; do
     echo "== $preset"
-    cmake --preset "$preset" -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=ON >/dev/null
+    cmake --preset "$preset" -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=ON -DDUCTILE_BENCH=SYNTAX >/dev/null
     cmake --build --preset "$preset"
     ctest --preset "$preset" -j "$(nproc)"
 done

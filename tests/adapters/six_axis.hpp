@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "ductile/ductile.hpp"
+#include "support/axes_along.hpp"
 
 namespace ductile::test {
 
@@ -49,7 +50,7 @@ inline M3 turned(double angle, const V3& axis) {
 
 /// Axes whose z, the member's, points along `z`.
 inline M3 along(const V3& z) {
-    return Eigen::Quaternion<double>::FromTwoVectors(V3::UnitZ(), z).toRotationMatrix();
+    return axes_along(z);
 }
 
 /// Travel of a row that stops from speed `u` at deceleration `a`, as symplectic Euler moves it.

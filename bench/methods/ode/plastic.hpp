@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -63,10 +64,13 @@ inline std::unique_ptr<Holder> elastic_plastic(const OdeSite& site) {
     return plastic(site, site.joint.stiffness);
 }
 inline std::unique_ptr<Holder> plastic_joint(const OdeSite& site) {
-    const Vector& axis = site.joint.axis;
+    // z to the axis by the shortest turn
+    const Vector z = Vector::UnitZ(), axis = site.joint.axis.normalized();
+    const Vector across = axis.z() > -1 ? z.cross(axis).stableNormalized() : Vector::UnitX();
+    const double angle = std::atan2(z.cross(axis).norm(), axis.z());
     const ductile::JointFrame<double> frame{
         .origin = site.joint.anchor,
-        .axes = Eigen::Quaterniond::FromTwoVectors(Vector::UnitZ(), axis).toRotationMatrix()};
+        .axes = Eigen::AngleAxisd(angle, across).toRotationMatrix()};
     return std::make_unique<Plastic<ductile::ode::PlasticJoint<SixAxes>>>(site, frame,
                                                                           six_axes(site.joint));
 }

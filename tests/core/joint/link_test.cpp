@@ -22,6 +22,7 @@
 #include "ductile/surface/ellipsoid.hpp"
 #include "ductile/surface/independent_axes.hpp"
 #include "reference/pair_world.hpp"
+#include "support/axes_along.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -77,8 +78,7 @@ TEST_CASE("a rotor on a link stops after the discrete travel, many turns on, abo
     // I = 2 kg m², M_p = 40 N m, 30 rad/s: 22.5 rad less ω₀ dt/2, 900 J
     const V3 axis = GENERATE(V3(0, 0, 1), V3(1, 2, 2), V3(-3, 1, 0.5));
     const double dt = 1.0 / 240;
-    const M3 to_axis =
-        Eigen::Quaternion<double>::FromTwoVectors(V3::UnitZ(), axis).toRotationMatrix();
+    const M3 to_axis = test::axes_along(axis);
     Body rotor = body(1, 2, V3(1, 2, 3));
     rotor.spin = 30 * axis.normalized();
     const JointFrame<double> in_b{V3(1, 2, 3), to_axis};
@@ -362,8 +362,7 @@ TEST_CASE("a turn that a link cannot follow is unreliable, and says how far it w
             return link.unseen_turn();
         };
         if (all) return see(Link(six(capacities()), all_joint_axes, {}, {}));
-        const M3 along =
-            Eigen::Quaternion<double>::FromTwoVectors(V3::UnitZ(), axis).toRotationMatrix();
+        const M3 along = test::axes_along(axis);
         return see(Link(hinge(40), {JointAxis::torsion}, {V3::Zero(), along}, {V3::Zero(), along}));
     };
     const V3 still = V3::Zero();

@@ -15,6 +15,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 #include "reference/pair_world.hpp"
+#include "support/axes_along.hpp"
 
 using namespace ductile;
 using ductile::reference::PairWorld;
@@ -35,7 +36,7 @@ void holds(Joint joint, const Axes& axes) {
     arm.spin = hub.spin = V3(0, 0, rate);
     arm.velocity = hub.spin.cross(out);
     // frames with z, the member's, along the arm
-    const M3 along = Eigen::Quaternion<double>::FromTwoVectors(V3::UnitZ(), out).toRotationMatrix();
+    const M3 along = test::axes_along(out);
     PairWorld world(arm, hub,
                     Link(std::move(joint), axes, {V3(-out / 2), along}, {V3(out / 2), along}));
     for (int i = 0; i < 200; ++i) world.step(dt, V3::Zero(), V3::Zero(), 0.2 / dt);
