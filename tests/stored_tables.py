@@ -68,35 +68,6 @@ def misses(path):
     return [sum(row["right"] == "no" for row in ours), len(ours)]
 
 
-def at_game_step(path):
-    """The best errors at 1/60 s, and what 1 % costs with steps that are fixed and of first order."""
-    rows = [row for row in rows_of(path) if row["quantity"] != "absorbed_energy"]
-
-    def best(rows, column):
-        return min(float(row[column]) for row in rows if row[column])
-
-    def error(rows, column):
-        return "exact" if best(rows, column) < 1e-9 else f"{100 * best(rows, column):.2g} %"
-
-    lines = []
-    for (scene,) in each(rows, "scene"):
-        ours = [row for row in rows if row["scene"] == scene and is_ours(row)]
-        others = [row for row in rows if row["scene"] == scene and not is_ours(row)]
-        fixed = [row for row in ours if not row["method"].endswith(("-leapfrog", "-adaptive"))]
-        lines.append([scene, *[error(side, column) for side in (ours, others)
-                               for column in ("error_at_60Hz", "energy_error_at_60Hz")],
-                      f"{best(fixed, 'cost_0.01') / best(others, 'cost_0.01'):.2f}"])
-    return table(["scene", "ours: motion", "energy", "others: motion", "energy", "cost of 1 %, ours / other"], lines)
-
-
-def frame_cells(path):
-    """Cells of the frame map, and of ours: within 5 and 1 %, wrong and not said, right and said to be wrong."""
-    heads = ("cells", "ours, 5 %", "1 %", "ours wrong, unsaid", "false alarms")
-    rows = [[cell.strip() for cell in line.strip("|").split("|")]
-            for line in section(path, "Cells that are right").splitlines()]
-    return [next(row for row in rows if row[0] == "all")[rows[0].index(head)] for head in heads]
-
-
 def cost_ratios(rows):
     """Time of our joint over that of the engine's own: by column, set-up and number of joints."""
     time = {(row["engine"], row["precision"], row["joint"], row["islands"] == "1", row["count"]):
