@@ -8,7 +8,6 @@
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/members.hpp"
@@ -97,6 +96,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     ClosingContacts found;
     found_islands_ = false;
     found_bodies_.clear();
+    foreign_.clear();
     const double least = std::min(touching, apart);
     const Fastest fastest = find_fastest(world);
     if (4 * fastest.speed * fastest.speed <= 2 * fastest.inverse_mass * least) return found;
@@ -257,10 +257,6 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         for (btCollisionObject* other : near.found) {
             btRigidBody* mate = btRigidBody::upcast(other);
             if (other == body || other->getBroadphaseHandle() == nullptr) continue;
-            // where it is now is not where it was
-            if (scope_ != nullptr && !other->isStaticOrKinematicObject() && !scope_->has(*other)) {
-                continue;
-            }
             // seen from there
             if (still &&
                 (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
@@ -268,7 +264,7 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
             }
             // both ways only once
             if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
-                std::less<const btCollisionObject*>()(other, body)) {
+                other->getWorldArrayIndex() < body->getWorldArrayIndex()) {
                 continue;
             }
             const btVector3 away =
@@ -293,7 +289,12 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
                 continue;
             }
             if (!world.getDispatcher()->needsCollision(body, other)) continue;
-            pairs_.push_back({body, other, reach});
+            if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
+                !scope_->has(*other)) {
+                foreign_.push_back(mate); // where it is now is not where it was
+            } else {
+                pairs_.push_back({body, other, reach});
+            }
         }
     }
 }

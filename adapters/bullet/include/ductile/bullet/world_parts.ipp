@@ -446,11 +446,15 @@ DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
 
 DUCTILE_INLINE bool WorldParts::join_touched() {
     if (local_tick_.touched().empty()) return false;
-    std::vector<char> chosen(std::size_t(world_.getNumCollisionObjects()));
-    for (const btRigidBody* body : local_tick_.touched()) {
-        chosen[std::size_t(body->getWorldArrayIndex())] = 1;
-    }
     put_back();
+    join(std::vector<btRigidBody*>(local_tick_.touched()));
+    save();
+    return true;
+}
+
+DUCTILE_INLINE void WorldParts::join(const std::vector<btRigidBody*>& met) {
+    std::vector<char> chosen(std::size_t(world_.getNumCollisionObjects()));
+    for (const btRigidBody* body : met) chosen[std::size_t(body->getWorldArrayIndex())] = 1;
     std::vector<btRigidBody*> joined(scope_.bodies().begin(), scope_.bodies().end()), others;
     std::vector<int> tags;
     for (const btRigidBody* body : MovingBodies::all(world_)) {
@@ -475,8 +479,6 @@ DUCTILE_INLINE bool WorldParts::join_touched() {
     scope_.set(world_, std::move(joined));
     narrow_to(scope_);
     forces_act_ = false;
-    save();
-    return true;
 }
 
 DUCTILE_INLINE std::size_t WorldParts::number(int place, const PlasticConstraint& joint) {
@@ -493,7 +495,11 @@ DUCTILE_INLINE std::size_t WorldParts::number(int place, const PlasticConstraint
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     apart_ = apart;
     const double ahead = decided_ ? h : std::max(h, length_);
-    const ClosingContacts found = closing_.find(world_, ahead, touching, apart);
+    ClosingContacts found = closing_.find(world_, ahead, touching, apart);
+    while (local_ && !closing_.foreign().empty()) {
+        join(std::vector<btRigidBody*>(closing_.foreign()));
+        found = closing_.find(world_, ahead, touching, apart);
+    }
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
     return found;
