@@ -57,6 +57,8 @@ class ClosingContactsFinder {
     [[nodiscard]] std::span<const btRigidBody* const> found_bodies() const noexcept {
         return found_bodies_;
     }
+    /// Bodies beside the scope's that the last `find` would have had to look at.
+    [[nodiscard]] const std::vector<btRigidBody*>& foreign() const noexcept { return foreign_; }
     /// As PartEngine::closing. A member is struck like an island with plastic joints.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
@@ -101,6 +103,7 @@ class ClosingContactsFinder {
     std::vector<Pair> pairs_;
     const LocalScope* scope_ = nullptr;
     std::vector<const btRigidBody*> found_bodies_;
+    std::vector<btRigidBody*> foreign_;
     bool found_islands_ = false; ///< of the last `find`, which may need none
 };
 

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/members.hpp"
@@ -114,6 +113,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     ClosingContacts found;
     found_islands_ = false;
     found_bodies_.clear();
+    foreign_.clear();
     const double least = std::min(touching, apart);
     find_falling(world, btScalar(h));
     const Fastest fastest = find_fastest(world, btScalar(h));
@@ -319,10 +319,6 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         for (btCollisionObject* other : near.found) {
             btRigidBody* mate = btRigidBody::upcast(other);
             if (other == body || other->getBroadphaseHandle() == nullptr) continue;
-            // where it is now is not where it was
-            if (scope_ != nullptr && !other->isStaticOrKinematicObject() && !scope_->has(*other)) {
-                continue;
-            }
             // seen from there
             if (still &&
                 (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
@@ -330,7 +326,7 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
             }
             // both ways only once
             if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
-                std::less<const btCollisionObject*>()(other, body)) {
+                other->getWorldArrayIndex() < body->getWorldArrayIndex()) {
                 continue;
             }
             const btVector3 away =
@@ -355,7 +351,12 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
                 continue;
             }
             if (!world.getDispatcher()->needsCollision(body, other)) continue;
-            pairs_.push_back({body, other, reach});
+            if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
+                !scope_->has(*other)) {
+                foreign_.push_back(mate); // where it is now is not where it was
+            } else {
+                pairs_.push_back({body, other, reach});
+            }
         }
     }
 }

@@ -19,10 +19,9 @@
 //
 //   in trouble   islands, before or after that part, with a plastic row that moved, a joint that
 //                broke, a contact that closes; islands that these may reach within the frame
-//   touched      an island that such a part finds in contact with one in trouble, unforeseen, is
-//   put
-//                back to the frame's begin, brought to where the part begins by a part of its own,
-//                and comes along; the part is done again
+//   met          an island that one of these is about to touch, or does, is put back to the
+//                frame's begin, brought to where the part begins by a part of its own, and comes
+//                along; a part that found it is done again
 //
 // Not so with members, kinematic bodies, continuous collision, callbacks and actions, or worlds and
 // solvers of another kind, nor where half of the bodies are in trouble: then all is done again.
@@ -105,8 +104,10 @@ class WorldParts final : public PartEngine {
     void narrow_to(LocalScope& scope);
     void widen();
     void go_back_alone(LocalScope& scope);
-    /// Bodies that the last tick touched come along; true where there were some, and the tick was
-    /// put back.
+    /// Islands of these come along from now on.
+    void join(const std::vector<btRigidBody*>& met);
+    /// Those of bodies that the last tick touched; true where there were some, and the tick was put
+    /// back.
     [[nodiscard]] bool join_touched();
 
     /// Back to before it, with the sections open that it was beyond.

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member.hpp: pieces, the joints between them, what is attached. A part of member.ipp.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/member_book.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool ahead) {
+    if (pieces_.size() == 1) maker_->take_out();
+    passing_.clear();
+    std::vector<PieceBody> old = std::exchange(pieces_, {});
+    const auto take_kept = [&old](const MemberRun& run) {
+        for (PieceBody& piece : old) {
+            if (piece.own != nullptr && piece.run == run) return std::move(piece);
+        }
+        return PieceBody{};
+    };
+    std::vector<const PlacedPiece*> made;
+    for (const PlacedPiece& placed : pieces) {
+        PieceBody piece = pieces.size() > 1 ? take_kept(placed.piece->run) : PieceBody{};
+        piece.run = placed.piece->run;
+        made.push_back(piece.body == nullptr ? &placed : nullptr);
+        pieces_.push_back(std::move(piece));
+    }
+    // constraints end before their bodies
+    std::erase_if(joints_, [this](const OpenSection& open) {
+        const std::size_t lower = course_.piece_of(open.section);
+        const bool stays = course_.section(open.section).open &&
+                           pieces_[lower].body == &open.hinge->getRigidBodyB() &&
+                           pieces_[lower + 1].body == &open.hinge->getRigidBodyA();
+        return !stays;
+    });
+    for (Attachment& attachment : attachments_) {
+        if (pieces_[course_.piece_of(attachment.segment)].body != attachment.body) {
+            drop_attachment(attachment);
+        }
+    }
+    for (PieceBody& piece : old) {
+        if (piece.own == nullptr) continue;
+        detail::MemberBook::all().leave(piece.body);
+        world_->removeRigidBody(piece.body);
+    }
+    if (pieces.size() == 1) {
+        pieces_[0].body = &user_;
+        maker_->put_whole(pieces[0], course_.is_straight());
+    } else {
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            if (made[i] == nullptr) continue;
+            pieces_[i] = maker_->make(*made[i]);
+            if (pieces_[i].own != nullptr) detail::MemberBook::all().enter(pieces_[i].body, this);
+        }
+        let_pieces_pass();
+    }
+    make_joints(ahead);
+    make_attachments();
+}
+
+/// Pieces that hang together do, those with a broken section between them meet.
+DUCTILE_INLINE void Member::let_pieces_pass() {
+    passing_.clear();
+    broken_ = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        broken_ += i > 0 && course_.section(pieces_[i].run.first - 1).joint.broken;
+        for (std::size_t j = i + 1; j < pieces_.size(); ++j) {
+            if (course_.section(pieces_[j].run.first - 1).joint.broken) break;
+            if (pieces_[i].own != nullptr) passing_.add(*pieces_[i].body, *pieces_[j].body);
+        }
+    }
+}
+DUCTILE_INLINE void Member::note_broken() {
+    int broken = 0;
+    for (const OpenSection& open : joints_) broken += course_.section(open.section).joint.broken;
+    if (broken != broken_) let_pieces_pass();
+}
+
+DUCTILE_INLINE void Member::make_joints(bool ahead) {
+    for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
+        const int section = pieces_[i].run.last;
+        if (std::any_of(joints_.begin(), joints_.end(),
+                        [&](const OpenSection& open) { return open.section == section; })) {
+            continue;
+        }
+        const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
+        const JointFrame<double> in_lower = lower.section(description(), section, true);
+        const bool ground = pieces_[i].own == nullptr;
+        const btTransform frame = detail::hinge_frame(ground ? placed(held_, in_lower) : in_lower);
+        OpenSection open{section, std::make_unique<btJointFeedback>(), nullptr};
+        open.hinge = std::make_unique<Hinge>(
+            *pieces_[i + 1].body, *pieces_[i].body,
+            detail::hinge_frame(upper.section(description(), section + 1, false)), frame,
+            description().section(section), Meeting::as_they_are);
+        Hinge& hinge = *open.hinge;
+        Hinge::State state = hinge.state();
+        const double bend = state.joint.plastic_offset;
+        state.joint = course_.section(section).joint;
+        state.joint.plastic_offset = bend;
+        hinge.restore(state);
+        hinge.setJointFeedback(open.feedback.get());
+        hinge.set_ahead(ahead);
+        hinge.add_to(*world_);
+        if (ahead) hinge.begin_part();
+        joints_.push_back(std::move(open));
+    }
+}
+
+DUCTILE_INLINE void Member::make_attachments() {
+    for (Attachment& attachment : attachments_) {
+        if (attachment.constraint != nullptr) continue;
+        const std::size_t piece = course_.piece_of(attachment.segment);
+        const MemberPiece& of = course_.pieces()[piece];
+        const double start =
+            attachment.segment > 0 ? description().place(attachment.segment - 1) : 0;
+        JointFrame<double> place = placed(of.section(description(), attachment.segment, false),
+                                          {.origin = {0, 0, attachment.place - start}});
+        if (pieces_[piece].body == &user_) {
+            place = placed(maker_->whole_in_body(), place);
+        } else if (pieces_[piece].own == nullptr) {
+            place = placed(held_, place);
+        }
+        attachment.body = pieces_[piece].body;
+        attachment.constraint = attachment.maker(*pieces_[piece].body, to_bullet(place));
+        if (attachment.constraint == nullptr) {
+            throw std::invalid_argument("Member.attach.maker: must make a constraint");
+        }
+        attachment.constraint->setJointFeedback(attachment.feedback.get());
+        world_->addConstraint(attachment.constraint.get());
+    }
+}
+
+DUCTILE_INLINE void Member::drop_attachment(Attachment& attachment) {
+    if (attachment.constraint == nullptr) return;
+    world_->removeConstraint(attachment.constraint.get());
+    attachment.constraint.reset();
+    attachment.body = nullptr;
+}
+
+} // namespace ductile::bullet
