@@ -72,7 +72,7 @@ struct WorldParameters {
     /// Share of the plastic work that a frame may misplace [-]: a step is then done in as many
     /// parts as that needs (frame/frame_control.hpp). 0: in one, as long as it is.
     double tolerance = 0;
-    int budget = 256; ///< solves of a frame where `tolerance` > 0, >= 4
+    int budget = 256;           ///< solves of a frame where `tolerance` > 0, >= 4
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
     /// springs for each second of quiet [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
     /// to vibrate, of which this would take for a minute.
@@ -145,8 +145,8 @@ class World final : public SteppedWorld {
     bool tells_ledger_ = false;
     Members members_;
     std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
-    WorldSnapshot snapshot_;                         ///< of a step, while there are members
-    std::unique_ptr<WorldParts> parts_;              ///< where frames have a tolerance
+    WorldSnapshot snapshot_;           ///< of a step, while there are members
+    std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;
     std::unordered_set<PlasticConstraint*> sharing_; ///< whose force share is this World's
     int told_ = -1; ///< how many constraints know that forces act for the whole step
