@@ -199,10 +199,13 @@ class Plate final : public Scene {
                 stage.push(cast.parts[std::size_t(part)], {0, 0, -load * std::min(i, ramp) / ramp});
             }
             take.step();
-            fastest = std::max(fastest, stage.speed());
+            // a plate on balls without friction may slide aside, which is no mechanism of it
+            for (const auto part : cast.parts) {
+                fastest = std::max(fastest, std::abs(stage.velocity(part).z()));
+            }
         }
         const std::string what = std::string(of.name) + (moves ? ", 1.005" : ", 0.995");
-        run.tell(what + ": fastest", fastest, "m/s");
+        run.tell(what + ": fastest, up or down", fastest, "m/s");
         run.expect(what + ": it moves (1) or not (0)", fastest > 5e-3 ? 1 : 0, moves ? 1 : 0, 0);
         take.cut();
     }
