@@ -25,6 +25,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene.hpp"
@@ -121,9 +122,9 @@ class LampPost final : public Scene {
         Stage& stage = take.stage();
         for (double t = 0; t < 1;) {
             const double left = far - travel(stage, cast), now = stage.velocity(cast.car).x();
-            if (left < 1e-6) return true;
+            if (left < 1e-4) return true;
             if (now < 1e-3) return false;
-            const double frame = std::min(take.frame(), std::max(left / now, 1e-6));
+            const double frame = std::min(take.frame(), std::max(left / now, 1e-5));
             take.step(frame);
             t += frame;
         }
@@ -150,10 +151,10 @@ class LampPost final : public Scene {
     static void blow(Run& run, const Row& row) {
         Take take = run.take("blow", "", {.gravity = 0, .floor = false});
         const Cast cast = build(take.stage(), row.rods, 2e-4, 1e-6, speed, never);
-        const bool exact = take.stage().keeps_tolerance();
-        take.step(exact ? 1e-6 : take.frame()); // ODE's contacts are soft in steps as short
+        const bool close = std::string_view(take.stage().engine()) == "bullet";
+        take.step(1e-5); // a contact of ODE closes to 0.1 mm, so a shorter one sees no blow
         run.expect(name_of(row) + "speed after the blow", take.stage().velocity(cast.car).x(),
-                   speed * car_mass / (car_mass + row.felt), exact ? 1e-6 : 1e-3, "m/s");
+                   speed * car_mass / (car_mass + row.felt), close ? 1e-6 : 1e-4, "m/s");
     }
     static void bend(Run& run, const Row& row) {
         const std::string of = name_of(row);

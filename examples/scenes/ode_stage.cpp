@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ODE's direct solver, a default World, contacts named to it.
+// ODE's direct solver, a World with a tolerance, contacts made whenever it asks for them.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -20,12 +20,20 @@ class OdeStage final : public Stage {
     explicit OdeStage(const StageParameters& parameters) {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
-        world_ = std::make_unique<ode::World>(engine_.id, ode::WorldParameters{});
+        world_ = std::make_unique<ode::World>(
+            engine_.id, ode::WorldParameters{.tolerance = parameters.tolerance,
+                                             .budget = parameters.budget});
+        keeps_tolerance_ = parameters.tolerance > 0;
+        world_->on_contacts({.space = engine_.space, .group = engine_.contacts}, [this] {
+            dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {
+                static_cast<OdeStage*>(stage)->touch(a, b);
+            });
+        });
         if (parameters.floor) floor_ = dCreatePlane(engine_.space, 0, 0, 1, 0);
     }
 
     [[nodiscard]] const char* engine() const override { return "ode"; }
-    [[nodiscard]] bool keeps_tolerance() const override { return false; }
+    [[nodiscard]] bool keeps_tolerance() const override { return keeps_tolerance_; }
 
     BodyNumber add(const BoxBody& box) override {
         Own& own = own_.emplace_back(Own{box.name});
@@ -124,11 +132,7 @@ class OdeStage final : public Stage {
     }
 
     void step(double frame) override {
-        dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {
-            static_cast<OdeStage*>(stage)->touch(a, b);
-        });
         world_->step(frame);
-        dJointGroupEmpty(engine_.contacts);
         if (recorder_ != nullptr) recorder_->look(*world_);
     }
     [[nodiscard]] const SteppedWorld& world() const override { return *world_; }
@@ -233,6 +237,7 @@ class OdeStage final : public Stage {
     }
 
     OdeEngine engine_; ///< first made, last destroyed
+    bool keeps_tolerance_ = false;
     dGeomID floor_ = nullptr;
     std::vector<Own> own_;
     std::unique_ptr<ode::World> world_;

@@ -199,7 +199,9 @@ class Plate final : public Scene {
                 stage.push(cast.parts[std::size_t(part)], {0, 0, -load * std::min(i, ramp) / ramp});
             }
             take.step();
-            // a plate on balls without friction may slide aside, which is no mechanism of it
+            // once it lies on its supports; on balls without friction it may slide aside, which is
+            // no mechanism of it
+            if (2 * i < ramp) continue;
             for (const auto part : cast.parts) {
                 fastest = std::max(fastest, std::abs(stage.velocity(part).z()));
             }
