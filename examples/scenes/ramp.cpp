@@ -14,8 +14,8 @@
 //   first jump                 50 %         31.5 %         22.7 %
 //   each later one              7 %         at most 1.3 %  at most 0.1 %
 //
-// The last two columns are of ramp.py, which integrates ramp and cars in the plane by itself; steps
-// that are as they are read no damper (OneAxisParameters::damping_time). Why not the author's: he
+// The last two columns are of ramp.py, which integrates ramp and cars in the plane by itself; plain
+// steps (--tolerance 0) read no damper (OneAxisParameters::damping_time). Why not the author's: he
 // has g = 10 (own weight 10.3 %), a spring that is solved to the end of each step, and cars that
 // fly off a hill, the later ones from 1.7 m higher. What a later jump takes is all or nothing, as
 // the ramp swings when the car comes: so only their sum with the first is held to anything.
