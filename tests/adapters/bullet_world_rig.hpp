@@ -25,6 +25,7 @@ class WorldRig {
     using Hinge = bullet::PlasticHinge<Joint>;
     using Six = bullet::PlasticJoint<SixAxes>;
     using Body = btRigidBody*;
+    static constexpr const char* engine = "Bullet";
     static constexpr bool single = sizeof(btScalar) == sizeof(float);
 
     /// Steps as they are, not frames.
@@ -42,10 +43,17 @@ class WorldRig {
                              .warn = nullptr}) {
         dynamics_.setGravity({0, 0, 0});
     }
+    /// As a user gets it who says nothing: steps are frames, of 1 %.
+    explicit WorldRig(Warn warn)
+        : dynamics_(&dispatcher_, &broadphase_, &solver_, &configuration_),
+          world_(dynamics_, {.warn = std::move(warn)}) {
+        dynamics_.setGravity({0, 0, 0});
+    }
     ~WorldRig() {
         others_.clear();
         for (auto& hinge : hinges_) world_.remove(*hinge);
         for (auto& joint : sixes_) world_.remove(*joint);
+        for (auto& constraint : own_) dynamics_.removeConstraint(constraint.get());
         for (auto& body : bodies_) dynamics_.removeRigidBody(body.get());
     }
 
@@ -60,6 +68,19 @@ class WorldRig {
         b->setActivationState(DISABLE_DEACTIVATION);
         dynamics_.addRigidBody(b, 0, 0);
         return b;
+    }
+
+    /// That touches other boxes.
+    Body box(double mass, const V3& half, const V3& at) {
+        boxes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(half)));
+        btVector3 inertia;
+        boxes_.back()->calculateLocalInertia(btScalar(mass), inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, boxes_.back().get(),
+                                                      inertia);
+        info.m_startWorldTransform.setOrigin(bullet::to_bullet(at));
+        bodies_.push_back(std::make_unique<btRigidBody>(info));
+        dynamics_.addRigidBody(bodies_.back().get());
+        return bodies_.back().get();
     }
 
     /// Its motion is prescribed from now on.
@@ -78,11 +99,9 @@ class WorldRig {
         btTransform frame;
         frame.setIdentity();
         frame.setOrigin(bullet::to_bullet(anchor));
-        const auto in = [&](Body body) {
-            return body->getCenterOfMassTransform().inverse() * frame;
-        };
-        hinges_.push_back(b != nullptr ? std::make_unique<Hinge>(*a, *b, in(a), in(b), joint)
-                                       : std::make_unique<Hinge>(*a, in(a), joint));
+        hinges_.push_back(
+            b != nullptr ? std::make_unique<Hinge>(*a, *b, local(a, frame), local(b, frame), joint)
+                         : std::make_unique<Hinge>(*a, local(a, frame), joint));
         world_.add(*hinges_.back(), name);
         return *hinges_.back();
     }
@@ -98,13 +117,24 @@ class WorldRig {
         return *sixes_.back();
     }
 
+    /// About z, any law.
+    template <class Any>
+    auto& hinge_of(Body a, Body b, const V3& anchor, Any joint) {
+        using Constraint = bullet::PlasticHinge<Any>;
+        const btTransform frame(btMatrix3x3::getIdentity(), bullet::to_bullet(anchor));
+        return own(b != nullptr
+                       ? std::make_unique<Constraint>(*a, *b, local(a, frame), local(b, frame),
+                                                      std::move(joint))
+                       : std::make_unique<Constraint>(*a, local(a, frame), std::move(joint)));
+    }
     /// To the static world, along `axis`.
-    auto& slider(Body a, const V3& axis, Joint joint) {
+    template <class Any>
+    auto& slider(Body a, const V3& axis, Any joint) {
         btTransform frame;
         frame.setIdentity();
         frame.setRotation(shortestArcQuat({0, 0, 1}, bullet::to_bullet(axis)));
-        const btTransform in_a = a->getCenterOfMassTransform().inverse() * frame;
-        return own(std::make_unique<bullet::PlasticSlider<Joint>>(*a, in_a, std::move(joint)));
+        return own(
+            std::make_unique<bullet::PlasticSlider<Any>>(*a, local(a, frame), std::move(joint)));
     }
     /// Any joint of six axes, as `six_axes`.
     template <class Any>
@@ -113,6 +143,30 @@ class WorldRig {
         frame.setIdentity();
         return own(std::make_unique<bullet::PlasticJoint<Any>>(*a, frame, std::move(joint)));
     }
+    /// A joint of some axes; null `b`: the static world. `axes`: of the frame, as columns.
+    template <class Any, class Axes>
+    auto& some_of(Body a, Body b, const V3& at, const Eigen::Matrix3d& columns, Any joint,
+                  const Axes& axes) {
+        using Constraint = bullet::PlasticJoint<Any>;
+        const btTransform frame = bullet::to_bullet(JointFrame<double>{at, columns});
+        return own(b != nullptr
+                       ? std::make_unique<Constraint>(*a, *b, local(a, frame), local(b, frame),
+                                                      std::move(joint), axes)
+                       : std::make_unique<Constraint>(*a, local(a, frame), std::move(joint), axes));
+    }
+    /// The engine's own hinge about z, which takes no moment.
+    void pin(Body a, Body b, const V3& anchor) {
+        const btTransform frame(btMatrix3x3::getIdentity(), bullet::to_bullet(anchor));
+        keep(b != nullptr
+                 ? std::make_unique<btHingeConstraint>(*a, *b, local(a, frame), local(b, frame))
+                 : std::make_unique<btHingeConstraint>(*a, local(a, frame)));
+    }
+    /// The engine's own slider: `a` may only move along `axis`.
+    void guide(Body a, const V3& axis) {
+        btTransform frame = a->getCenterOfMassTransform();
+        frame.setRotation(shortestArcQuat({1, 0, 0}, bullet::to_bullet(axis)));
+        keep(std::make_unique<btSliderConstraint>(*a, local(a, frame), true));
+    }
 
     void set_gravity(const V3& g) {
         dynamics_.setGravity(bullet::to_bullet(g));
@@ -120,6 +174,11 @@ class WorldRig {
     }
     static void apply_force(Body b, const V3& force) {
         b->applyCentralForce(bullet::to_bullet(force));
+    }
+    /// `arm`: from the centre of mass, at the start.
+    static void apply_force_at(Body b, const V3& force, const V3& arm) {
+        b->applyForce(bullet::to_bullet(force),
+                      b->getWorldTransform().getBasis() * bullet::to_bullet(arm));
     }
     static void set_velocity(Body b, const V3& v) { b->setLinearVelocity(bullet::to_bullet(v)); }
     static void set_spin(Body b, const V3& w) { b->setAngularVelocity(bullet::to_bullet(w)); }
@@ -142,9 +201,20 @@ class WorldRig {
     }
     static V3 velocity(Body b) { return bullet::to_core(b->getLinearVelocity()); }
     static V3 spin(Body b) { return bullet::to_core(b->getAngularVelocity()); }
+    /// Rotation from the start, less than π [rad].
+    static V3 turn(Body b) {
+        return rotation_vector<double>(bullet::to_core(b->getCenterOfMassTransform().getBasis()));
+    }
     static V3 position(Body b) { return bullet::to_core(b->getCenterOfMassPosition()); }
 
   private:
+    static btTransform local(Body body, const btTransform& frame) {
+        return body->getCenterOfMassTransform().inverse() * frame;
+    }
+    void keep(std::unique_ptr<btTypedConstraint> constraint) {
+        own_.push_back(std::move(constraint));
+        dynamics_.addConstraint(own_.back().get(), true);
+    }
     template <class Constraint>
     Constraint& own(std::unique_ptr<Constraint> constraint) {
         Constraint& result = *constraint;
@@ -159,7 +229,9 @@ class WorldRig {
     btSequentialImpulseConstraintSolver solver_;
     btDiscreteDynamicsWorld dynamics_;
     btSphereShape shape_{1};
+    std::vector<std::unique_ptr<btBoxShape>> boxes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<std::unique_ptr<btTypedConstraint>> own_;
     bullet::World world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;

@@ -27,6 +27,7 @@ class WorldRig {
     using Hinge = ode::PlasticHinge<Joint>;
     using Six = ode::PlasticJoint<SixAxes>;
     using Body = dBodyID;
+    static constexpr const char* engine = "ODE";
     static constexpr bool single = sizeof(dReal) == sizeof(float);
 
     explicit WorldRig(bool iterative, Warn warn = nullptr, bool ledger = true)
@@ -42,6 +43,10 @@ class WorldRig {
                        .budget = budget,
                        .rest_damping = 0, // what swings here is to go on
                        .warn = nullptr}) {
+        prepare();
+    }
+    /// As a user gets it who asks for 1 % alone: steps are frames.
+    explicit WorldRig(Warn warn) : world_(id_, {.tolerance = 0.01, .warn = std::move(warn)}) {
         prepare();
     }
     ~WorldRig() {
@@ -60,6 +65,26 @@ class WorldRig {
         dBodySetMass(b, &m);
         dBodySetPosition(b, dReal(at.x()), dReal(at.y()), dReal(at.z()));
         dBodySetFiniteRotationMode(b, 1);
+        world_.add(b);
+        return b;
+    }
+
+    /// That touches other boxes.
+    Body box(double mass, const V3& half, const V3& at) {
+        if (!collides_) {
+            collides_ = true;
+            world_.on_contacts({.space = engine_.space, .group = engine_.group},
+                               [this] { dSpaceCollide(engine_.space, this, &WorldRig::touch); });
+        }
+        dMass inertia;
+        dMassSetBoxTotal(&inertia, dReal(mass), dReal(2 * half.x()), dReal(2 * half.y()),
+                         dReal(2 * half.z()));
+        Body b = dBodyCreate(id_);
+        dBodySetMass(b, &inertia);
+        dBodySetPosition(b, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        dGeomSetBody(dCreateBox(engine_.space, dReal(2 * half.x()), dReal(2 * half.y()),
+                                dReal(2 * half.z())),
+                     b);
         world_.add(b);
         return b;
     }
@@ -87,10 +112,17 @@ class WorldRig {
         return *sixes_.back();
     }
 
+    /// About z, any law.
+    template <class Any>
+    auto& hinge_of(Body a, Body b, const V3& anchor, Any joint) {
+        return own(std::make_unique<ode::PlasticHinge<Any>>(
+            id_, a, b, ode::HingeFrame{.anchor = anchor, .axis = {0, 0, 1}}, std::move(joint)));
+    }
     /// To the static world, along `axis`.
-    auto& slider(Body a, const V3& axis, Joint joint) {
+    template <class Any>
+    auto& slider(Body a, const V3& axis, Any joint) {
         return own(
-            std::make_unique<ode::PlasticSlider<Joint>>(id_, a, nullptr, axis, std::move(joint)));
+            std::make_unique<ode::PlasticSlider<Any>>(id_, a, nullptr, axis, std::move(joint)));
     }
     /// Any joint of six axes, as `six_axes`.
     template <class Any>
@@ -98,12 +130,37 @@ class WorldRig {
         return own(std::make_unique<ode::PlasticJoint<Any>>(id_, a, nullptr, JointFrame<double>{},
                                                             std::move(joint)));
     }
+    /// A joint of some axes; null `b`: the static world. `columns`: axes of its frame.
+    template <class Any, class Axes>
+    auto& some_of(Body a, Body b, const V3& at, const Eigen::Matrix3d& columns, Any joint,
+                  const Axes& axes) {
+        return own(std::make_unique<ode::PlasticJoint<Any>>(
+            id_, a, b, JointFrame<double>{at, columns}, std::move(joint), axes));
+    }
+    /// The engine's own hinge about z, which takes no moment.
+    void pin(Body a, Body b, const V3& anchor) {
+        dJointID hinge = dJointCreateHinge(id_, nullptr);
+        dJointAttach(hinge, a, b);
+        dJointSetHingeAnchor(hinge, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
+        dJointSetHingeAxis(hinge, 0, 0, 1);
+    }
+    /// The engine's own slider: `a` may only move along `axis`.
+    void guide(Body a, const V3& axis) {
+        dJointID slider = dJointCreateSlider(id_, nullptr);
+        dJointAttach(slider, a, nullptr);
+        dJointSetSliderAxis(slider, dReal(axis.x()), dReal(axis.y()), dReal(axis.z()));
+    }
 
     void set_gravity(const V3& g) {
         dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
     }
     static void apply_force(Body b, const V3& force) {
         dBodyAddForce(b, dReal(force.x()), dReal(force.y()), dReal(force.z()));
+    }
+    /// `arm`: from the centre of mass, at the start.
+    static void apply_force_at(Body b, const V3& force, const V3& arm) {
+        dBodyAddForceAtRelPos(b, dReal(force.x()), dReal(force.y()), dReal(force.z()),
+                              dReal(arm.x()), dReal(arm.y()), dReal(arm.z()));
     }
     static void set_velocity(Body b, const V3& v) {
         dBodySetLinearVel(b, dReal(v.x()), dReal(v.y()), dReal(v.z()));
@@ -130,6 +187,10 @@ class WorldRig {
     }
     static V3 velocity(Body b) { return ode::linear_velocity(b); }
     static V3 spin(Body b) { return ode::angular_velocity(b); }
+    /// Rotation from the start, less than π [rad].
+    static V3 turn(Body b) {
+        return rotation_vector<double>(ode::matrix_to_core(dBodyGetRotation(b)));
+    }
     static V3 position(Body b) { return ode::to_core(dBodyGetPosition(b)); }
 
   private:
@@ -137,6 +198,17 @@ class WorldRig {
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetQuickStepNumIterations(id_, 10);
         dWorldSetCFM(id_, 1e-13); // ODE's 1e-10 lets 100 kN move by 1e-5 m/s
+    }
+    static void touch(void* data, dGeomID a, dGeomID b) {
+        auto& rig = *static_cast<WorldRig*>(data);
+        std::array<dContact, 8> found{};
+        const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
+        for (int i = 0; i < count; ++i) {
+            dContact& contact = found[std::size_t(i)];
+            const dJointID joint = dJointCreateContact(rig.id_, rig.engine_.group, &contact);
+            dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
+            rig.world_.add_contact(joint, contact);
+        }
     }
     template <class Constraint>
     Constraint& own(std::unique_ptr<Constraint> constraint) {
@@ -156,15 +228,22 @@ class WorldRig {
     };
     struct Engine {
         Engine() = default;
-        ~Engine() { dWorldDestroy(id); }
+        ~Engine() {
+            dJointGroupDestroy(group);
+            dSpaceDestroy(space);
+            dWorldDestroy(id);
+        }
         Engine(const Engine&) = delete;
         Engine& operator=(const Engine&) = delete;
         dWorldID id = dWorldCreate();
+        dSpaceID space = dHashSpaceCreate(nullptr);
+        dJointGroupID group = dJointGroupCreate(0);
     };
     Library library_;
     Engine engine_;
     dWorldID id_ = engine_.id;
     ode::World world_;
+    bool collides_ = false;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;
     std::vector<std::unique_ptr<ode::PlasticConstraint>> others_;

@@ -181,7 +181,7 @@ class CoupledJoint {
         // its last force would let it follow at half the rate
         Vector predicted = state_.force;
         for (int i = 0; i < dimension; ++i) {
-            if (!rigid(i)) predicted[i] = -parameters_.stiffness[i] * elastic_[i];
+            if (!rigid(i)) predicted[i] = -parameters_.stiffness[i] * spring(i, dt).reach;
         }
         predicted = stopping_force(predicted, start_, state_.start_velocity, impedance);
         const Scalar use = now.value(predicted);

@@ -74,8 +74,11 @@ struct OpenRow {
             return booked;
         }
         const S trial = reaction.position - offset;
-        const S strained =
-            std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
+        S strained = std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
+        if (ahead && share == 1) { // the bounds are those of the mean force, not of its end
+            const S slip = booked.at_bound ? spring.flow(f, reaction.velocity - drift) : S(0);
+            strained = slip * f < 0 ? trial - slip : trial;
+        }
         booked.travel = trial - strained;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
         booked.damped = spring.damped(reaction.velocity - drift, booked.travel, strained, dt);

@@ -280,6 +280,43 @@ TEST_CASE("bent to yield and then twisted, elastic rows follow the ellipse", "[c
     CHECK(body.joint.utilisation() == Approx(1).epsilon(delta / steps));
 }
 
+TEST_CASE("half a step ahead, elastic rows follow the ellipse too", "[coupled_joint][P23]") {
+    // as above in parts of a frame, 30 for the twist, the joint then held: second order
+    const double delta = GENERATE(0.5, 1.0, 2.0);
+    const Eigen::Vector2d capacity(1000, 800), stiffness(50e3, 32e3);
+    using Elliptic = CoupledJoint<Ellipse, Perfect<double>>;
+    Elliptic joint(Ellipse({.capacity = capacity}), Perfect<double>({.strength = 1}),
+                   TravelLimit<double>(), {.stiffness = stiffness});
+    const int steps = 30;
+    const double dt = 1.0 / 60;
+    const Eigen::Matrix2d mass = 1e9 * Eigen::Matrix2d::Identity();
+    const Eigen::Vector2d yield = capacity.cwiseQuotient(stiffness);
+    Eigen::Vector2d position = Eigen::Vector2d::Zero(), force = position;
+    for (int i = 0; i < 2 * steps + 2; ++i) {
+        const Eigen::Vector2d way = i < steps       ? Eigen::Vector2d(yield[0], 0)
+                                    : i < 2 * steps ? Eigen::Vector2d(0, delta * yield[1])
+                                                    : Eigen::Vector2d(0, 0);
+        const Eigen::Vector2d u = way / (steps * dt);
+        const auto rows = joint.prepare({.position = position + u * dt / 2,
+                                         .velocity = u,
+                                         .mass = mass,
+                                         .ahead = true,
+                                         .before = position},
+                                        dt);
+        for (int k = 0; k < 2; ++k) {
+            const auto& row = rows[std::size_t(k)];
+            force[k] = std::clamp((row.bias - u[k]) / (row.compliance * dt), row.lower, row.upper);
+        }
+        position += u * dt;
+        joint.commit({force, u, position}, dt);
+    }
+    INFO("delta " << delta);
+    const double work = capacity[1] * capacity[1] / stiffness[1] * std::log(std::cosh(delta));
+    CHECK(-force[0] / capacity[0] == Approx(1 / std::cosh(delta)).epsilon(0.005));
+    CHECK(-force[1] / capacity[1] == Approx(std::tanh(delta)).epsilon(0.005));
+    CHECK(joint.state().plastic_work == Approx(work).epsilon(0.005));
+}
+
 TEST_CASE("six axes with one life: random loads create no energy, no NaN, no mending",
           "[coupled_joint]") {
     using V6 = Eigen::Matrix<double, 6, 1>;
