@@ -229,12 +229,13 @@ TEST_CASE("P29 without a column swings until it rests, then sleeps", "[bullet][r
             REQUIRE(frame.rig.asleep());
             frame.structure->remove("column 00");
             double slept = 0;
-            while (!frame.rig.asleep() && slept < 15) {
+            const double limit = single ? 40 : 15; // the digits of a place stir it
+            while (!frame.rig.asleep() && slept < limit) {
                 frame.rig.run(0.25, 1 / frames);
                 slept += 0.25;
             }
             CHECK(slept > 2.5);
-            CHECK(slept < 15);
+            CHECK(slept < limit);
             CHECK(frame.rig.lines().empty());
             // what flowed left stresses of its own
             const double off = frame.structure->absorbed_energy() > 0 ? 0.03 : 0.005;
