@@ -14,9 +14,8 @@
 //   n = max [ |M̂|/τ + V √(μ EI) φ ] / M_p,   φ = 1 next to the contact, else 0
 //
 //   n <= 1   it stays whole: a blow that it bears
-//   n > 1    it yields, as a rigid-plastic member would, and of what this absorbs the share 1 -
-//   1/n²
-//            is flow: n grows with the speed, so it is the part above the speed at which n = 1;
+//   n > 1    it yields, as a rigid-plastic member would, and of what this absorbs the share
+//            1 - 1/n² is flow: n grows with the speed, so it is the part above the speed at which n = 1;
 //            E/n² is left in vibration
 //
 // Limits: EI → ∞: n → ∞, every blow yields it and all of E flows (Parkes); E → 0: n → 0. Against a

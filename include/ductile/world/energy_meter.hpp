@@ -128,10 +128,8 @@ class EnergyMeter {
     void take_back();
     /// They were put elsewhere, by what is no step.
     void moved_back();
-    /// What plastic joints took beside their flow, damping and what they store, as booked in
-    /// Account::joints [J].
-    [[nodiscard]] double of_plastic_joints() const noexcept { return of_plastic_joints_; }
-    /// Of the last step alone: the same, and what contacts took. No sums that other bodies are in.
+    /// Of the last step alone: what plastic joints took beside their flow, damping and what they
+    /// store, but for driven ones, and what contacts took [J].
     [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
     [[nodiscard]] double step_of_contacts() const noexcept { return step_contact_; }
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
@@ -204,7 +202,6 @@ class EnergyMeter {
         Ledger<double> ledger;
         HeldEnergy<double> last;
         std::vector<double> taken;
-        double of_plastic_joints = 0;
     };
 
     Kept kept_;
@@ -212,7 +209,6 @@ class EnergyMeter {
     double sign_ = 1;            ///< -1: what is booked is taken back
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
-    double of_plastic_joints_ = 0;
     double step_plastic_ = 0, step_contact_ = 0; ///< [J]
     HeldEnergy<double> last_;
     detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three

@@ -86,13 +86,11 @@ DUCTILE_INLINE void EnergyMeter::keep() {
     kept_.ledger = ledger_;
     kept_.last = last_;
     kept_.taken = taken_;
-    kept_.of_plastic_joints = of_plastic_joints_;
 }
 
 DUCTILE_INLINE void EnergyMeter::put_back() {
     ledger_ = kept_.ledger;
     last_ = kept_.last;
-    of_plastic_joints_ = kept_.of_plastic_joints;
     // joints that came since keep their numbers
     std::fill(std::copy(kept_.taken.begin(), kept_.taken.end(), taken_.begin()), taken_.end(), 0.0);
 }
@@ -269,10 +267,7 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
                 joint.plastic->release().energy - before->released;
     }
     add(Account::joints, taken - named);
-    if (joint.plastic != nullptr && !joint.driven) {
-        of_plastic_joints_ += sign_ * (taken - named);
-        step_plastic_ += taken - named;
-    }
+    if (joint.plastic != nullptr && !joint.driven) step_plastic_ += taken - named;
     const std::size_t number = taken_numbers_.enter(joint.joint);
     if (number == taken_.size()) taken_.push_back(0);
     taken_[number] += sign_ * taken;

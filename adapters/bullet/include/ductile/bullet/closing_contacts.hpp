@@ -80,7 +80,7 @@ class ClosingContactsFinder {
         double inverse_mass; ///< of the heaviest [1/kg]
     };
     [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world, btScalar h) const;
-    void find_falling(const btDiscreteDynamicsWorld& world, btScalar h);
+    void find_falling(btDiscreteDynamicsWorld& world, btScalar h);
     [[nodiscard]] btVector3 falls(const btCollisionObject& object) const;
     [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
     void add_joint(const btTypedConstraint& constraint);

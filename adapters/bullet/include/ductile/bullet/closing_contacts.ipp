@@ -147,7 +147,7 @@ DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
 
 /// Many of Bullet's algorithms see no contact before shapes overlap: what was just put down on
 /// something falls for a part, and then strikes it.
-DUCTILE_INLINE void ClosingContactsFinder::find_falling(const btDiscreteDynamicsWorld& world,
+DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld& world,
                                                         btScalar h) {
     falling_.clear();
     if (scope_ != nullptr) return; // the frame's first look is at all
@@ -161,10 +161,9 @@ DUCTILE_INLINE void ClosingContactsFinder::find_falling(const btDiscreteDynamics
     }
     if (slow.empty()) return;
     std::vector<char> touched(std::size_t(world.getNumCollisionObjects()));
-    const btDispatcher& dispatcher = *world.getDispatcher();
+    btDispatcher& dispatcher = *world.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold =
-            *const_cast<btDispatcher&>(dispatcher).getManifoldByIndexInternal(i);
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
         if (manifold.getNumContacts() == 0) continue;
         for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
             const int place = object->getWorldArrayIndex();

@@ -103,8 +103,8 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
         if (!plastic->in_world()) {
             throw std::logic_error(
                 "World.step: a plastic joint must be put into a world with a tolerance by "
-                "World::add "
-                "or its own add_to, as Bullet's addConstraint does not say when a part ends");
+                "World::add or its own add_to, as Bullet's addConstraint does not say when a part "
+                "ends");
         }
         plastic->begin_part();
     }

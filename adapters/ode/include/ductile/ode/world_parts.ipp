@@ -184,12 +184,10 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
-    const double rigid = of_.meter.of_plastic_joints();
-    const double contact = of_.meter.ledger().booked(Account::contact);
     tick(h, false);
     tell();
-    motion_.rigid_work = of_.meter.of_plastic_joints() - rigid;
-    motion_.contact_work = of_.meter.ledger().booked(Account::contact) - contact;
+    motion_.rigid_work = of_.meter.step_of_plastic_joints();
+    motion_.contact_work = of_.meter.step_of_contacts();
     if (closing_.any_plastic() && of_.maker) {
         look();
         looked_ = true;
