@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "adapters/bullet_engine.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world_parts.hpp"
@@ -36,20 +37,14 @@ constexpr double tolerance = 0.01;
 }
 
 /// A world with what a test puts into it.
-struct Rig {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
+struct Rig : test::BulletEngine {
     std::vector<std::unique_ptr<btTypedConstraint>> guides;
     std::unique_ptr<World> world;
 
-    explicit Rig(const WorldParameters& parameters = {
-                     .tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
-        engine.setGravity(btVector3(0, 0, 0));
+    explicit Rig(const WorldParameters& parameters = {.tolerance = tolerance,
+                                                      .rest_damping = 0,
+                                                      .warn = {}})
+        : BulletEngine({0, 0, 0}) {
         // what overlaps by what a tick leaves is not thrown apart
         engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
         world = std::make_unique<World>(engine, parameters);
@@ -57,10 +52,7 @@ struct Rig {
     ~Rig() {
         world.reset();
         for (auto& guide : guides) engine.removeConstraint(guide.get());
-        for (auto& body : bodies) engine.removeRigidBody(body.get());
     }
-    Rig(const Rig&) = delete;
-    Rig& operator=(const Rig&) = delete;
 
     /// `group` 0: it meets nothing.
     btRigidBody& body(double mass, const btVector3& inertia, const btVector3& at,

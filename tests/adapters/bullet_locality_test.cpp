@@ -11,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "adapters/bullet_engine.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world_parts.hpp"
@@ -35,29 +36,18 @@ constexpr double frame = 1.0 / 60;
 }
 
 /// A world on a floor.
-struct Site {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
+struct Site : test::BulletEngine {
     std::vector<std::unique_ptr<Hinge>> hinges;
     std::unique_ptr<World> world;
 
-    Site() {
-        engine.setGravity(btVector3(0, btScalar(-9.81), 0));
+    Site() : BulletEngine({0, btScalar(-9.81), 0}) {
         engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
         body(std::make_unique<btBoxShape>(btVector3(200, 1, 200)), 0, {0, -1, 0});
     }
     ~Site() {
         hinges.clear();
         world.reset();
-        for (auto& body : bodies) engine.removeRigidBody(body.get());
     }
-    Site(const Site&) = delete;
-    Site& operator=(const Site&) = delete;
 
     void look_after(const WorldParameters& parameters = {
                         .tolerance = 0.01, .rest_damping = 0, .warn = {}}) {
@@ -105,29 +95,45 @@ struct Site {
     }
 };
 
-} // namespace
+/// A site's frames of one part, each looked at for what may have to be put back.
+struct Looked {
+    Site& site;
+    bullet::FrontHold front{site.engine};
+    bullet::EnergyMeter meter{site.engine};
+    bullet::Members members{site.engine};
+    bullet::WorldParts parts{
+        site.engine,  front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
+        [](double) {}};
 
-TEST_CASE("Locality: what stands is not saved, and what somebody does to it is seen", "[frame]") {
-    Site site;
-    const auto pieces = site.post({0, 0, 0});
-    bullet::FrontHold front(site.engine);
-    bullet::EnergyMeter meter(site.engine);
-    bullet::Members members(site.engine);
-    bullet::WorldParts parts(
-        site.engine, front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
-        [](double) {});
-    for (auto& hinge : site.hinges) {
-        hinge->add_to(site.engine);
-        hinge->set_ahead(true);
+    explicit Looked(Site& of) : site(of) {
+        for (auto& hinge : site.hinges) {
+            hinge->add_to(site.engine);
+            hinge->set_ahead(true);
+        }
     }
-    const auto at_risk = [&] {
+    ~Looked() {
+        for (auto& hinge : site.hinges) hinge->remove_from(site.engine);
+    }
+    Looked(const Looked&) = delete;
+    Looked& operator=(const Looked&) = delete;
+
+    [[nodiscard]] bool at_risk() {
         parts.begin(frame);
         (void)parts.closing(frame, 1e-9, 1e-9);
         const bool risk = parts.may_be_put_back();
         (void)parts.part(frame);
         parts.end();
         return risk;
-    };
+    }
+};
+
+} // namespace
+
+TEST_CASE("Locality: what stands is not saved, and what somebody does to it is seen", "[frame]") {
+    Site site;
+    const auto pieces = site.post({0, 0, 0});
+    Looked looked(site);
+    const auto at_risk = [&looked] { return looked.at_risk(); };
     CHECK(at_risk()); // nothing is known of it
     for (int i = 0; i < 10; ++i) CHECK_FALSE(at_risk());
     pieces[4]->setLinearVelocity({btScalar(1e-6), 0, 0});
@@ -145,7 +151,6 @@ TEST_CASE("Locality: what stands is not saved, and what somebody does to it is s
     CHECK(at_risk()); // it would be there within the frame
     site.engine.removeRigidBody(&ball);
     site.bodies.pop_back();
-    for (auto& hinge : site.hinges) hinge->remove_from(site.engine);
 }
 
 TEST_CASE("Locality: a motor beside a plastic joint is a risk, one far away is none", "[frame]") {
@@ -154,24 +159,8 @@ TEST_CASE("Locality: a motor beside a plastic joint is a risk, one far away is n
     btRigidBody& far = site.body(std::make_unique<btSphereShape>(btScalar(0.1)), 1, {9, 1, 0});
     btHingeConstraint motor(far, btVector3(0, 0, 0), btVector3(0, 0, 1));
     site.engine.addConstraint(&motor);
-    bullet::FrontHold front(site.engine);
-    bullet::EnergyMeter meter(site.engine);
-    bullet::Members members(site.engine);
-    bullet::WorldParts parts(
-        site.engine, front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
-        [](double) {});
-    for (auto& hinge : site.hinges) {
-        hinge->add_to(site.engine);
-        hinge->set_ahead(true);
-    }
-    const auto at_risk = [&] {
-        parts.begin(frame);
-        (void)parts.closing(frame, 1e-9, 1e-9);
-        const bool risk = parts.may_be_put_back();
-        (void)parts.part(frame);
-        parts.end();
-        return risk;
-    };
+    Looked looked(site);
+    const auto at_risk = [&looked] { return looked.at_risk(); };
     for (int i = 0; i < 3; ++i) (void)at_risk();
     CHECK_FALSE(at_risk());
     btHingeConstraint near(*pieces[4], btVector3(0, btScalar(0.2), 0), btVector3(0, 0, 1));
@@ -179,7 +168,6 @@ TEST_CASE("Locality: a motor beside a plastic joint is a risk, one far away is n
     for (int i = 0; i < 3; ++i) CHECK(at_risk());
     site.engine.removeConstraint(&near);
     site.engine.removeConstraint(&motor);
-    for (auto& hinge : site.hinges) hinge->remove_from(site.engine);
 }
 
 TEST_CASE("Locality: what hands and forces do to what stood is as exact as ever", "[frame]") {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/bullet_engine.hpp"
 #include "core/member/strips.hpp"
 #include "ductile/bullet/bullet.hpp"
 
@@ -19,27 +20,16 @@ namespace ductile::test {
 constexpr bool rough = sizeof(btScalar) == sizeof(float);
 inline const btTransform here = btTransform::getIdentity();
 
-/// A world with what a test puts into it. It outlives its joints and members.
-struct Rig {
-    btDefaultCollisionConfiguration configuration;
-    btCollisionDispatcher dispatcher{&configuration};
-    btDbvtBroadphase broadphase;
-    btSequentialImpulseConstraintSolver solver;
-    btDiscreteDynamicsWorld engine{&dispatcher, &broadphase, &solver, &configuration};
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
-    std::vector<std::unique_ptr<btRigidBody>> bodies;
+/// Outlives its joints and members.
+struct Rig : BulletEngine {
     std::vector<std::unique_ptr<btTypedConstraint>> constraints;
 
-    explicit Rig(const btVector3& gravity = {0, 0, 0}) {
-        engine.setGravity(gravity);
+    explicit Rig(const btVector3& gravity = {0, 0, 0}) : BulletEngine(gravity) {
         engine.getSolverInfo().m_splitImpulsePenetrationThreshold = 1;
     }
     ~Rig() {
         for (auto& constraint : constraints) engine.removeConstraint(constraint.get());
-        for (auto& body : bodies) engine.removeRigidBody(body.get());
     }
-    Rig(const Rig&) = delete;
-    Rig& operator=(const Rig&) = delete;
 
     btCollisionShape* shape(std::unique_ptr<btCollisionShape> made) {
         shapes.push_back(std::move(made));

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adapters/ode_engine.hpp"
 #include "ductile/ode/ode.hpp"
 #include "support/throws.hpp"
 
@@ -32,27 +33,7 @@ constexpr double all_frames[] = {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30};
 
 /// A world with what a test puts into it.
 struct Rig {
-    struct Library {
-        Library() { dInitODE2(0); }
-        ~Library() { dCloseODE(); }
-        Library(const Library&) = delete;
-        Library& operator=(const Library&) = delete;
-    };
-    struct Engine {
-        Engine() = default;
-        ~Engine() {
-            dJointGroupDestroy(group);
-            dSpaceDestroy(space);
-            dWorldDestroy(id);
-        }
-        Engine(const Engine&) = delete;
-        Engine& operator=(const Engine&) = delete;
-        dWorldID id = dWorldCreate();
-        dSpaceID space = dHashSpaceCreate(nullptr);
-        dJointGroupID group = dJointGroupCreate(0);
-    };
-    Library library;
-    Engine engine;
+    test::OdeEngine engine;
     World world;
     double friction = 0, bounce = -1;
     bool soft = false; ///< contacts have their own ERP and CFM
@@ -64,37 +45,28 @@ struct Rig {
         : world(engine.id, parameters) {
         dRandSetSeed(0);
         dWorldSetCFM(engine.id, 1e-13);
-        world.on_contacts({.space = engine.space, .group = engine.group},
+        world.on_contacts({.space = engine.space, .group = engine.contacts},
                           [this] { dSpaceCollide(engine.space, this, &Rig::near); });
     }
 
     static void near(void* data, dGeomID a, dGeomID b) {
         auto& rig = *static_cast<Rig*>(data);
-        const dBodyID of_a = dGeomGetBody(a), of_b = dGeomGetBody(b);
-        if (of_a != nullptr && of_b != nullptr &&
-            dAreConnectedExcluding(of_a, of_b, dJointTypeContact) != 0) {
-            return;
+        if (test::OdeEngine::are_joined(a, b)) return;
+        dSurfaceParameters surface{};
+        surface.mode = dContactApprox1;
+        surface.mu = dReal(rig.friction);
+        if (rig.bounce >= 0) {
+            surface.mode |= dContactBounce;
+            surface.bounce = dReal(rig.bounce);
         }
-        dContactGeom points[8];
-        const int count = dCollide(a, b, 8, points, sizeof *points);
-        for (int i = 0; i < count; ++i) {
-            dContact contact{};
-            contact.surface.mode = dContactApprox1;
-            contact.surface.mu = dReal(rig.friction);
-            if (rig.bounce >= 0) {
-                contact.surface.mode |= dContactBounce;
-                contact.surface.bounce = dReal(rig.bounce);
-            }
-            if (rig.soft) {
-                contact.surface.mode |= dContactSoftERP | dContactSoftCFM;
-                contact.surface.soft_erp = dReal(0.8);
-                contact.surface.soft_cfm = dReal(1e-9);
-            }
-            contact.geom = points[i];
-            const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.group, &contact);
-            dJointAttach(joint, of_a, of_b);
+        if (rig.soft) {
+            surface.mode |= dContactSoftERP | dContactSoftCFM;
+            surface.soft_erp = dReal(0.8);
+            surface.soft_cfm = dReal(1e-9);
+        }
+        rig.engine.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
             rig.world.add_contact(joint, contact);
-        }
+        });
     }
 
     dBodyID body(double mass, const V3& inertia, const V3& at, dGeomID shape = nullptr,
@@ -430,7 +402,7 @@ TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
     const auto contact_of = [](Rig& rig, dBodyID body, bool named) {
         dContact contact{};
         contact.geom.normal[1] = 1;
-        const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.group, &contact);
+        const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.contacts, &contact);
         dJointAttach(joint, body, nullptr);
         if (named) rig.world.add_contact(joint, contact);
     };
@@ -445,7 +417,8 @@ TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
         const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0, 0});
         dBodySetLinearVel(body, 0, 1, 0);
         rig.slider(body, {0, 1, 0}, 1);
-        rig.world.on_contacts({.group = rig.engine.group}, [&] { contact_of(rig, body, false); });
+        rig.world.on_contacts({.group = rig.engine.contacts},
+                              [&] { contact_of(rig, body, false); });
         CHECK_THROWS_WITH(rig.world.step(0.01), Contains("was not named"));
         CHECK(dBodyGetPosition(body)[1] == 0); // as it was
     }
@@ -464,7 +437,7 @@ TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
     }
     Rig rig;
     CHECK_THAT(message_of([&] { rig.world.on_contacts({}, [] {}); }), Contains("group = null"));
-    CHECK_THAT(message_of([&] { rig.world.on_contacts({.group = rig.engine.group}, {}); }),
+    CHECK_THAT(message_of([&] { rig.world.on_contacts({.group = rig.engine.contacts}, {}); }),
                Contains("on_contacts.make"));
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "adapters/ode_engine.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace {
@@ -32,23 +33,8 @@ struct Options {
 
 /// The pile and its parts.
 struct Pile {
-    struct Engine {
-        explicit Engine(bool hash)
-            : space(hash ? dHashSpaceCreate(nullptr) : dSimpleSpaceCreate(nullptr)) {}
-        ~Engine() {
-            dJointGroupDestroy(group);
-            dSpaceDestroy(space);
-            dWorldDestroy(id);
-        }
-        Engine(const Engine&) = delete;
-        Engine& operator=(const Engine&) = delete;
-        dWorldID id = dWorldCreate();
-        dSpaceID space;
-        dJointGroupID group = dJointGroupCreate(0);
-    };
-
     Options options;
-    Engine engine;
+    test::OdeEngine engine;
     std::vector<dBodyID> bodies;
     std::vector<std::unique_ptr<ode::PlasticConstraint>> owned;
     std::vector<ode::PlasticConstraint*> joints;
@@ -88,7 +74,7 @@ struct Pile {
             dBodySetAngularVel(above, 0, 0, dReal(0.5 * i));
         }
         dBodySetLinearVel(bodies[27], 3, 0, 1);
-        maker.emplace(ode::ContactParameters{.space = engine.space, .group = engine.group},
+        maker.emplace(ode::ContactParameters{.space = engine.space, .group = engine.contacts},
                       [this] { dSpaceCollide(engine.space, this, &Pile::near); });
         meter.open();
     }
@@ -130,22 +116,13 @@ struct Pile {
     }
     static void near(void* data, dGeomID a, dGeomID b) {
         auto& pile = *static_cast<Pile*>(data);
-        const dBodyID of_a = dGeomGetBody(a), of_b = dGeomGetBody(b);
-        if (of_a != nullptr && of_b != nullptr &&
-            dAreConnectedExcluding(of_a, of_b, dJointTypeContact) != 0) {
-            return;
-        }
-        dContactGeom points[8];
-        const int count = dCollide(a, b, 8, points, sizeof *points);
-        for (int i = 0; i < count; ++i) {
-            dContact contact{};
-            contact.surface.mode = dContactApprox1;
-            contact.surface.mu = dReal(0.6);
-            contact.geom = points[i];
-            const dJointID joint = dJointCreateContact(pile.engine.id, pile.engine.group, &contact);
-            dJointAttach(joint, of_a, of_b);
+        if (test::OdeEngine::are_joined(a, b)) return;
+        dSurfaceParameters surface{};
+        surface.mode = dContactApprox1;
+        surface.mu = dReal(0.6);
+        pile.engine.touch(a, b, surface, [&pile](dJointID joint, const dContact& contact) {
             pile.contacts.push_back({joint, contact});
-        }
+        });
     }
     void solve(double dt) {
         for (auto* joint : joints) joint->prepare(dt);
@@ -211,16 +188,8 @@ struct Pile {
     }
 };
 
-struct Library {
-    Library() { dInitODE2(0); }
-    ~Library() { dCloseODE(); }
-    Library(const Library&) = delete;
-    Library& operator=(const Library&) = delete;
-};
-
 /// Frames in which a world that tried first differs from one that did not.
 int frames_that_differ(const Options& options, double trial, int pieces, int frames) {
-    const Library library;
     Pile plain(options), tried(options);
     int differ = 0;
     for (int i = 0; i < frames; ++i) {

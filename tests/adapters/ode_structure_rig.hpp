@@ -7,12 +7,12 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "adapters/ode_engine.hpp"
 #include "ductile/joint/usual_joints.hpp"
 #include "ductile/ode/ode.hpp"
 
@@ -128,27 +128,6 @@ class StructureRig {
     }
 
   private:
-    /// First made, last destroyed.
-    struct Library {
-        Library() { dInitODE2(0); }
-        ~Library() { dCloseODE(); }
-        Library(const Library&) = delete;
-        Library& operator=(const Library&) = delete;
-    };
-    struct Engine {
-        Engine() = default;
-        ~Engine() {
-            dJointGroupDestroy(contacts);
-            dSpaceDestroy(space);
-            dWorldDestroy(id);
-        }
-        Engine(const Engine&) = delete;
-        Engine& operator=(const Engine&) = delete;
-        dWorldID id = dWorldCreate();
-        dSpaceID space = dHashSpaceCreate(nullptr);
-        dJointGroupID contacts = dJointGroupCreate(0);
-    };
-
     static void touch(void* rig, dGeomID a, dGeomID b) {
         static_cast<StructureRig*>(rig)->add_contacts(a, b);
     }
@@ -157,16 +136,12 @@ class StructureRig {
         if (body_a == nullptr && body_b == nullptr) return;
         if (built_ != nullptr && built_->meet(body_a, body_b)) return;
         if (body_a != nullptr && body_b != nullptr && dAreConnected(body_a, body_b) != 0) return;
-        std::array<dContact, 8> found{};
-        const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
-        for (int i = 0; i < count; ++i) {
-            dContact& contact = found[std::size_t(i)];
-            contact.surface.mode = dContactApprox1;
-            contact.surface.mu = dReal(friction_);
-            const dJointID joint = dJointCreateContact(id_, contacts_, &contact);
-            dJointAttach(joint, body_a, body_b);
+        dSurfaceParameters surface{};
+        surface.mode = dContactApprox1;
+        surface.mu = dReal(friction_);
+        engine_.touch(a, b, surface, [this](dJointID joint, const dContact& contact) {
             world_->add_contact(joint, contact);
-        }
+        });
     }
     void apply_damping(dBodyID body) {
         ode::add_force(body, scaled(-damping_ * ode::mass(body), ode::linear_velocity(body)),
@@ -176,8 +151,7 @@ class StructureRig {
         each([&](dBodyID body) { dBodySetAutoDisableFlag(body, yes ? 1 : 0); });
     }
 
-    Library library_;
-    Engine engine_;
+    OdeEngine engine_;
     dWorldID id_ = engine_.id;
     dSpaceID space_ = engine_.space;
     dJointGroupID contacts_ = engine_.contacts;

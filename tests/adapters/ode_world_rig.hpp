@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/ode_engine.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace ductile::test {
@@ -73,7 +74,7 @@ class WorldRig {
     Body box(double mass, const V3& half, const V3& at) {
         if (!collides_) {
             collides_ = true;
-            world_.on_contacts({.space = engine_.space, .group = engine_.group},
+            world_.on_contacts({.space = engine_.space, .group = engine_.contacts},
                                [this] { dSpaceCollide(engine_.space, this, &WorldRig::touch); });
         }
         dMass inertia;
@@ -201,14 +202,9 @@ class WorldRig {
     }
     static void touch(void* data, dGeomID a, dGeomID b) {
         auto& rig = *static_cast<WorldRig*>(data);
-        std::array<dContact, 8> found{};
-        const int count = dCollide(a, b, int(found.size()), &found[0].geom, int(sizeof(dContact)));
-        for (int i = 0; i < count; ++i) {
-            dContact& contact = found[std::size_t(i)];
-            const dJointID joint = dJointCreateContact(rig.id_, rig.engine_.group, &contact);
-            dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
+        rig.engine_.touch(a, b, {}, [&rig](dJointID joint, const dContact& contact) {
             rig.world_.add_contact(joint, contact);
-        }
+        });
     }
     template <class Constraint>
     Constraint& own(std::unique_ptr<Constraint> constraint) {
@@ -218,29 +214,7 @@ class WorldRig {
         return result;
     }
 
-    /// ODE counts its users: initialised once per rig, before the world; both go last, also where
-    /// what follows cannot be made.
-    struct Library {
-        Library() { dInitODE2(0); }
-        ~Library() { dCloseODE(); }
-        Library(const Library&) = delete;
-        Library& operator=(const Library&) = delete;
-    };
-    struct Engine {
-        Engine() = default;
-        ~Engine() {
-            dJointGroupDestroy(group);
-            dSpaceDestroy(space);
-            dWorldDestroy(id);
-        }
-        Engine(const Engine&) = delete;
-        Engine& operator=(const Engine&) = delete;
-        dWorldID id = dWorldCreate();
-        dSpaceID space = dHashSpaceCreate(nullptr);
-        dJointGroupID group = dJointGroupCreate(0);
-    };
-    Library library_;
-    Engine engine_;
+    OdeEngine engine_;
     dWorldID id_ = engine_.id;
     ode::World world_;
     bool collides_ = false;
