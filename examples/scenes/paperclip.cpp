@@ -13,9 +13,9 @@
 //   1 mm   0.59   -0.58  45°    3    1.29287                   3.6490648      0.215903
 //
 // and the first bent one way: 12 rad. The hand turns the end as A sin ωt, a half cycle in a second.
-// Where a corner of that falls just behind the end of a frame of 1/60 s, a leg counts 0.05 % too
-// long, whatever the tolerance; ten of them take a third of the little that is turned in leg 11,
-// 0.3 % of the travel. So do plain steps.
+// Where a corner of that falls on the end of a frame it may be met just before or behind it, which
+// is a matter of the tolerance: at frames of 1/60 s each leg counts 0.07 % too short, 0.23 % of the
+// travel in all; with a hundredth of the tolerance 0.03 %.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -102,9 +102,9 @@ class Paperclip final : public Scene {
                    1 + std::ceil((bend.plastic_travel() - wire.amplitude) / (2 * wire.amplitude)),
                    wire.leg, 0);
         run.expect(of + "after turning in it", bend.plastic_travel() - before, wire.turned,
-                   0.1 / wire.turned, "rad");
-        run.expect(of + "travel in all", bend.plastic_travel(), wire.travel, 0.004, "rad");
-        run.expect(of + "work", bend.absorbed_energy(), wire.work, 0.004, "J");
+                   0.08 / wire.turned, "rad");
+        run.expect(of + "travel in all", bend.plastic_travel(), wire.travel, 0.003, "rad");
+        run.expect(of + "work", bend.absorbed_energy(), wire.work, 0.003, "J");
         take.cut();
     }
     static void one_way(Run& run) {

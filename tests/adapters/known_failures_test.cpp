@@ -144,7 +144,7 @@ TEST_CASE(
         INFO(solver);
         CHECK(error(chain, ours) < 1e-3);
         CHECK(ours.unreliable_steps == 0);
-        CHECK(ours.energy_highest <= ours.energy_start);
+        CHECK(ours.energy_highest <= ours.energy_start + 1e-13); // round-off of m g h [J]
     }
 }
 

@@ -8,7 +8,8 @@
 //
 //   a row that stopped    its strength R acted for the whole part, and would have for a share of
 //                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2
-//   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|
+//   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|; however slow it is then, its
+//                         force was that of its flow back
 //   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
 //                         three times that where the flow began within the part
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
@@ -41,6 +42,7 @@ struct PartRow {
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
     double strength = 0;   ///< R; 0 where broken [N | N m]
+    bool pushes = false;   ///< the force went with u: it is that of a flow the other way
     double noise = 0;      ///< speed that is as good as rest [m/s | rad/s]
     double turning = 0;    ///< speed that a row may keep that turns with its bodies and holds
                            ///< [m/s | rad/s]
@@ -92,11 +94,12 @@ struct PartBefore {
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
         result.travel = start * h * (1 - share) / 2;
         double stop = share * h;
-        if (row.start * row.end < 0 && std::abs(row.end) > row.noise) {
+        constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
+        const bool turned = row.start * row.end < 0;
+        if (turned && (std::abs(row.end) > row.noise || (row.pushes && share >= whole))) {
             result.travel = std::max(result.travel, std::abs(change) * h / 8);
             stop = h * start / std::abs(change);
         }
-        constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
         if (stop > nothing * h && stop < whole * h) result.stop = stop;
         result.ended = result.travel > noticed * start * h;
     } else {

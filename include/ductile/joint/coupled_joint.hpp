@@ -300,7 +300,8 @@ class CoupledJoint {
                                              towards * elastic_[axis];
         const Scalar elapsed = time_to_run(run, towards * start_[axis],
                                            towards * reaction.velocity[axis], Scalar(1), dt);
-        state_.time -= dt - elapsed; // of the whole step that `settle` books
+        step.after_break = dt - elapsed;
+        state_.time -= step.after_break; // of the whole step that `settle` books
     }
 
     /// Uses up life for the work of flow of all rows together.
@@ -333,11 +334,12 @@ class CoupledJoint {
             last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         const Scalar rest = work - step.plastic_work;
         (state_.broken ? step.release : step.other_work) += rest;
-        if (state_.broken) end_after(taken, reaction, travel, dt);
+        if (state_.broken) end_after(step, taken, reaction, travel, dt);
     }
 
     /// The joint broke after the equivalent `travel` of this step.
-    void end_after(Taken& taken, const Reaction& reaction, Scalar travel, Scalar dt) noexcept {
+    void end_after(Step& step, Taken& taken, const Reaction& reaction, Scalar travel,
+                   Scalar dt) noexcept {
         state_.broken_axis = taken.axis;
         const Scalar share = std::max(share_, std::numeric_limits<Scalar>::min());
         taken.force = taken.at_bound.select(taken.force / share, taken.force);
@@ -346,7 +348,9 @@ class CoupledJoint {
         const Scalar start = -numeric::dot(taken.force, start_) / strength;
         const Scalar end = -numeric::dot(taken.force, reaction.velocity) / strength;
         const Scalar held = (start + end) / 2 * dt - taken.flow / (strength * share);
-        state_.time -= dt - time_to_run(std::max(held, Scalar(0)) + travel, start, end, share, dt);
+        step.after_break =
+            dt - time_to_run(std::max(held, Scalar(0)) + travel, start, end, share, dt);
+        state_.time -= step.after_break;
     }
 
     Surface surface_;

@@ -21,11 +21,12 @@ struct Step {
     S plastic_work = 0;       ///< dissipated by flow, >= 0 [J]
     S elastic = 0;            ///< change of what is stored, elastic and by a back force [J]
     S damped = 0;             ///< taken by the material's damping, either sign within a swing [J]
-    S other_work = 0; ///< solver residual, drift removal, numerical damping; either sign [J]
-    S release = 0;    ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
-    S lost = 0;       ///< stored energy that a break set free inside the part, >= 0 [J]
-    S claimed = 0;    ///< flow as this joint sees it (work_share.hpp), >= 0 [J]
-    S unclaimed = 0;  ///< work of its rows that did not flow, either sign [J]
+    S other_work = 0;  ///< solver residual, drift removal, numerical damping; either sign [J]
+    S release = 0;     ///< taken in excess by a breaking step, to be handed back, >= 0 [J]
+    S lost = 0;        ///< stored energy that a break set free inside the part, >= 0 [J]
+    S after_break = 0; ///< time of the step that was left when it broke, >= 0 [s]
+    S claimed = 0;     ///< flow as this joint sees it (work_share.hpp), >= 0 [J]
+    S unclaimed = 0;   ///< work of its rows that did not flow, either sign [J]
     S gained = 0; ///< given to the bodies beyond all that was taken from them so far, where that
                   ///< is too much to be believed (step_end.hpp), >= 0 [J]
     /// Largest violation of a row's complementarity, >= 0; infinite: an input was not finite, and

@@ -317,7 +317,7 @@ class OneAxisJoint {
     }
 
     /// Puts time and force of the state to the break, the step being booked as a whole by `settle`.
-    void place_break(const Step<Scalar>& step, const Taken& taken) noexcept {
+    void place_break(Step<Scalar>& step, const Taken& taken) noexcept {
         const bool flowed = step.plastic_work > 0;
         const Scalar direction = std::copysign(Scalar(1), flowed ? taken.travel : -taken.force);
         if (flowed) state_.force = -law_.resistance(state_.law, Scalar(0), direction) * fade_;
@@ -327,8 +327,10 @@ class OneAxisJoint {
             distance += std::max(stretch - direction * elastic_, Scalar(0));
         }
         const Scalar velocity = 2 * taken.travel / taken.dt - start_;
-        state_.time -= taken.dt - time_to_run(distance, direction * start_, direction * velocity,
-                                              flowed ? share_ : Scalar(1), taken.dt);
+        step.after_break =
+            taken.dt - time_to_run(distance, direction * start_, direction * velocity,
+                                   flowed ? share_ : Scalar(1), taken.dt);
+        state_.time -= step.after_break;
     }
 
     Cyclic law_;

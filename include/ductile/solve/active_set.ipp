@@ -176,14 +176,20 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows() {
     const double enough = detail::exactness * system_->scale();
     set_tangents();
     bool factored = false, stays = true;
+    int last = steps;
     double worst = 0, before = std::numeric_limits<double>::infinity();
     for (int step = 0;; ++step) {
         system_->update_velocities();
         system_->update_residuals();
         worst = set_right_sides();
         if (worst <= enough) return true;
-        if (!stays || step >= steps || std::isnan(worst)) break;
-        if (step > 1 && !curved && worst > stalled * before) break;
+        if (!stays || std::isnan(worst)) break;
+        if (step >= last || (step > 1 && !curved && worst > stalled * before)) {
+            if (worst <= detail::acceptance * system_->scale() || !system_->soften()) break;
+            last = step + steps;
+            before = std::numeric_limits<double>::infinity();
+            continue;
+        }
         if (!factored || (curved && !(worst < slow * before))) {
             set_tangents();
             static_cast<void>(set_right_sides());

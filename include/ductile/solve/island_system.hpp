@@ -37,10 +37,11 @@ class IslandSystem {
     /// Of a row.
     struct Row {
         double own = 0;        ///< its effect on itself, J M⁻¹ Jᵀ; 0: no body can follow
-        double compliance = 0; ///< C with softness
+        double compliance = 0; ///< C with softness: that of the factors
+        double give = 0;       ///< C of the answer, no softness where no row repeats another
         double metric = 0;     ///< own + C
         double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
-        double residual = 0;   ///< b - shift - J v - C x
+        double residual = 0;   ///< b - shift - J v - C x, C of the answer
         double weight = 0;     ///< W
         double right = 0;      ///< g
         double extra = 0;      ///< e
@@ -74,6 +75,9 @@ class IslandSystem {
     void update_velocities() noexcept;
     /// r = b - J v - C x.
     void update_residuals() noexcept;
+    /// Rows give by their softness where that was left out; false where it was not. So is a chain
+    /// solved that is too long for its factors, whose step is then a small part of what is missing.
+    bool soften() noexcept;
     /// K from the weights, and its factors. False where it is not positive definite.
     [[nodiscard]] bool factor() noexcept;
     /// dx from `right` and `extra`, with the last factors.
@@ -98,12 +102,14 @@ class IslandSystem {
     };
     void make_isotropic(const IslandBlock& block) noexcept;
     void find_runs();
+    [[nodiscard]] bool is_forest();
     void find_pattern();
 
     Island* island_ = nullptr;
     std::vector<Row> rows_;
     std::vector<Block> blocks_;
     std::vector<int> block_of_;
+    std::vector<std::size_t> root_; ///< of bodies and the world, by joints
     std::vector<Run> runs_;
     std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
     numeric::BlockLdlt factors_;

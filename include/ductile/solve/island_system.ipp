@@ -41,6 +41,7 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         for (int i = 0; i < block.count; ++i) block_of_[std::size_t(block.first + i)] = int(k);
     }
     scale_ = 0;
+    const bool forest = is_forest();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
@@ -53,6 +54,10 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         }
         const double softness = given.softness > 0 ? given.softness : least_softness * row.own;
         row.compliance = given.compliance <= softness ? softness : given.compliance; // or NaN
+        const bool contact = block_of_[i] >= 0 &&
+                             island.blocks[std::size_t(block_of_[i])].kind == BlockKind::contact;
+        const bool soft = !forest || contact || given.softness > 0;
+        row.give = soft || row.compliance > softness ? row.compliance : given.compliance;
         row.metric = row.own + row.compliance;
         const double size =
             std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
@@ -61,6 +66,45 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
     for (const IslandBlock& block : island.blocks) {
         if (block.kind == BlockKind::contact) make_isotropic(block);
     }
+}
+
+/// Whether no row can repeat what others do: joints form no loop, and no body has a locked axis.
+DUCTILE_INLINE bool IslandSystem::is_forest() {
+    const std::vector<IslandBody>& bodies = island_->bodies;
+    if (std::any_of(bodies.begin(), bodies.end(), [](const IslandBody& body) {
+            return (body.inverse_mass.diagonal().array() == 0).any();
+        })) {
+        return false;
+    }
+    const std::size_t world = bodies.size();
+    root_.resize(world + 1);
+    for (std::size_t i = 0; i <= world; ++i) root_[i] = i;
+    const auto find = [&](int body) {
+        std::size_t i = body < 0 ? world : std::size_t(body);
+        while (root_[i] != i) i = root_[i] = root_[root_[i]];
+        return i;
+    };
+    for (const Run& run : runs_) {
+        const int block = block_of_[run.first];
+        if (block >= 0 && island_->blocks[std::size_t(block)].kind == BlockKind::contact) continue;
+        const int joint = island_->rows[run.first].joint;
+        for (std::size_t i = run.first; i < run.end; ++i) {
+            if (joint < 0 || island_->rows[i].joint != joint) return false;
+        }
+        const std::size_t a = find(run.a), b = find(run.b);
+        if (a == b) return false;
+        root_[a] = b;
+    }
+    return true;
+}
+
+DUCTILE_INLINE bool IslandSystem::soften() noexcept {
+    bool softened = false;
+    for (Row& row : rows_) {
+        softened = softened || row.give < row.compliance;
+        row.give = row.compliance;
+    }
+    return softened;
 }
 
 /// The friction rows of a contact get one compliance and one metric, in shares of their
@@ -76,7 +120,7 @@ DUCTILE_INLINE void IslandSystem::make_isotropic(const IslandBlock& block) noexc
     for (int i = 1; i < block.count; ++i) {
         Row& row = rows_[std::size_t(block.first + i)];
         const double f = block.size[std::size_t(i)];
-        row.compliance = compliance / (f * f);
+        row.give = row.compliance = compliance / (f * f);
         row.metric = (own + compliance) / (f * f);
     }
 }
@@ -137,7 +181,7 @@ DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
     const std::vector<IslandBody>& bodies = island_->bodies;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const IslandRow& row = island_->rows[i];
-        double residual = row.target - rows_[i].shift - rows_[i].compliance * row.impulse;
+        double residual = row.target - rows_[i].shift - rows_[i].give * row.impulse;
         if (row.a >= 0) residual -= row.on_a.dot(bodies[std::size_t(row.a)].velocity);
         if (row.b >= 0) residual -= row.on_b.dot(bodies[std::size_t(row.b)].velocity);
         rows_[i].residual = residual;

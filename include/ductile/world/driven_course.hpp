@@ -4,11 +4,16 @@
 // the end of each frame; gone there with one velocity it would be kicked at the start of each, and
 // a joint that could follow its acceleration flows. So its velocity goes on from frame to frame:
 //
-//   V, V₋   mean velocity over this frame and the last one           [m/s | rad/s]
-//   v(t) = V + (V - V₋) (t/L - 1/2),   0 <= t <= L
+//   V      mean velocity over this frame, of length L                       [m/s | rad/s]
+//   a, a₋  its change since the last frame by the time between their middles, and that of the last
+//   v(0)   what the last frame ended with
+//   v(L) = V + a L/2 + (a - a₋) L/4
 //
-// where V goes on as it did (driven_velocity.hpp); else v = V, as of what is set into motion at
-// once. Both end where they should. Between two frames v jumps by (V - 2 V₋ + V₋₋)/2, O(L²).
+// linear between, where V goes on as it did (driven_velocity.hpp); else v = V, as of what is set
+// into motion at once. A joint counts the travel of v. That of a frame is off by (v(0) + v(L))/2 -
+// V = -(Δa - Δa₋) L/8, Δa = a - a₋: over many frames by what Δa has changed in all, however long
+// they are. Were v(L) without its last term it would be off by -Δa L/4 in each, a share of (ω L)²/4
+// of what goes to and fro as sin ωt. The body itself goes from end to end of its frames.
 #pragma once
 
 #include "ductile/joint/link_types.hpp"
@@ -22,53 +27,63 @@ class DrivenCourse {
   public:
     /// A frame of `length` > 0 [s] with the mean velocities of `mean`.
     void begin(const BodyState<double>& mean, double length) noexcept {
-        const Vector3<double> velocity = this->velocity(length_), spin = this->spin(length_);
-        const BodyState<double> last = past_.at_start(mean, length);
-        past_.booked(mean, length);
-        velocity_ = mean.velocity;
-        spin_ = mean.spin;
-        change_ = difference(mean.velocity, last.velocity);
-        turning_ = difference(mean.spin, last.spin);
+        velocity_.begin(mean.velocity, length);
+        spin_.begin(mean.spin, length);
         length_ = length;
-        first_velocity_ = is_zero(change_) ? this->velocity(0) : velocity;
-        first_spin_ = is_zero(turning_) ? this->spin(0) : spin;
     }
 
     /// `time` [s] after the frame's begin, as all that follows.
     [[nodiscard]] Vector3<double> velocity(double time) const noexcept {
-        return sum(velocity_, scaled(time / length_ - 0.5, change_));
+        return velocity_.at(time / length_);
     }
     [[nodiscard]] Vector3<double> spin(double time) const noexcept {
-        return sum(spin_, scaled(time / length_ - 0.5, turning_));
+        return spin_.at(time / length_);
     }
-    /// The same where a part begins that is then: what it jumps by between two frames it gains in
-    /// the first part, as a jump would be a blow to its joints.
-    [[nodiscard]] Vector3<double> part_velocity(double time) const noexcept {
-        return time > 0 ? velocity(time) : first_velocity_;
+    /// The change of its place with time, whose mean over the frame is V.
+    [[nodiscard]] Vector3<double> going(double time) const noexcept {
+        return sum(velocity(time), velocity_.missing());
     }
-    [[nodiscard]] Vector3<double> part_spin(double time) const noexcept {
-        return time > 0 ? spin(time) : first_spin_;
+    [[nodiscard]] Vector3<double> turning(double time) const noexcept {
+        return sum(spin(time), spin_.missing());
     }
     /// From where the frame began [m].
     [[nodiscard]] Vector3<double> way(double time) const noexcept {
-        return sum(scaled(time, velocity_), scaled(bent(time), change_));
+        return scaled(time, going(time / 2));
     }
     /// The same, as a rotation vector [rad].
     [[nodiscard]] Vector3<double> turn(double time) const noexcept {
-        return sum(scaled(time, spin_), scaled(bent(time), turning_));
+        return scaled(time, turning(time / 2));
     }
 
   private:
-    [[nodiscard]] double bent(double time) const noexcept {
-        return time * (time / length_ - 1) / 2;
-    }
+    /// Linear or angular.
+    class Velocity {
+      public:
+        void begin(const Vector3<double>& mean, double length) noexcept {
+            const bool goes_on = past_.goes_on(mean, length);
+            const Vector3<double> last_slope = past_.slope;
+            past_.book(mean, length);
+            start_ = goes_on ? end_ : mean;
+            end_ = mean;
+            if (!goes_on) return;
+            const Vector3<double> bend = past_.smooth < 2 ? Vector3<double>(Vector3<double>::Zero())
+                                                          : difference(past_.slope, last_slope);
+            end_ = sum(end_, scaled(length / 4, sum(scaled(2, past_.slope), bend)));
+        }
+        [[nodiscard]] Vector3<double> at(double share) const noexcept {
+            return sum(start_, scaled(share, difference(end_, start_)));
+        }
+        [[nodiscard]] Vector3<double> missing() const noexcept {
+            return difference(past_.value, at(0.5));
+        }
 
-    DrivenVelocity past_;
-    Vector3<double> velocity_ = Vector3<double>::Zero(), spin_ = Vector3<double>::Zero();
-    Vector3<double> change_ = Vector3<double>::Zero(), turning_ = Vector3<double>::Zero();
-    Vector3<double> first_velocity_ = Vector3<double>::Zero(),
-                    first_spin_ = Vector3<double>::Zero();
-    double length_ = 1;
+      private:
+        DrivenPast past_;
+        Vector3<double> start_ = Vector3<double>::Zero(), end_ = Vector3<double>::Zero();
+    };
+
+    Velocity velocity_, spin_;
+    double length_ = 1; ///< L [s]
 };
 
 } // namespace ductile

@@ -45,7 +45,7 @@ struct JointEvent {
     EventKind kind = EventKind::yielded;
     std::size_t joint = 0; ///< number that the watch gave it
     std::string name;      ///< of the joint
-    double time = 0;       ///< at the end of the step, for a break within it [s]
+    double time = 0;       ///< of a break; of all else at the end of the step, or part [s]
     JointReport<S> report;
     int section = -1; ///< of a member, that split or fused; else -1
 };

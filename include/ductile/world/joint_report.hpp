@@ -25,6 +25,7 @@ struct JointReport {
     S plastic_travel = 0;  ///< p [m | rad]
     S absorbed_energy = 0; ///< D [J]
     S step_error = 0;      ///< share of p that the steps so far may have misplaced [-]
+    S after_break = 0;     ///< where it broke in this step: time of it that was left then [s]
     std::optional<FractureEvent<S>> fracture{}; ///< once it is broken
 };
 
@@ -43,6 +44,7 @@ template <std::floating_point S>
             .plastic_travel = totals.plastic_travel,
             .absorbed_energy = totals.plastic_work,
             .step_error = last.step_error,
+            .after_break = last.after_break,
             .fracture = fracture};
 }
 

@@ -36,6 +36,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.start = link.start_velocities()[i];
         row.end = link.end_velocities()[i];
         row.share = share;
+        row.pushes = link.force(axis) * row.start > 0;
         row.strength = link.strength(axis);
         row.given = std::exchange(given, 0);
     }
@@ -54,6 +55,7 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.end = axis.velocity();
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = row.strength > 0 ? std::abs(force) / row.strength : 0;
+    row.pushes = force * row.start > 0;
 }
 
 } // namespace ductile

@@ -77,7 +77,9 @@ class Watch {
             tell(EventKind::coarse, joint, time_, report);
         }
         const bool broken = report.fracture.has_value();
-        if (broken && !seen.broken) tell(EventKind::broke, joint, time_, report);
+        if (broken && !seen.broken) {
+            tell(EventKind::broke, joint, time_ - double(report.after_break), report);
+        }
         seen.broken = broken;
     }
 

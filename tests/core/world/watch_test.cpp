@@ -65,6 +65,15 @@ TEST_CASE("a joint that goes on saying what it did last is told once", "[world]"
     CHECK(watch.events()[0].time == 0.3);
 }
 
+TEST_CASE("a break is told for when it was, not for the end of its step", "[world]") {
+    Watch<double> watch;
+    const auto post = watch.add("post");
+    watch.open(0.3);
+    watch.see(post, {.outcome = Outcome::broken, .after_break = 0.125, .fracture = {{}}});
+    REQUIRE(watch.events().size() == 1);
+    CHECK(watch.events()[0].time == 0.3 - 0.125);
+}
+
 TEST_CASE("a joint restored as broken is not told as broken anew", "[world]") {
     Watch<double> watch;
     const auto post = watch.add("post", true);

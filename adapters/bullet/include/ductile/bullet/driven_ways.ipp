@@ -55,8 +55,8 @@ DUCTILE_INLINE void DrivenWays::place(btScalar time, btScalar begun, btScalar th
         body->setInterpolationWorldTransform(now);
         body->setLinearVelocity(to_bullet(course.velocity(double(then))));
         body->setAngularVelocity(to_bullet(course.spin(double(then))));
-        body->setInterpolationLinearVelocity(to_bullet(course.part_velocity(double(begun))));
-        body->setInterpolationAngularVelocity(to_bullet(course.part_spin(double(begun))));
+        body->setInterpolationLinearVelocity(to_bullet(course.velocity(double(begun))));
+        body->setInterpolationAngularVelocity(to_bullet(course.spin(double(begun))));
     }
 }
 

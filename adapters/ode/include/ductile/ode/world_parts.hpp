@@ -92,6 +92,7 @@ class WorldParts final : public PartEngine {
     void leave();
     void begin_driven();
     void drive_as_at(double time) const;
+    void go_as_at(double time) const;
     void drive(const Vector3<double>& velocity, const Vector3<double>& spin, dBodyID body) const;
     void tick(double h, bool blow);
     void damp(double share);

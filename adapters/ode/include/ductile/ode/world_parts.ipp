@@ -89,6 +89,13 @@ DUCTILE_INLINE void WorldParts::drive_as_at(double time) const {
     }
 }
 
+/// With those that take them, through a time with `time` as its middle, to where they should be.
+DUCTILE_INLINE void WorldParts::go_as_at(double time) const {
+    for (const Driven& driven : driven_) {
+        drive(driven.course.going(time), driven.course.turning(time), driven.body);
+    }
+}
+
 DUCTILE_INLINE void WorldParts::drive(const Vector3<double>& velocity, const Vector3<double>& spin,
                                       dBodyID body) const {
     dBodySetLinearVel(body, dReal(velocity.x()), dReal(velocity.y()), dReal(velocity.z()));
@@ -147,11 +154,11 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     const double end = blow ? time_ : time_ + h;
     for (const Driven& driven : driven_) {
         for (PlasticConstraint* joint : of_.joints) {
-            joint->driven_begins(driven.body, driven.course.part_velocity(time_),
-                                 driven.course.part_spin(time_));
+            joint->driven_begins(driven.body, driven.course.velocity(time_),
+                                 driven.course.spin(time_));
         }
     }
-    drive_as_at(time_ + half / 2); // the mean of the first half
+    go_as_at(time_ + half / 2); // the mean of the first half
     forces_.apply();
     of_.meter.before_step();
     half_ahead_.move(of_.bodies, half);
@@ -173,7 +180,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
         closed_ = closing_.closed(half, half, apart_);
         closing_.remember();
     }
-    drive_as_at(end - half / 2);
+    go_as_at(end - half / 2);
     half_ahead_.move_on(half);
     drive_as_at(end);
     time_ = end;

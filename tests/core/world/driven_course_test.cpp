@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+//
+// The way of a driven body over frames: it goes on without a jump, ends where it should, and what a
+// joint counts of it adds up to what the body went.
+#include <catch2/catch.hpp>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "ductile/world/driven_course.hpp"
+
+using namespace ductile;
+
+namespace {
+
+BodyState<double> turning(double speed) {
+    BodyState<double> state;
+    state.spin = {0, 0, speed};
+    return state;
+}
+
+struct Total {
+    double counted = 0, went = 0, largest_jump = 0;
+};
+
+/// Of a body that turns as sin πt from `from` to `to` [s], in frames whose lengths come in turn.
+Total over(double from, double to, std::array<double, 2> lengths) {
+    DrivenCourse course;
+    const auto angle = [](double t) { return std::sin(std::numbers::pi * t); };
+    Total total;
+    double t = 0, end = 0;
+    for (int i = 0; t < to - 1e-9; ++i) {
+        const double length = lengths[i % 2], next = t + length;
+        course.begin(turning((angle(next) - angle(t)) / length), length);
+        if (t > from - 1e-9) {
+            const double start = course.spin(0).z();
+            total.largest_jump = std::max(total.largest_jump, std::abs(start - end));
+            total.counted += (start + course.spin(length).z()) / 2 * length;
+            total.went += course.turn(length).z();
+        }
+        end = course.spin(length).z();
+        t = next;
+    }
+    return total;
+}
+
+} // namespace
+
+TEST_CASE("A driven body's travel adds up to its way, over many frames") {
+    // half a turn to and a quarter beyond, so that nothing cancels
+    for (const double length : {1.0 / 240, 1.0 / 60, 0.02, 1.0 / 30}) {
+        CAPTURE(length);
+        const Total total = over(1.5, 2.5, {length, length});
+        CHECK(total.went == Approx(2).epsilon(1e-12));
+        CHECK(total.largest_jump < 1e-12);
+        // if each frame were off the same way: a share of (π L)²/4, 0.27 % at 1/30 s
+        CHECK(std::abs(total.counted - total.went) < 0.5 * std::pow(std::numbers::pi * length, 4));
+    }
+    // where lengths alternate some of each frame's stays
+    const Total total = over(1.5, 2.5, {0.02, 0.005});
+    CHECK(total.went == Approx(2).epsilon(1e-12));
+    CHECK(total.largest_jump < 1e-12);
+    CHECK(std::abs(total.counted - total.went) < 4e-4);
+}
+
+TEST_CASE("A smooth motion goes on where it is fastest") {
+    // at t = 2 s no velocity changes; a jump there was 0.01 % of a half turn
+    const Total total = over(1.5, 2.25, {1.0 / 60, 1.0 / 60});
+    CHECK(total.largest_jump < 1e-12);
+}
+
+TEST_CASE("What is set into motion at once, or turned round at once, jumps") {
+    DrivenCourse course;
+    const auto jumps = [&course](double speed) {
+        const double before = course.spin(0.01).z();
+        course.begin(turning(speed), 0.01);
+        return course.spin(0).z() != before;
+    };
+    course.begin(turning(0), 0.01);
+    CHECK_FALSE(jumps(0));
+    CHECK(jumps(3));
+    CHECK(course.spin(0.01).z() == 3); // all the frame
+    for (int i = 0; i < 5; ++i) {
+        CHECK_FALSE(jumps(3));
+        CHECK(course.turn(0.01).z() == Approx(0.03).epsilon(1e-14));
+    }
+    CHECK(jumps(-3));
+    CHECK(course.spin(0.01).z() == -3);
+    CHECK_FALSE(jumps(-3));
+}
