@@ -73,19 +73,19 @@ TEST_CASE("whatever the frame, the energies are right and believed", "[charpy]")
     const double frame = GENERATE(from_range(frames));
     const std::string solver = GENERATE(from_range(solvers));
     INFO(solver << ", frame " << frame);
-    const Scenario scenario = in_frames(frame);
+    Scenario scenario = in_frames(frame);
+    if (solver == "quick") { // of the hammer's own hinge, in the bar's island: 10 sweeps are too few
+        CHECK_FALSE(run(scenario, solver).believed);
+        scenario.iterations = 50;
+    }
     const Result r = run(scenario, solver);
     const Reference expected = reference(scenario);
-    CHECK(std::abs(r.unexplained) < unexplained);
-    CHECK_FALSE(r.broken);
-    if (solver == "quick") { // of the hammer's own hinge, in the bar's island; it says so
-        CHECK_FALSE(r.believed);
-        return;
-    }
-    CHECK(r.believed);
+    CHECK((r.believed || solver == "quick"));
     CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.005));
     CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(0.015));
+    CHECK(std::abs(r.unexplained) < unexplained);
     CHECK(r.solves < 250);
+    CHECK_FALSE(r.broken);
 }
 
 TEST_CASE("what is off by more than a joint allows is never silent", "[charpy]") {
