@@ -16,5 +16,6 @@ fi
 out=examples/charpy/out
 mkdir -p "$out"
 build/release/bin/charpy --table "$out" >/dev/null
-build/release/bin/charpy --json "$out/results.json" --csv "$out/history.csv" --plots "$out"
+build/release/bin/charpy --json "$out/results.json" | tee "$out/table.txt"
+build/release/bin/charpy --frame 0.0001 --csv "$out/history.csv" --plots "$out" >/dev/null
 build/release/bin/scenes --out examples/scenes/out

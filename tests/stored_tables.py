@@ -47,19 +47,20 @@ def section(path, heading):
     return BLOCK.search(text_of(path).split(f"## {heading}\n")[1].lstrip()).group()
 
 
-def fixed_steps(path):
-    """The Charpy test's plastic hinge at fixed steps, direct solvers in double."""
-    rows = [row for row in rows_of(path) if (row["method"], row["scalar"]) == ("plastic-hinge", "double")]
-    found = {(row["engine"], row["step ms"]): row for row in rows if row["step ms"] != "adaptive"}
+def charpy_frames(path):
+    """The Charpy test in frames, in double: absorbed by our joints and lost by the hammer."""
+    found = {(row["engine"], row["method"], row["step ms"]): row for row in rows_of(path)
+             if is_ours(row) and row["scalar"] == "double" and row["published J"] == "90 to 150"}
+    cases = list(dict.fromkeys((engine, method) for engine, method, _ in found))
+    head = ["engine", "joint", "expected [J]"] + [f"1/{n} s" for n in (240, 120, 60, 30)]
+    steps = list(dict.fromkeys(step for _, _, step in found))
 
-    def cells(row):
-        work, loss = row["plastic work J"], row["hammer loss J"]
-        return work, loss, f"{float(loss) - float(work):.2f}"
+    def cell(row):
+        said = "" if row["believed"] == "yes" else ", not believed"
+        return f"{row['plastic work J']} / {row['hammer loss J']}{said}"
 
-    head = ["step [ms]"] + [f"{engine} {what} [J]" for engine in ("Bullet", "ODE")
-                            for what in ("plastic work", "hammer loss", "difference")]
-    return table(head, [[step, *cells(found["bullet", step]), *cells(found["ode", step])]
-                        for step in dict.fromkeys(step for _, step in found)])
+    return table(head, [[engine, f"`{method}`", found[engine, method, steps[0]]["expected J"],
+                         *[cell(found[engine, method, step]) for step in steps]] for engine, method in cases])
 
 
 def misses(path):

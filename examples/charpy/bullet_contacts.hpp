@@ -25,8 +25,9 @@
 #include <utility>
 #include <vector>
 
-#include "edge_contact.hpp"
+#include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/convert.hpp"
+#include "edge_contact.hpp"
 
 namespace charpy {
 
@@ -165,12 +166,14 @@ class BulletContacts final : public btCollisionDispatcher, private btOverlapFilt
                       unlike_ ? unlike : 0);
         }
     }
-    static void add_point(const BulletContact& contact, btPersistentManifold& manifold,
-                          const ContactPoint& point, btScalar impulse, double unlike) {
+    void add_point(const BulletContact& contact, btPersistentManifold& manifold,
+                   const ContactPoint& point, btScalar impulse, double unlike) const {
         using ductile::bullet::to_bullet;
         const btVector3 on_a = to_bullet(point.position);
         const btVector3 on_b = to_bullet(point.position - point.gap * point.normal);
-        const bool rebounds = rebound(contact.restitution, closing_speed(contact, point)) > 0;
+        // ahead, what is apart yet has to close first
+        const bool rebounds = !(ahead_ && point.gap > ductile::bullet::closed_gap) &&
+                              rebound(contact.restitution, closing_speed(contact, point)) > 0;
         btManifoldPoint entry(contact.a->getCenterOfMassTransform().invXform(on_a),
                               contact.b->getCenterOfMassTransform().invXform(on_b),
                               to_bullet(point.normal),

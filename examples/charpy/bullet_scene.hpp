@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // The Charpy test in Bullet. Contacts are set up so that the engine neither adds nor takes energy
-// with them: the contact points are those of edge_contact.hpp, handed to Bullet as manifolds, and
-// split impulse corrects positions apart from velocities at any depth. Bodies do not collide
-// otherwise.
+// with them: the contact points are those of edge_contact.hpp, made where Bullet makes its own
+// (bullet_contacts.hpp), and split impulse corrects positions apart from velocities at any depth.
+// Bodies do not collide otherwise.
 //
 // The specimen is weightless until struck: it stands for one that rests on a shelf. In the 5 ms of
 // the blow gravity would move it by 0.1 mm.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
@@ -24,8 +23,8 @@
 #include <string>
 #include <vector>
 
+#include "bullet_contacts.hpp"
 #include "ductile/bullet/bullet.hpp"
-#include "edge_contact.hpp"
 #include "simulation.hpp"
 #include "specimen_joints.hpp"
 
@@ -50,13 +49,13 @@ class BulletScene {
         add_specimen();
         join_specimen();
         pair_edges();
-        meter_ = std::make_unique<ductile::bullet::EnergyMeter>(*world_);
+        if (!keeper_) meter_ = std::make_unique<ductile::bullet::EnergyMeter>(*world_);
     }
 
     ~BulletScene() {
         meter_.reset();
-        for (const Pair& pair : pairs_) dispatcher_->releaseManifold(pair.manifold);
         plastic_.for_each([this](auto& joint) { joint.remove_from(*world_); });
+        keeper_.reset();
         for (auto& constraint : constraints_) world_->removeConstraint(constraint.get());
         for (auto& body : bodies_) world_->removeRigidBody(body.get());
     }
@@ -65,6 +64,11 @@ class BulletScene {
 
     double step(double dt) {
         using clock = std::chrono::steady_clock;
+        if (keeper_) {
+            const auto start = clock::now();
+            keeper_->step(dt);
+            return std::chrono::duration<double>(clock::now() - start).count();
+        }
         // btHingeConstraint takes an impulse, so its strength has to follow the step
         for (const Motor& motor : motors_) {
             motor.joint->enableAngularMotor(true, 0, scalar(motor.moment * dt));
@@ -75,7 +79,6 @@ class BulletScene {
         world_->getSolverInfo().m_erp = scalar(drift_correction(dt));
         meter_->before_step();
         const auto start = clock::now();
-        collide(dt);
         world_->stepSimulation(scalar(dt), 0);
         const std::chrono::duration<double> wall = clock::now() - start;
         meter_->after_step(dt);
@@ -88,20 +91,21 @@ class BulletScene {
             [](const btRigidBody* part) { return double(part->getAngularVelocity().y()); });
     }
 
-    [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
+    [[nodiscard]] const ductile::Ledger<double>& ledger() const {
+        return keeper_ ? keeper_->ledger() : meter_->ledger();
+    }
+    [[nodiscard]] const ductile::RunReport* run() const {
+        return keeper_ ? &keeper_->run() : nullptr;
+    }
     [[nodiscard]] double hammer_energy() const {
         return kinetic(*hammer_) +
-               s_.total_hammer_mass() * s_.gravity * double(hammer_->getCenterOfMassPosition().y());
+               s_.hammer_potential(double(hammer_->getCenterOfMassPosition().y()));
     }
     [[nodiscard]] double nose_speed() const {
         const btVector3 arm = hammer_->getCenterOfMassTransform().getBasis() * nose_local_;
         return -double(hammer_->getVelocityInLocalPoint(arm).x());
     }
     [[nodiscard]] double nose_travel() const { return s_.height - nose_tip().x(); }
-    [[nodiscard]] bool touching() const {
-        return std::any_of(pairs_.begin(), pairs_.end(),
-                           [this](const Pair& p) { return p.made && p.striker == hammer_; });
-    }
     [[nodiscard]] double specimen_kinetic() const {
         double sum = 0;
         for (const btRigidBody* part : parts_) sum += kinetic(*part);
@@ -129,19 +133,8 @@ class BulletScene {
                            [](const btTypedConstraint* joint) { return !joint->isEnabled(); });
     }
     [[nodiscard]] bool unreliable() { return plastic_.unreliable(); }
-    [[nodiscard]] double residual_max() { return plastic_.residual_max(); }
 
   private:
-    /// One edge against one face, with the manifold that carries it.
-    struct Pair {
-        const btRigidBody* striker; ///< carries the edge
-        Edge edge;                  ///< in the striker's frame
-        const btRigidBody* part;
-        double side; ///< of the part's face
-        btPersistentManifold* manifold;
-        bool made = false;
-    };
-
     /// An engine's hinge with its motor as a plastic hinge.
     struct Motor {
         btHingeConstraint* joint;
@@ -163,7 +156,7 @@ class BulletScene {
 
     void make_world(const std::string& solver) {
         configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
-        dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
+        dispatcher_ = std::make_unique<BulletContacts>(configuration_.get());
         broadphase_ = std::make_unique<btDbvtBroadphase>();
         if (solver == "mlcp") {
             solver_ = std::make_unique<btMLCPSolver>(&dantzig_);
@@ -179,15 +172,20 @@ class BulletScene {
         }
         world_ = std::make_unique<btDiscreteDynamicsWorld>(dispatcher_.get(), broadphase_.get(),
                                                            solver_.get(), configuration_.get());
-        front_ = std::make_unique<ductile::bullet::FrontHold>(*world_); // islands of plastic joints
+        if (is_plastic(method_)) {
+            keeper_ = std::make_unique<ductile::bullet::World>(
+                *world_,
+                ductile::bullet::WorldParameters{.tolerance = s_.tolerance, .warn = nullptr});
+        }
+        dispatcher_->filter(*broadphase_->getOverlappingPairCache());
+        dispatcher_->make_ahead(is_plastic(method_));
+        dispatcher_->make_unlike(true);
         world_->setGravity(vector(0, -s_.gravity, 0));
         btContactSolverInfo& info = world_->getSolverInfo();
         info.m_numIterations = s_.iterations;
         info.m_splitImpulse = true;
         info.m_splitImpulsePenetrationThreshold = scalar(1e30); // at any depth
         info.m_globalCfm = scalar(compliance(s_.restitution));
-        // manifolds made by hand do not merge islands: one island for all
-        world_->getSimulationIslandManager()->setSplitIslands(false);
     }
 
     btRigidBody& add_body(btCollisionShape& shape, double mass, const btVector3& inertia,
@@ -196,7 +194,7 @@ class BulletScene {
         info.m_startWorldTransform = transform;
         btRigidBody& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
         body.setActivationState(DISABLE_DEACTIVATION);
-        world_->addRigidBody(&body, 0, 0); // no collision but by edge_contact.hpp
+        world_->addRigidBody(&body);
         return body;
     }
     btBoxShape& box(double x, double y, double z) {
@@ -230,9 +228,13 @@ class BulletScene {
         nose_local_ = vector(-s_.hammer_width / 2 - s_.nose_length, centre - s_.swing_radius, 0);
 
         const btVector3 pivot = vector(s_.pivot_x(), s_.pivot_y(), 0);
-        const btQuaternion raised(vector(0, 0, 1), scalar(s_.start_angle));
-        const btTransform at(raised, pivot + quatRotate(raised, vector(0, -centre, 0)));
-        hammer_ = &add_body(*shape, mass, vector(about_centre, about_centre, about_centre), at);
+        const btQuaternion raised(vector(0, 0, 1), scalar(s_.angle_before_strike()));
+        const btVector3 arm = quatRotate(raised, vector(0, -centre, 0));
+        const btVector3 spin = vector(0, 0, s_.spin_before_strike());
+        hammer_ = &add_body(*shape, mass, vector(about_centre, about_centre, about_centre),
+                            btTransform(raised, pivot + arm));
+        hammer_->setLinearVelocity(spin.cross(arm));
+        hammer_->setAngularVelocity(spin);
         shapes_.push_back(std::move(shape));
         add_constraint(
             std::make_unique<btHingeConstraint>(*hammer_, vector(0, centre, 0), vector(0, 0, 1)));
@@ -272,59 +274,26 @@ class BulletScene {
             }
         }
     }
+    /// `edge` in the striker's frame; `side` of the part's face.
     void pair(const btRigidBody& striker, const Edge& edge, const btRigidBody& part, double side) {
-        pairs_.push_back(
-            {&striker, edge, &part, side, dispatcher_->getNewManifold(&striker, &part), false});
-    }
-
-    /// Fills the manifolds with this step's contact points; impulses carry over for warm starting.
-    void collide(double dt) {
-        const double closing = nose_speed() + middle_speed();
-        int count = 0;
-        for (Pair& pair : pairs_) {
-            const btTransform& striker = pair.striker->getCenterOfMassTransform();
-            const auto world = [&striker](const Vector& local) {
-                return Vector(
-                    ductile::bullet::to_core(striker * ductile::bullet::to_bullet(local)));
-            };
-            const btTransform& part = pair.part->getCenterOfMassTransform();
-            const EdgeContact contact =
-                touch({world(pair.edge.from), world(pair.edge.to)},
-                      {ductile::bullet::to_core(part.getOrigin()),
-                       ductile::bullet::to_core(part.getBasis()), part_half_, pair.side},
-                      reach(pair.made, s_.height, pair.striker == hammer_ ? closing : 0, dt));
-            pair.made = contact.count > 0;
-            std::array<btScalar, 2> impulse{};
-            for (int i = 0; i < std::min(contact.count, pair.manifold->getNumContacts()); ++i) {
-                impulse[std::size_t(i)] = pair.manifold->getContactPoint(i).m_appliedImpulse;
-            }
-            pair.manifold->clearManifold();
-            for (int i = 0; i < contact.count; ++i) {
-                // a direct solver's pivoting stalls where symmetric contacts reach their bound at
-                // once: no two are quite alike
-                const double unlike = 1e-6 * (1 + 0.37 * count++) * dt;
-                add_contact(pair, contact.points[std::size_t(i)], impulse[std::size_t(i)], unlike);
-            }
+        BulletContact contact{
+            .a = &striker,
+            .b = &part,
+            .thickness = s_.height,
+            .friction = s_.friction,
+            .restitution = s_.restitution,
+            .touch = [this, &striker, edge, &part, side](double margin) {
+                using ductile::bullet::to_bullet, ductile::bullet::to_core;
+                const btTransform &from = striker.getCenterOfMassTransform(),
+                                  &to = part.getCenterOfMassTransform();
+                return touch(
+                    {to_core(from * to_bullet(edge.from)), to_core(from * to_bullet(edge.to))},
+                    {to_core(to.getOrigin()), to_core(to.getBasis()), part_half_, side}, margin);
+            }};
+        if (&striker == hammer_) {
+            contact.closing_speed = [this] { return nose_speed() + middle_speed(); };
         }
-    }
-
-    /// `unlike`: added to the gap [m].
-    void add_contact(Pair& pair, const ContactPoint& point, btScalar impulse, double unlike) {
-        const btVector3 on_edge = ductile::bullet::to_bullet(point.position);
-        const btVector3 normal = ductile::bullet::to_bullet(point.normal);
-        const btVector3 on_face =
-            ductile::bullet::to_bullet(point.position - point.gap * point.normal);
-        const bool rebounds =
-            rebound(s_.restitution, closing_speed(*pair.striker, *pair.part, point)) > 0;
-        btManifoldPoint entry(pair.striker->getCenterOfMassTransform().invXform(on_edge),
-                              pair.part->getCenterOfMassTransform().invXform(on_face), normal,
-                              scalar((rebounds ? 0 : point.gap) + unlike));
-        entry.m_positionWorldOnA = on_edge;
-        entry.m_positionWorldOnB = on_face;
-        entry.m_combinedFriction = scalar(s_.friction);
-        entry.m_combinedRestitution = scalar(rebounds ? s_.restitution : 0);
-        entry.m_appliedImpulse = impulse;
-        pair.manifold->addManifoldPoint(entry);
+        dispatcher_->add(std::move(contact));
     }
 
     btTypedConstraint& add_constraint(std::unique_ptr<btTypedConstraint> constraint) {
@@ -349,8 +318,8 @@ class BulletScene {
     template <template <class> class Constraint, class Law>
     void add_plastic(btRigidBody& a, btRigidBody& b, const btTransform& in_a,
                      const btTransform& in_b, Law law) {
-        plastic_.add(std::make_unique<Constraint<Law>>(a, b, in_a, in_b, std::move(law)))
-            .add_to(*world_);
+        keeper_->add(
+            plastic_.add(std::make_unique<Constraint<Law>>(a, b, in_a, in_b, std::move(law))));
     }
 
     void join(btRigidBody& a, btRigidBody& b, const btTransform& in_a, const btTransform& in_b,
@@ -411,16 +380,6 @@ class BulletScene {
         for (int axis = 0; axis < 6; ++axis) joint.setLimit(axis, axis == free ? 1 : 0, 0);
     }
 
-    /// How fast the edge closes in on the face at a point of contact [m/s].
-    static double closing_speed(const btRigidBody& striker, const btRigidBody& part,
-                                const ContactPoint& point) {
-        const btVector3 at = ductile::bullet::to_bullet(point.position);
-        const auto velocity = [&at](const btRigidBody& body) {
-            return body.getVelocityInLocalPoint(at - body.getCenterOfMassPosition());
-        };
-        return ductile::bullet::to_core(velocity(part) - velocity(striker)).dot(point.normal);
-    }
-
     [[nodiscard]] btVector3 nose_tip() const {
         return hammer_->getCenterOfMassTransform() * nose_local_;
     }
@@ -435,17 +394,17 @@ class BulletScene {
     Scenario s_;
     Method method_;
     std::unique_ptr<btDefaultCollisionConfiguration> configuration_;
-    std::unique_ptr<btCollisionDispatcher> dispatcher_;
+    std::unique_ptr<BulletContacts> dispatcher_;
     std::unique_ptr<btDbvtBroadphase> broadphase_;
     btDantzigSolver dantzig_;
     std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
     std::unique_ptr<btDiscreteDynamicsWorld> world_;
-    std::unique_ptr<ductile::bullet::FrontHold> front_;
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> constraints_;
+    std::unique_ptr<ductile::bullet::World> keeper_;      ///< of our joints
+    std::unique_ptr<ductile::bullet::EnergyMeter> meter_; ///< of the engine's own
     Joints plastic_;
-    std::unique_ptr<ductile::bullet::EnergyMeter> meter_;
     std::vector<Motor> motors_;
     std::vector<btTypedConstraint*> breakable_;
     std::vector<btTypedConstraint*> engine_joints_;
@@ -453,7 +412,6 @@ class BulletScene {
     std::vector<btRigidBody*> anvils_;
     std::vector<btRigidBody*> parts_;
     Vector part_half_{0, 0, 0};
-    std::vector<Pair> pairs_;
     btVector3 nose_local_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Drives one scene from the hammer's release until the blow is over, and takes the figures.
+// Drives one scene until the blow is over, and takes the figures: in frames where the specimen has
+// this library's joints, in steps that follow the blow where it has the engine's own.
 #pragma once
 
 #include <algorithm>
@@ -14,84 +15,60 @@ namespace charpy {
 
 /// How long a run goes on, and how its history is thinned.
 struct DriveLimits {
-    double swing_time = 5.0;       ///< give up where nothing was struck by then [s]
     double after_strike = 0.020;   ///< [s]
     double nose_travel = 0.040;    ///< the nose is this far past the specimen's front [m]
-    double swing_interval = 1e-2;  ///< between samples of the history, before the strike [s]
-    double sample_interval = 2e-5; ///< and after it [s]
+    double sample_interval = 2e-5; ///< between samples of the history [s]
 };
 
 template <Simulation T>
-Result drive(const Scenario& scenario, Method method, const std::string& solver,
-             const DriveLimits& limits = {}) {
+Result drive(const Scenario& scenario, Method method, const std::string& solver) {
+    constexpr DriveLimits limits;
     T scene(scenario, method, solver);
-    StepControl control(scenario.dt);
+    StepControl control;
     Result r;
     r.engine = T::engine;
     r.precision = T::precision;
     r.solver = solver;
     r.method = to_string(method);
-    r.dt = scenario.dt;
-    r.adaptive = scenario.adaptive;
+    r.frame = is_plastic(method) ? scenario.frame : 0;
     r.friction = scenario.friction;
     r.restitution = scenario.restitution;
 
-    double time = 0;
-    double next_sample = 0;
-    bool struck = false;
-    r.strike_energy = scene.hammer_energy();
-    ductile::Ledger<double> at_strike = scene.ledger();
-    const auto sample = [&](double dt) {
-        r.history.push_back({time, dt, scene.hammer_energy(), scene.joint_work(),
-                             scene.specimen_kinetic(), scene.ledger().unexplained(),
-                             scene.nose_speed(), scene.rotation()});
-    };
-    while (true) {
-        const double dt = scenario.adaptive ? control.next(scene.motion()) : scenario.dt;
-        const double energy = scene.hammer_energy();
-        const double speed = scene.nose_speed();
-        const ductile::Ledger<double> ledger = scene.ledger();
+    const double energy = scene.hammer_energy();
+    double time = -scenario.time_to_strike(), next_sample = time;
+    do {
+        const double dt = r.frame > 0 ? r.frame : control.next(scene.motion());
         r.wall += scene.step(dt);
         time += dt;
-        ++r.steps;
-        if (!struck && scene.touching()) {
-            struck = true;
-            r.strike_time = time;
-            r.strike_speed = speed;
-            r.strike_energy = energy;
-            at_strike = ledger;
-            next_sample = time;
-        }
-        if (struck && scene.unreliable()) ++r.unreliable_steps;
-        if (time >= next_sample) {
-            next_sample = time + (struck ? limits.sample_interval : limits.swing_interval);
-            sample(dt);
-        }
-        if (!std::isfinite(scene.hammer_energy())) break;
-        if (struck ? time > r.strike_time + limits.after_strike ||
-                         scene.nose_travel() > limits.nose_travel
-                   : time > limits.swing_time) {
-            break;
-        }
-    }
+        ++r.solves;
+        if (scene.unreliable()) r.believed = false;
+        if (time < next_sample) continue;
+        next_sample = time + limits.sample_interval;
+        r.history.push_back({time, dt, energy - scene.hammer_energy(), scene.joint_work(),
+                             scene.specimen_kinetic(), scene.ledger().unexplained(),
+                             scene.nose_speed(), scene.rotation()});
+    } while (std::isfinite(scene.hammer_energy()) && time < limits.after_strike &&
+             scene.nose_travel() < limits.nose_travel);
 
     using ductile::Account;
-    const auto since = [&](Account account) {
-        return scene.ledger().booked(account) - at_strike.booked(account);
-    };
-    r.hammer_loss = r.strike_energy - scene.hammer_energy();
+    const ductile::Ledger<double>& ledger = scene.ledger();
+    r.hammer_loss = energy - scene.hammer_energy();
     r.plastic_work = scene.joint_work();
     r.stored = scene.stored();
     r.plastic_rotation = scene.joint_travel();
     r.rotation = std::abs(scene.rotation());
     r.specimen_kinetic = scene.specimen_kinetic();
-    r.friction_work = since(Account::friction);
-    r.contact_work = since(Account::contact);
-    r.joints_work = since(Account::joints);
-    r.integration = since(Account::integration);
-    r.unexplained = scene.ledger().unexplained();
+    r.friction_work = ledger.booked(Account::friction);
+    r.contact_work = ledger.booked(Account::contact);
+    r.joints_work = ledger.booked(Account::joints);
+    r.integration = ledger.booked(Account::integration);
+    r.unexplained = ledger.unexplained();
     r.broken = scene.broken();
-    r.residual_max = scene.residual_max();
+    if (const ductile::RunReport* run = scene.run()) {
+        r.solves = long(run->parts + run->rejected + run->blows);
+        r.believed = r.believed && run->believed();
+        r.left = run->left.energy;
+    }
     return r;
 }
 

@@ -43,8 +43,8 @@ struct ContactPoint {
     double gap = 0;  ///< from face to edge along the normal, negative where it penetrates [m]
 };
 
-/// The two ends of the part of the edge that lies over the face, as long as they are nearer than
-/// `margin` [m] and not through the box's other side. `count` of `points` are valid: 0 or 2.
+/// Of the two ends of the part of the edge that lies over the face those that are nearer than
+/// `margin` [m]; none where one is through the box's other side. `count` of `points` are valid.
 struct EdgeContact {
     int count = 0;
     std::array<ContactPoint, 2> points;
@@ -75,7 +75,8 @@ struct EdgeContact {
     for (const double t : {lo, hi}) {
         const Vector local = p + t * (q - p);
         const double gap = face.side * local.x() - face.half.x();
-        if (gap > margin || gap < -2 * face.half.x()) return {};
+        if (gap < -2 * face.half.x()) return {};
+        if (gap > margin) continue;
         result.points[std::size_t(result.count++)] = {edge.from + t * (edge.to - edge.from), normal, gap};
     }
     return result;

@@ -47,18 +47,25 @@ class OdeScene {
             throw std::invalid_argument("--solver = " + solver + ": must be " +
                                         std::string(ode_solvers) + " with --engine ode");
         }
-        stepper_ = std::make_unique<ductile::ode::World>(world_, solver == "direct"
-                                                                     ? ductile::ode::Solver::direct
-                                                                     : ductile::ode::Solver::quick);
+        ductile::ode::WorldParameters parameters{.solver = solver == "direct"
+                                                               ? ductile::ode::Solver::direct
+                                                               : ductile::ode::Solver::quick,
+                                                 .warn = nullptr};
+        if (is_plastic(method_)) parameters.tolerance = s_.tolerance;
+        stepper_ = std::make_unique<ductile::ode::World>(world_, parameters);
+        if (is_plastic(method_)) {
+            stepper_->on_contacts({.group = contacts_, .thickness = s_.height},
+                                  [this] { collide(0); });
+        }
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetGravity(world_, 0, dReal(-s_.gravity), 0);
         dWorldSetQuickStepNumIterations(world_, s_.iterations);
-        meter_ = std::make_unique<ductile::ode::EnergyMeter>(world_);
+        if (!is_plastic(method_)) meter_ = std::make_unique<ductile::ode::EnergyMeter>(world_);
         add_hammer();
         add_specimen();
         join_specimen();
         pair_edges();
-        meter_->open();
+        if (meter_) meter_->open();
     }
 
     ~OdeScene() = default;
@@ -67,10 +74,15 @@ class OdeScene {
 
     double step(double dt) {
         using clock = std::chrono::steady_clock;
+        auto start = clock::now();
+        if (is_plastic(method_)) {
+            stepper_->step(dt);
+            return std::chrono::duration<double>(clock::now() - start).count();
+        }
         dWorldSetERP(world_, dReal(drift_correction(dt)));
         for (const Spring& spring : springs_) set_spring(spring, dt);
         for (const Spring& spring : motor_springs_) set_motor_spring(spring, dt);
-        auto start = clock::now();
+        start = clock::now();
         collide(dt);
         std::chrono::duration<double> wall = clock::now() - start;
         meter_->before_step();
@@ -88,16 +100,17 @@ class OdeScene {
                            [](dBodyID part) { return ductile::ode::angular_velocity(part).y(); });
     }
 
-    [[nodiscard]] const ductile::Ledger<double>& ledger() const { return meter_->ledger(); }
+    [[nodiscard]] const ductile::Ledger<double>& ledger() const {
+        return meter_ ? meter_->ledger() : stepper_->ledger();
+    }
+    [[nodiscard]] const ductile::RunReport* run() const {
+        return is_plastic(method_) ? &stepper_->run() : nullptr;
+    }
     [[nodiscard]] double hammer_energy() const {
-        return kinetic(hammer_) + s_.total_hammer_mass() * s_.gravity * position(hammer_).y();
+        return kinetic(hammer_) + s_.hammer_potential(position(hammer_).y());
     }
     [[nodiscard]] double nose_speed() const { return -velocity_at(hammer_, nose_tip()).x(); }
     [[nodiscard]] double nose_travel() const { return s_.height - nose_tip().x(); }
-    [[nodiscard]] bool touching() const {
-        return std::any_of(pairs_.begin(), pairs_.end(),
-                           [this](const Pair& p) { return p.made && p.striker == hammer_; });
-    }
     [[nodiscard]] double specimen_kinetic() const {
         double sum = 0;
         for (dBodyID part : parts_) sum += kinetic(part);
@@ -123,7 +136,6 @@ class OdeScene {
                            [](dJointID joint) { return dJointIsEnabled(joint) == 0; });
     }
     [[nodiscard]] bool unreliable() const { return plastic_.unreliable(); }
-    [[nodiscard]] double residual_max() const { return plastic_.residual_max(); }
 
   private:
     /// One edge against one face; the striker is null for an anvil.
@@ -163,7 +175,7 @@ class OdeScene {
         dBodySetMass(body, &m);
         dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
         dBodySetFiniteRotationMode(body, 1);
-        meter_->add(body);
+        meter_ ? meter_->add(body) : stepper_->add(body);
         return body;
     }
 
@@ -173,12 +185,14 @@ class OdeScene {
         const double about_centre = s_.hammer_inertia() - mass * centre * centre;
         nose_local_ = Vector(-s_.hammer_width / 2 - s_.nose_length, centre - s_.swing_radius, 0);
         const Vector pivot(s_.pivot_x(), s_.pivot_y(), 0);
-        const Eigen::AngleAxisd raised(s_.start_angle, Vector::UnitZ());
-        hammer_ =
-            add_body(mass, Vector::Constant(about_centre), pivot + raised * Vector(0, -centre, 0));
+        const double angle = s_.angle_before_strike(), spin = s_.spin_before_strike();
+        const Vector arm = Eigen::AngleAxisd(angle, Vector::UnitZ()) * Vector(0, -centre, 0);
+        hammer_ = add_body(mass, Vector::Constant(about_centre), pivot + arm);
         dMatrix3 rotation;
-        dRFromAxisAndAngle(rotation, 0, 0, 1, dReal(s_.start_angle));
+        dRFromAxisAndAngle(rotation, 0, 0, 1, dReal(angle));
         dBodySetRotation(hammer_, rotation);
+        dBodySetLinearVel(hammer_, dReal(-spin * arm.y()), dReal(spin * arm.x()), 0);
+        dBodySetAngularVel(hammer_, 0, 0, dReal(spin));
         dJointID joint = dJointCreateHinge(world_, nullptr);
         dJointAttach(joint, hammer_, nullptr);
         dJointSetHingeAnchor(joint, dReal(pivot.x()), dReal(pivot.y()), dReal(pivot.z()));
@@ -210,10 +224,8 @@ class OdeScene {
 
     template <template <class> class Constraint, class Frame, class Law>
     void add_plastic(dBodyID a, dBodyID b, const Frame& frame, Law law) {
-        auto& joint =
-            plastic_.add(std::make_unique<Constraint<Law>>(world_, a, b, frame, std::move(law)));
-        joint.add_to(*stepper_);
-        meter_->add(joint);
+        stepper_->add(
+            plastic_.add(std::make_unique<Constraint<Law>>(world_, a, b, frame, std::move(law))));
     }
 
     void join(dBodyID a, dBodyID b, const Vector& anchor, bool notched) {
@@ -317,6 +329,8 @@ class OdeScene {
         }
     }
 
+    /// For a step of `dt` [s]; 0: for a part of a frame, whose contacts are those that are closed,
+    /// or about to be.
     void collide(double dt) {
         const double closing = nose_speed() + middle_speed();
         contact_count_ = 0;
@@ -325,10 +339,12 @@ class OdeScene {
                 if (pair.striker == nullptr) return local;
                 return Vector(position(pair.striker) + basis(pair.striker) * local);
             };
+            const double margin =
+                dt == 0 ? ductile::ode::closed_depth
+                        : reach(pair.made, s_.height, pair.striker != nullptr ? closing : 0, dt);
             const EdgeContact contact =
                 touch({world(pair.edge.from), world(pair.edge.to)},
-                      {position(pair.part), basis(pair.part), part_half_, pair.side},
-                      reach(pair.made, s_.height, pair.striker != nullptr ? closing : 0, dt));
+                      {position(pair.part), basis(pair.part), part_half_, pair.side}, margin);
             pair.made = contact.count > 0;
             for (int i = 0; i < contact.count; ++i) {
                 add_contact(pair, contact.points[std::size_t(i)], dt);
@@ -337,24 +353,35 @@ class OdeScene {
     }
 
     void add_contact(const Pair& pair, const ContactPoint& point, double dt) {
+        constexpr double slowest = 0.2; // that rebounds, as Bullet has it [m/s]
         dContact contact{};
-        contact.surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
-        contact.surface.soft_cfm = dReal(compliance(s_.restitution));
-        contact.surface.mu = dReal(s_.friction);
+        dSurfaceParameters& surface = contact.surface;
+        surface.mode = dContactApprox1 | dContactMotionN | dContactSoftCFM;
+        surface.soft_cfm = dReal(compliance(s_.restitution));
+        surface.mu = dReal(s_.friction);
         // the direct solver's pivoting stalls where symmetric contacts reach their bound at once:
         // no two are quite alike
         const double unlike = 1e-6 * (1 + 0.37 * contact_count_++);
-        const double parting = rebound(s_.restitution, closing_speed(pair, point));
-        contact.surface.motionN =
-            dReal((parting > 0 ? parting : -std::max(point.gap, 0.0) / dt) - unlike);
-        contact.geom.depth = dReal(std::max(-point.gap, 0.0));
+        double depth = -point.gap;
+        if (dt == 0) {
+            depth += ductile::ode::closed_depth;
+            surface.mode |= dContactBounce;
+            surface.bounce = dReal(s_.restitution);
+            surface.bounce_vel = dReal(slowest);
+            surface.motionN = dReal(-unlike);
+        } else {
+            const double parting = rebound(s_.restitution, closing_speed(pair, point));
+            surface.motionN =
+                dReal((parting > 0 ? parting : -std::max(point.gap, 0.0) / dt) - unlike);
+        }
+        contact.geom.depth = dReal(std::max(depth, 0.0));
         for (int i = 0; i < 3; ++i) {
             contact.geom.pos[i] = dReal(point.position[i]);
             contact.geom.normal[i] = dReal(-point.normal[i]); // into the first body, the part
         }
         dJointID joint = dJointCreateContact(world_, contacts_, &contact);
         dJointAttach(joint, pair.part, pair.striker);
-        meter_->add_contact(joint, contact.geom);
+        if (meter_) meter_->add_contact(joint, contact.geom);
         stepper_->add_contact(joint, contact);
     }
 
@@ -402,7 +429,7 @@ class OdeScene {
     dWorldID world_ = owned_.world;
     dJointGroupID contacts_ = owned_.contacts;
     std::unique_ptr<ductile::ode::World> stepper_;
-    std::unique_ptr<ductile::ode::EnergyMeter> meter_;
+    std::unique_ptr<ductile::ode::EnergyMeter> meter_; ///< of the engine's own joints
     Joints plastic_;
     std::vector<dJointID> engine_joints_;
     std::vector<Spring> springs_;

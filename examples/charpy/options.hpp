@@ -17,7 +17,6 @@ struct Options {
     std::string solver;               ///< empty: the engine's direct solver
     std::string precision = "double";
     std::string method = "all";
-    std::string adaptive;             ///< "on", "off" or empty: on unless --dt is given
     std::string ccd;                  ///< "on", "off" or empty: not said
     std::string json, csv, plots;     ///< files and a folder; empty: none
     std::string table;                ///< a folder; empty: none
@@ -51,16 +50,19 @@ inline void declare(CLI::App& app, Options& o) {
         ->check(CLI::IsMember(methods))->capture_default_str()->group(run);
     app.add_option("--json", o.json, "write the results to this file")->group(run);
     app.add_option("--csv", o.csv, "write the histories to this file")->group(run);
-    app.add_option("--plots", o.plots, "draw the plots into this folder")->group(run);
+    app.add_option("--plots", o.plots,
+                   "draw the plots into this folder: a point a frame, so with a short --frame")
+        ->group(run);
     app.add_option("--table", o.table,
                    "run all methods on all engines and write them beside the published figures "
                    "into this folder: published.txt, .md and .csv")->group(run);
 
     const auto time = "Time";
-    app.add_option("--dt", s.dt, "fixed step, or the longest one where adaptive [s]")
+    app.add_option("--frame", s.frame, "of this library's joints; the engine's own are stepped [s]")
         ->capture_default_str()->group(time);
-    app.add_option("--adaptive", o.adaptive, "on or off; default: on, off where --dt is given")
-        ->check(CLI::IsMember({"on", "off"}))->group(time);
+    app.add_option("--tolerance", s.tolerance,
+                   "share of the plastic work that a frame may misplace [-]")
+        ->capture_default_str()->group(time);
 
     const auto material = "Specimen";
     app.add_option("--yield-stress", s.yield_stress, "[Pa]")->capture_default_str()->group(material);
@@ -123,8 +125,10 @@ inline void require_effect(const CLI::App& app, const Options& o) {
     };
     for (const auto& [method, name] : method_names) {
         if (o.method != name) continue;
-        if (app.count("--max-plastic-rotation") > 0 && !is_plastic(method)) {
-            refuse("--max-plastic-rotation", "plastic-hinge, elastic-plastic and elastic-plastic-2");
+        for (const char* option : {"--max-plastic-rotation", "--frame", "--tolerance"}) {
+            if (app.count(option) > 0 && !is_plastic(method)) {
+                refuse(option, "plastic-hinge, elastic-plastic and elastic-plastic-2");
+            }
         }
         if (app.count("--youngs-modulus") > 0 && !is_elastic(method)) {
             refuse("--youngs-modulus", "elastic-plastic and elastic-plastic-2");
@@ -141,15 +145,14 @@ inline void require_effect(const CLI::App& app, const Options& o) {
         refuse("--nose-width", "a hammer with draft");
     }
     if (o.table.empty()) return;
-    for (const char* fixed : {"--engine", "--solver", "--precision", "--method", "--dt", "--adaptive",
+    for (const char* fixed : {"--engine", "--solver", "--precision", "--method", "--frame", "--tolerance",
                               "--max-plastic-rotation", "--json", "--csv", "--plots"}) {
         if (app.count(fixed) > 0) refuse(fixed, "runs without --table");
     }
 }
 
 /// To be called after parsing. @throws std::invalid_argument where an option does not make sense.
-inline void finish(const CLI::App& app, Options& o) {
-    o.scenario.adaptive = o.adaptive.empty() ? app.count("--dt") == 0 : o.adaptive == "on";
+inline void finish(Options& o) {
     if (o.engine == "ode" && o.precision == "float") {
         throw std::invalid_argument("--precision = float: must be double with --engine ode");
     }

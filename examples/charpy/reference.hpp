@@ -66,8 +66,7 @@ struct Reference {
     r.rotation = elastic + plastic;
     r.plastic_work = moment * plastic;
     r.stored = moment * elastic / 2;
-    const double dropped = s.total_hammer_mass() * s.gravity * s.hammer_centre() *
-                           (1 - std::cos(s.start_angle));
+    const double dropped = s.strike_energy();
     r.strike_energy = dropped;
     r.strike_speed = s.swing_radius * std::sqrt(2 * dropped / s.hammer_inertia());
 

@@ -29,7 +29,7 @@ int main(int argc, char** argv) try {
         std::fprintf(stderr, "%s\n", charpy::one_line(error).c_str());
         return 2;
     }
-    charpy::finish(app, options);
+    charpy::finish(options);
     for (const auto& [method, name] : charpy::method_names) {
         if (options.method != name) continue;
         const charpy::Result result = charpy::drive<Scene>(options.scenario, method, options.solver);

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ductile/frame/frame_report.hpp"
 #include "ductile/world/ledger.hpp"
 #include "scenario.hpp"
 #include "step_control.hpp"
@@ -24,14 +25,16 @@ template <class T>
 concept Simulation = requires(T simulation, const T constant, double dt) {
     { T::engine } -> std::convertible_to<std::string_view>;
     { T::precision } -> std::convertible_to<std::string_view>;
-    /// One step; returns the wall time of the engine's step and the joint's commit alone [s].
+    /// A frame with this library's joints, one step of the engine's with its own; returns the wall
+    /// time of that alone [s].
     { simulation.step(dt) } -> std::same_as<double>;
     { simulation.motion() } -> std::same_as<BlowMotion>;
     { constant.ledger() } -> std::same_as<const ductile::Ledger<double>&>;
+    /// Of frames; null where it is stepped.
+    { constant.run() } -> std::same_as<const ductile::RunReport*>;
     { constant.hammer_energy() } -> std::same_as<double>;    ///< kinetic + potential [J]
     { constant.nose_speed() } -> std::same_as<double>;       ///< towards the specimen [m/s]
     { constant.nose_travel() } -> std::same_as<double>;      ///< past the front at rest [m]
-    { constant.touching() } -> std::same_as<bool>;           ///< the nose has reached the specimen
     { constant.specimen_kinetic() } -> std::same_as<double>; ///< [J]
     { simulation.joint_work() } -> std::same_as<double>;     ///< taken by the specimen's joints [J]
     { simulation.stored() } -> std::same_as<double>;         ///< elastic, in the joints [J]
@@ -39,7 +42,6 @@ concept Simulation = requires(T simulation, const T constant, double dt) {
     { constant.rotation() } -> std::same_as<double>; ///< bend of the specimen's middle [rad]
     { simulation.broken() } -> std::same_as<bool>;
     { simulation.unreliable() } -> std::same_as<bool>;
-    { simulation.residual_max() } -> std::same_as<double>; ///< certificate [rad/s]
 };
 
 /// Share of a joint's position error that an engine removes in a step [-]: 0.2, the engines' own
@@ -68,11 +70,11 @@ template <class Parts, class Spin>
     return motion;
 }
 
-/// The state once, for the history [s, J, J, J, J, J, m/s, rad].
+/// The state once, for the history [s, s, J, J, J, J, m/s, rad].
 struct Sample {
-    double time = 0;
+    double time = 0; ///< after the strike
     double dt = 0;
-    double hammer_energy = 0;
+    double hammer_loss = 0;
     double plastic_work = 0;
     double specimen_kinetic = 0;
     double unexplained = 0;
@@ -82,29 +84,25 @@ struct Sample {
 
 struct Result {
     std::string engine, solver, precision, method;
-    double dt = 0; ///< fixed step or, where adaptive, the longest allowed [s]
-    bool adaptive = false;
+    double frame = 0; ///< 0: it was stepped [s]
     double friction = 0;
     double restitution = 0;
-    long steps = 0;
-    double wall = 0;             ///< of the engine's steps and commits [s]
-    double strike_time = 0;      ///< time of first contact [s]
-    double strike_speed = 0;     ///< of the nose before it [m/s]
-    double strike_energy = 0;    ///< of the hammer before it, kinetic + potential [J]
-    double hammer_loss = 0;      ///< kinetic + potential, from first contact to the end [J]
-    double plastic_work = 0;     ///< for other methods: what the joint took from the bodies [J]
-    double stored = 0;           ///< elastic, in the joints, at the end [J]
+    long solves = 0;         ///< steps; of frames parts, those that were done again too, and blows
+    double wall = 0;         ///< of the engine's steps and commits [s]
+    double hammer_loss = 0;  ///< kinetic + potential [J]
+    double plastic_work = 0; ///< for other methods: what the joint took from the bodies [J]
+    double stored = 0;       ///< elastic, in the joints, at the end [J]
     double plastic_rotation = 0; ///< [rad]
     double rotation = 0;         ///< bend of the middle at the end [rad]
     double specimen_kinetic = 0; ///< at the end [J]
     double friction_work = 0;    ///< [J]
     double contact_work = 0;     ///< normal contact forces [J]
-    double joints_work = 0;      ///< rigid rows and the hammer's pivot, since first contact [J]
-    double integration = 0;      ///< the engine's own drift, since first contact [J]
-    double unexplained = 0;      ///< over the whole run [J]
+    double joints_work = 0;      ///< rigid rows and the hammer's pivot [J]
+    double integration = 0;      ///< the engine's own drift [J]
+    double unexplained = 0;      ///< [J]
     bool broken = false;
-    long unreliable_steps = 0; ///< steps after the strike that a hinge says not to believe
-    double residual_max = 0;   ///< of the plastic rows [rad/s]
+    bool believed = true; ///< false: the frames, or a joint, say that the answer is not to be
+    double left = 0;      ///< that the frames could not resolve [J]
     std::vector<Sample> history;
 };
 

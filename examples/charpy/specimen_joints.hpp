@@ -82,11 +82,6 @@ class SpecimenJoints {
     [[nodiscard]] double travel() const {
         return sum([](auto& joint) { return joint.plastic_travel(); });
     }
-    [[nodiscard]] double residual_max() const {
-        double worst = 0;
-        for_each([&worst](auto& joint) { worst = std::max(worst, joint.residual_max()); });
-        return worst;
-    }
     [[nodiscard]] bool broken() const {
         return sum([](auto& joint) { return joint.broken() ? 1.0 : 0.0; }) > 0;
     }

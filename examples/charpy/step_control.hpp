@@ -8,7 +8,7 @@
 //   by no more than `gap` of the way between them before
 //   is no more than `growth` times the last one, and within [shortest, longest]
 //
-// A World with a tolerance needs none of this; the engines' own joints do.
+// For the engines' own joints; a World with a tolerance needs none of this.
 #pragma once
 
 #include <algorithm>
@@ -27,18 +27,12 @@ struct BlowMotion {
 
 class StepControl {
   public:
-    /// Starts from the longest step, > 0 [s].
-    explicit StepControl(double longest)
-        : shortest_(std::min(1e-6, longest)),
-          longest_(longest),
-          step_(longest) {}
-
     [[nodiscard]] double next(const BlowMotion& motion) noexcept {
         constexpr double rotation = 0.005, closing = 0.005, gap = 0.5, growth = 1.5;
         const double way = std::max(closing * motion.height, gap * motion.gap);
         const double wish = std::min({limit(rotation, motion.rotation_rate),
                                       limit(way, motion.closing_speed), growth * step_});
-        return step_ = std::clamp(wish, shortest_, longest_);
+        return step_ = std::clamp(wish, shortest, longest);
     }
 
   private:
@@ -46,7 +40,8 @@ class StepControl {
         return rate > 0 ? amount / rate : std::numeric_limits<double>::infinity();
     }
 
-    double shortest_, longest_, step_; ///< [s]
+    static constexpr double shortest = 1e-6, longest = 1e-3; ///< [s]
+    double step_ = longest;                                  ///< [s]
 };
 
 } // namespace charpy

@@ -29,8 +29,9 @@ refuses() { # words the one line must contain, arguments
 one="--engine bullet --method plastic-hinge"
 refuses '--height = -0.01 m: must be finite and > 0' $one --height -0.01
 refuses '--yield-stress = nan Pa: must be finite and > 0' $one --yield-stress nan
-refuses '--dt = 0 s: must be finite and > 0' $one --dt 0
-refuses '--dt = -0.001 s: must be finite and > 0' $one --dt -0.001
+refuses '--frame = 0 s: must be finite and > 0' $one --frame 0
+refuses '--frame = -0.001 s: must be finite and > 0' $one --frame -0.001
+refuses '--tolerance = 0: must be finite and > 0' $one --tolerance 0
 refuses '--notch = 0.012 m: must be in (0, 0.01) m' $one --notch 0.012
 refuses '--hammer-thickness = -1 m' $one --hammer-thickness -1
 refuses '--friction = -0.5' $one --friction -0.5
@@ -53,6 +54,8 @@ refuses '--restitution = -0.1: must be in [0, 1]' $one --restitution -0.1
 refuses '--iterations = 0: must be >= 1' $one --iterations 0
 refuses '--iterations: must be left out here, it acts on iterative solvers' --engine ode --iterations 50
 refuses '--max-plastic-rotation: must be left out here' --method hinge-motor --max-plastic-rotation 1.5
+refuses '--frame: must be left out here' --method hinge-motor --frame 0.01
+refuses '--tolerance: must be left out here' --method rigid --tolerance 0.1
 refuses '--youngs-modulus: must be left out here' $one --youngs-modulus 100e9
 refuses '--youngs-modulus = 0 Pa: must be finite and > 0' --method elastic-plastic --youngs-modulus 0
 refuses '--parts: must be left out here' --method rigid --parts 4
@@ -66,10 +69,10 @@ refuses '--json = .: is a folder' $one --json .
 refuses '--yield-stress' $one --yield-stress strong
 refuses '--no-such-option' $one --no-such-option
 
-"$charpy" --engine bullet --method plastic-hinge --json out.json --csv out.csv >out 2>err
+"$charpy" --engine bullet --method plastic-hinge --frame 0.0001 --json out.json --csv out.csv >out 2>err
 check "a good run exits with zero" $?
-for key in engine solver precision method dt_s friction steps wall_s hammer_loss_J plastic_work_J \
-    plastic_rotation_rad specimen_kinetic_J friction_work_J unexplained_J broken residual_max; do
+for key in engine solver precision method frame_s friction solves wall_s hammer_loss_J plastic_work_J \
+    plastic_rotation_rad specimen_kinetic_J friction_work_J unexplained_J broken believed left_J; do
     grep -q "\"$key\":" out.json; check "the JSON has $key" $?
 done
 [ "$(wc -l <out.csv)" -gt 100 ]; check "the history has samples" $?

@@ -34,20 +34,24 @@ namespace {
 
 constexpr bool single = Scene::precision == "float";
 
-/// In single precision Bullet's direct solver gives up on many steps and falls back to its iterative
-/// one: energies are then off by some per cent, and the certificate says so, which a test below asks
-/// for. Bounds meant for a converged solve do not apply to it.
-constexpr bool converges = !single;
+/// Of frames, 1e-5 of what the hammer has [J].
+constexpr double unexplained = single ? 1e-2 : 3e-3;
+constexpr std::array frames{1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30}; // [s]
+/// The seed's, where its own energies were 100, 110, 90, 130 and 150 J [s].
+constexpr std::array seed_steps{1.001e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4};
 
-Result run(const Scenario& scenario, const std::string& solver,
+Result run(const Scenario& scenario, const std::string& solver = solvers.front(),
            Method method = Method::plastic_hinge) {
     return drive<Scene>(scenario, method, solver);
 }
 
-Scenario fixed(double dt) {
+/// Axes that share a surface misplace 1 to 2 % at a tolerance of 1 % in ODE, and a third of that at
+/// 0.1 %.
+double tolerance_of(Method method) { return method == Method::elastic_plastic_2 ? 1e-3 : 0.01; }
+
+Scenario in_frames(double frame) {
     Scenario s;
-    s.adaptive = false;
-    s.dt = dt;
+    s.frame = frame;
     return s;
 }
 
@@ -65,76 +69,77 @@ TEST_CASE("the mechanics of the test agree with the published figures", "[charpy
     CHECK(r.specimen_kinetic == Approx(0.53258152).epsilon(1e-6));
 }
 
-TEST_CASE("with adaptive steps the energies are right in fewer than 1500 steps", "[charpy]") {
+TEST_CASE("whatever the frame, the energies are right and believed", "[charpy]") {
+    const double frame = GENERATE(from_range(frames));
     const std::string solver = GENERATE(from_range(solvers));
-    INFO(solver);
-    const Scenario scenario;
+    INFO(solver << ", frame " << frame);
+    Scenario scenario = in_frames(frame);
+    if (solver == "quick") { // of the hammer's own hinge, in the bar's island: 10 sweeps are too few
+        CHECK_FALSE(run(scenario, solver).believed);
+        scenario.iterations = 50;
+    }
     const Result r = run(scenario, solver);
     const Reference expected = reference(scenario);
-    CHECK(r.strike_speed == Approx(expected.strike_speed).epsilon(1e-3));
-    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.01));
-    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(0.02));
-    CHECK(r.steps < 1500);
+    CHECK((r.believed || solver == "quick"));
+    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.005));
+    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(0.015));
+    CHECK(std::abs(r.unexplained) < unexplained);
+    CHECK(r.solves < 250);
     CHECK_FALSE(r.broken);
-    CHECK(std::abs(r.unexplained) < (single ? 1e-2 : 1e-3));
-    if (solver == solvers.front() && converges) CHECK(r.unreliable_steps == 0);
 }
 
 TEST_CASE("what is off by more than a joint allows is never silent", "[charpy]") {
-    const double dt = GENERATE(2e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4);
+    const double frame = GENERATE(from_range(frames));
+    const double more = GENERATE(0.0, 2e-4, 1e-4, 0.5e-4); // the blow at another place in the frame
     const int parts = GENERATE(2, 4);
     const std::string solver = GENERATE(from_range(solvers));
-    INFO(solver << ", dt = " << dt << ", parts " << parts);
-    Scenario scenario = fixed(dt);
+    INFO(solver << ", frame " << frame << " + " << more << ", parts " << parts);
+    Scenario scenario = in_frames(frame + more);
     scenario.parts = parts;
     const Result r = run(scenario, solver);
-    INFO("plastic work " << r.plastic_work << ", steps not converged " << r.unreliable_steps);
+    INFO("plastic work " << r.plastic_work << ", left " << r.left);
     const double allowed = ductile::OneAxisParameters<double>{}.allowed_step_error;
-    const bool wrong = std::abs(r.plastic_work / 122.016 - 1) > allowed;
-    CHECK((!wrong || r.unreliable_steps > 0));
+    const bool wrong = !(std::abs(r.plastic_work / 122.016 - 1) <= allowed);
+    CHECK((!wrong || !r.believed));
 }
 
 TEST_CASE("plastic work does not scatter over the seed's five steps", "[charpy]") {
-    if (!converges) return;
-    // where the seed's own energies were 100, 110, 90, 130 and 150 J
     std::vector<double> work;
-    for (const double dt : {1.001e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4}) {
-        const Result r = run(fixed(dt), solvers.front());
+    for (const double step : seed_steps) {
+        const Result r = run(in_frames(step));
         work.push_back(r.plastic_work);
-        CHECK(r.plastic_work == Approx(122.016).epsilon(0.02));
+        CHECK(r.plastic_work == Approx(122.016).epsilon(0.01));
     }
     const auto [low, high] = std::minmax_element(work.begin(), work.end());
-    CHECK(*high - *low < 0.015 * 122.016);
+    CHECK(*high - *low < 0.01 * 122.016);
 }
 
-TEST_CASE("at small steps the hammer loses what hinge and halves take", "[charpy]") {
-    const double dt = GENERATE(2e-5, 1e-5);
-    const Result r = run(fixed(dt), solvers.front());
-    INFO("dt = " << dt);
+TEST_CASE("in small frames the hammer loses what hinge and halves take", "[charpy]") {
+    const double frame = GENERATE(2e-5, 1e-5);
+    const Result r = run(in_frames(frame));
+    INFO("frame " << frame);
     CHECK(r.hammer_loss == Approx(r.plastic_work + r.specimen_kinetic).epsilon(0.01));
 }
 
-TEST_CASE("a break at 1.5 rad takes 96 J at every step", "[charpy]") {
-    const double longest = converges ? 1e-3 : 5e-4;
-    Scenario scenario = fixed(GENERATE(2e-5, 5e-5, 1e-4, 2e-4, 5e-4, 1e-3));
-    if (scenario.dt > longest) return;
+TEST_CASE("a break at 1.5 rad takes 96 J in every frame", "[charpy]") {
+    Scenario scenario = in_frames(GENERATE(2e-5, 1e-4, 1e-3, 1.0 / 240, 1.0 / 60, 1.0 / 30));
     scenario.max_plastic_rotation = 1.5;
-    const Result r = run(scenario, solvers.front());
-    INFO("dt = " << scenario.dt);
+    const Result r = run(scenario);
+    INFO("frame " << scenario.frame);
     CHECK(r.broken);
     CHECK(r.plastic_work == Approx(96).epsilon(0.005));
     CHECK(r.plastic_rotation == Approx(1.5));
+    CHECK(r.hammer_loss == Approx(reference(scenario).hammer_loss).epsilon(0.02));
 }
 
 TEST_CASE("friction takes more and is booked as friction", "[charpy]") {
-    Scenario scenario;
-    const Result without = run(scenario, solvers.front());
+    Scenario scenario = in_frames(GENERATE(from_range(frames)));
+    const Result without = run(scenario);
     scenario.friction = 0.3;
-    const Result with = run(scenario, solvers.front());
+    const Result with = run(scenario);
     CHECK(with.friction_work > 10);
-    const double work = converges ? 0.01 : 0.02, share = converges ? 0.05 : 0.1;
-    CHECK(with.plastic_work == Approx(without.plastic_work).epsilon(work));
-    CHECK(with.hammer_loss - without.hammer_loss == Approx(with.friction_work).epsilon(share));
+    CHECK(with.plastic_work == Approx(without.plastic_work).epsilon(0.01));
+    CHECK(with.hammer_loss - without.hammer_loss == Approx(with.friction_work).epsilon(0.05));
 }
 
 TEST_CASE("a specimen without a hinge stops the hammer", "[charpy]") {
@@ -155,23 +160,25 @@ TEST_CASE("a hammer rebounds from a rigid bar with the restitution's share of it
 }
 
 TEST_CASE("a bar that is struck off the hammer takes the same plastic work", "[charpy]") {
-    Scenario scenario;
+    Scenario scenario = in_frames(GENERATE(from_range(frames)));
     scenario.restitution = GENERATE(0.2, 0.5);
-    INFO("restitution " << scenario.restitution);
-    const Result r = run(scenario, solvers.front());
-    CHECK(r.plastic_work == Approx(reference(scenario).plastic_work).epsilon(converges ? 0.01 : 0.02));
+    INFO("restitution " << scenario.restitution << ", frame " << scenario.frame);
+    const Result r = run(scenario);
+    CHECK(r.plastic_work == Approx(reference(scenario).plastic_work).epsilon(0.01));
 }
 
 TEST_CASE("twice the yield stress takes twice the energy", "[charpy]") {
-    // in float a single run scatters by 1 % with its round-off: 240 J or 246 J for a yield stress that
-    // differs by a thousandth, so the mean of neighbours is looked at
+    // in float a single run scatters by 1 % with its round-off, so the mean of neighbours is looked at
+    // too
+    Scenario scenario = in_frames(GENERATE(from_range(frames)));
     double work = 0, loss = 0;
     constexpr std::array yields{796e6, 798e6, 800e6, 802e6, 804e6};
     for (const double yield : yields) {
-        Scenario scenario;
         scenario.yield_stress = yield;
-        const Result r = run(scenario, solvers.front());
-        const auto expected = reference(scenario);
+        INFO("yield stress " << yield << ", frame " << scenario.frame);
+        const Result r = run(scenario);
+        const Reference expected = reference(scenario);
+        CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.02));
         work += r.plastic_work / expected.plastic_work / double(yields.size());
         loss += r.hammer_loss / expected.hammer_loss / double(yields.size());
     }
@@ -181,38 +188,31 @@ TEST_CASE("twice the yield stress takes twice the energy", "[charpy]") {
 
 TEST_CASE("an elastic-plastic joint flows for the turn that its spring leaves", "[charpy]") {
     const Method method = GENERATE(from_range(elastic_methods));
-    const Scenario scenario;
+    Scenario scenario = in_frames(GENERATE(from_range(frames)));
+    scenario.tolerance = tolerance_of(method);
     const Reference expected = reference(scenario, method);
-    INFO(to_string(method));
+    INFO(to_string(method) << ", frame " << scenario.frame);
     // M_p²/2k = 64²/(2 · 200e9 · 10 · 8³/12 mm⁴/27.5 mm)
     CHECK(expected.stored == Approx(0.66).epsilon(1e-9));
     CHECK(expected.plastic_work == Approx(122.01607 - 1.32).epsilon(1e-7));
     const Result r = run(scenario, solvers.front(), method);
-    // axes that share a surface flow in shear too while a blow's step lasts: 1.2 % of the work here, gone
-    // at small steps
-    const double work = method == Method::elastic_plastic_2 ? 0.015 : 0.01;
-    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(work));
-    if (converges) {
-        const Result fine = run(fixed(5e-6), solvers.front(), method);
-        CHECK(fine.plastic_work == Approx(expected.plastic_work).epsilon(0.003));
-    }
-    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(work + 0.01));
-    // it has sprung back, or the steps that kept it from that are reported
-    CHECK((r.stored < 0.01 || (!converges && r.unreliable_steps > 0)));
-    CHECK(r.steps < 1500);
+    CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.01));
+    CHECK(r.hammer_loss == Approx(expected.hammer_loss).epsilon(0.015));
+    // what it stored has sprung back, and at most swings in it, or it says so
+    CHECK((r.stored < expected.stored || !r.believed));
+    CHECK(r.solves < 400);
     CHECK_FALSE(r.broken);
-    CHECK(std::abs(r.unexplained) < (single ? 1e-2 : 1e-3));
-    if (converges) CHECK(r.unreliable_steps == 0);
+    CHECK(std::abs(r.unexplained) < unexplained);
 }
 
 TEST_CASE("a softer steel stores more and flows less", "[charpy]") {
-    if (!converges) return;
     // moduli at which the rows are soft: ODE's direct solver ends the process where such rows are
     // handed to it as they are
     const Method method = GENERATE(from_range(elastic_methods));
     const double modulus = GENERATE(40e9, 70e9, 100e9, 150e9);
     INFO(to_string(method) << ", E = " << modulus << " Pa");
     Scenario scenario;
+    scenario.tolerance = tolerance_of(method);
     scenario.youngs_modulus = modulus;
     const Reference expected = reference(scenario, method);
     CHECK(expected.plastic_work == Approx(122.01607 - 200e9 / modulus * 1.32).epsilon(1e-7));
@@ -221,13 +221,12 @@ TEST_CASE("a softer steel stores more and flows less", "[charpy]") {
 }
 
 TEST_CASE("elastic-plastic work does not scatter over the seed's five steps", "[charpy]") {
-    if (!converges) return;
     const Method method = GENERATE(from_range(elastic_methods));
     INFO(to_string(method));
     const Reference expected = reference(Scenario{}, method);
-    for (const double dt : {1.001e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4}) {
-        const Result r = run(fixed(dt), solvers.front(), method);
-        INFO("dt = " << dt);
+    for (const double step : seed_steps) {
+        const Result r = run(in_frames(step), solvers.front(), method);
+        INFO("step " << step);
         CHECK(r.plastic_work == Approx(expected.plastic_work).epsilon(0.02));
     }
 }
@@ -235,6 +234,7 @@ TEST_CASE("elastic-plastic work does not scatter over the seed's five steps", "[
 TEST_CASE("an elastic-plastic joint breaks at its rotation too", "[charpy]") {
     const Method method = GENERATE(from_range(elastic_methods));
     Scenario scenario;
+    if (method == Method::elastic_plastic_2) scenario.tolerance = 2.5e-4;
     scenario.max_plastic_rotation = 1.5;
     const Result r = run(scenario, solvers.front(), method);
     INFO(to_string(method));
@@ -248,16 +248,14 @@ TEST_CASE("every method of the seed runs by name", "[charpy]") {
         const Result r = run(Scenario{}, solvers.front(), method_of(name));
         CHECK(r.method == name);
         CHECK(std::isfinite(r.hammer_loss));
-        CHECK(r.strike_speed == Approx(5.0527).epsilon(1e-3));
         CHECK(r.broken == (method == Method::zero_limits));
     }
     CHECK_THROWS_WITH(method_of("rubber"), Catch::Contains("rubber"));
 }
 
 TEST_CASE("the hammer's taper acts where the draft is short", "[charpy]") {
-    if (!converges) return;
     // the edges behind the nose meet the bar where (thickness - nose)/2 tan φ > draft
-    Scenario longer, shorter, none;
+    Scenario longer = in_frames(1e-4), shorter = longer, none = longer;
     shorter.nose_length = 0.004;
     none.nose_length = 0;
     Scenario thin = shorter;
@@ -270,7 +268,7 @@ TEST_CASE("the hammer's taper acts where the draft is short", "[charpy]") {
     // a wide flat is nearer the anvils: it turns the bar faster
     const auto time_to = [](const Result& r, double rotation) {
         for (const Sample& s : r.history) {
-            if (std::abs(s.rotation) > rotation) return s.time - r.strike_time;
+            if (std::abs(s.rotation) > rotation) return s.time;
         }
         return 1.0;
     };
@@ -280,7 +278,6 @@ TEST_CASE("the hammer's taper acts where the draft is short", "[charpy]") {
 }
 
 TEST_CASE("a wider gap, a shallower notch and a thicker bar follow the mechanics", "[charpy]") {
-    if (!converges) return;
     Scenario wide, shallow, narrow;
     wide.anvil_gap = 0.044;
     shallow.notch = 0.001;

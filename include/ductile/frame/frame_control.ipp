@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "ductile/frame/frame_control.hpp"
@@ -139,7 +140,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     if (left - h < shortest) h = left;
     const bool saved = engine.may_be_put_back();
     if (saved) engine.save();
-    double first_error = 0;
+    double first_error = std::numeric_limits<double>::infinity();
     const double first = h;
     bool jump = false, at_event = at_gap, rings = false;
     for (int tries = 0;; ++tries) {
@@ -148,7 +149,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         Judgement judged = judge(motion, h, shortest);
         if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
-        if (tries == 0) first_error = judged.error;
+        // of one that turned too far it says nothing, and such a part is no way out
+        if (tries == 0 && !(judged.too_far > 0)) first_error = judged.error;
         const bool good =
             judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
         const bool done = jump || !saved || spent() || tries > detail::most_tries ||

@@ -255,6 +255,36 @@ TEST_CASE("Nothing that moves is one part, whatever the frame", "[frame]") {
     CHECK(control.run().believed());
 }
 
+TEST_CASE("A part that turned too far is no way out of a force that does not come of its length",
+          "[frame]") {
+    /// In a long part its joint breaks, so that nothing moves; in short ones it is kicked.
+    struct Breaks final : ductile::PartEngine {
+        ductile::PartMotion motion{.rows = {ductile::PartRow{.share = 1, .strength = 1}}};
+        double longest = 0;
+        bool kicked = false;
+        void save() override {}
+        void put_back() override {}
+        const ductile::PartMotion& part(double h) override {
+            ductile::PartRow& row = motion.rows[0];
+            const bool breaks = h > frame / 2 && !kicked;
+            row.too_far = breaks ? 1 : 0;
+            row.start = breaks || kicked ? 0 : 1;
+            row.end = row.start / 2;
+            return motion;
+        }
+        const ductile::PartMotion& blow() override { return motion; }
+        void accept(double h) override {
+            if (!kicked) longest = h;
+            kicked = true;
+        }
+        ductile::ClosingContacts closing(double, double, double) override { return {}; }
+        double kinetic_energy() const override { return 1; }
+    } engine;
+    FrameControl control;
+    control.frame(engine, frame);
+    CHECK(engine.longest < frame / 2);
+}
+
 TEST_CASE("A frame and its tolerance are checked by name", "[frame]") {
     Engine engine = sliding_mass();
     FrameControl control;

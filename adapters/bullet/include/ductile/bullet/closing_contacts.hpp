@@ -11,6 +11,9 @@
 // beyond its closing, and what touches overlaps. What was just put down on something has no speed
 // yet, and would fall through it for a part: its gap closes by its weight.
 //
+// What closes with little energy counts all the same where a part, half of which comes before
+// contacts are looked for, would carry a body past it: a light bar before a heavy hammer.
+//
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
 // is not asked for; where nothing in the world could, nobody is. An island is that of Bullet's last
 // tick, and the bodies of the joints.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/members.hpp"
@@ -64,15 +65,32 @@ class ShapeReach {
     return body.getAngularVelocity().length() * reach.of(*body.getCollisionShape());
 }
 
+/// How far a body may get past something and still be found on this side of it: half of its smallest
+/// extent; infinite for what does not move [m].
+[[nodiscard]] DUCTILE_INLINE double half_thickness(const btCollisionObject& object) {
+    if (pushed(object) == nullptr) return std::numeric_limits<double>::infinity();
+    btVector3 low, high;
+    object.getCollisionShape()->getAabb(btTransform::getIdentity(), low, high);
+    const btVector3 extent = high - low;
+    return double(extent[extent.minAxis()]) / 2;
+}
+
 struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     ClosingContacts& found;
     double touching, apart;
     double h;       ///< of the part [s]
+    double unseen;  ///< past each other by more than that nobody would find them [m]
     btVector3 fall; ///< acceleration of the first body beside the second [m/s²]
     const btCollisionObject* first;
     ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
-                  const btCollisionObject* a, const btVector3& falls)
-        : found(result), touching(touch), apart(open), h(length), fall(falls), first(a) {
+                  const btCollisionObject* a, const btCollisionObject* b, const btVector3& falls)
+        : found(result),
+          touching(touch),
+          apart(open),
+          h(length),
+          unseen(std::min(half_thickness(*a), half_thickness(*b))),
+          fall(falls),
+          first(a) {
         m_closestDistanceThreshold = reach;
     }
     /// Towards the second body, of who begins to fall on it [m/s²].
@@ -99,7 +117,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const double energy = speed * speed / (2 * yields);
         if (distance < closed_gap) {
             found.strikes = found.strikes || energy > touching;
-        } else if (energy > apart) {
+        } else if (energy > apart || speed * h / 2 - distance > unseen) {
             found.time = std::min(found.time, (distance + closed_gap / 2) / speed);
         }
         return 0;
@@ -124,7 +142,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     for (const Pair& pair : pairs_) {
         ClosingContacts of_pair;
         detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a,
-                                     falls(*pair.a) - falls(*pair.b));
+                                     pair.b, falls(*pair.a) - falls(*pair.b));
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);

@@ -20,6 +20,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -45,8 +46,11 @@ class FrontSolver final : public btConstraintSolver {
 
     [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
 
-    /// Of the coming ticks.
-    void set_kind(TickKind kind) noexcept { kind_ = kind; }
+    /// Of the coming ticks; `held`: how contacts turned before a part, null: nobody knows.
+    void set_kind(TickKind kind, const HeldContacts* held = nullptr) noexcept {
+        kind_ = kind;
+        held_ = kind == TickKind::part ? held : nullptr;
+    }
 
     /// Islands of these are solved at once, too; null: there are none. Not while it solves.
     void set_direct(const DirectBodies* direct) noexcept { direct_ = direct; }
@@ -93,6 +97,7 @@ class FrontSolver final : public btConstraintSolver {
     btConstraintSolver& usual_;
     bool owned_;
     TickKind kind_ = TickKind::step;
+    const HeldContacts* held_ = nullptr;
     const DirectBodies* direct_ = nullptr;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
     std::mutex mutex_; ///< of what follows
@@ -114,7 +119,9 @@ class FrontHold {
     [[nodiscard]] btConstraintSolver& usual() const { return (**front_.lock()).usual(); }
     /// False once Bullet's world has ended.
     [[nodiscard]] bool is_alive() const noexcept { return !front_.expired(); }
-    void set_kind(TickKind kind) const { (**front_.lock()).set_kind(kind); }
+    void set_kind(TickKind kind, const HeldContacts* held = nullptr) const {
+        (**front_.lock()).set_kind(kind, held);
+    }
     void set_direct(const DirectBodies* direct) const { (**front_.lock()).set_direct(direct); }
 
   private:

@@ -158,10 +158,12 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
     const void* key = first != island.constraints.end()
                           ? static_cast<const void*>(*first)
                           : static_cast<const void*>(island.bodies.front());
-    solver_of(key)->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
-                                          island.manifolds.data(), int(island.manifolds.size()),
-                                          island.constraints.data(), int(island.constraints.size()),
-                                          info, drawer, dispatcher);
+    const std::shared_ptr<Kept> kept = solver_of(key);
+    kept->solver.set_held(held_);
+    kept->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
+                            island.manifolds.data(), int(island.manifolds.size()),
+                            island.constraints.data(), int(island.constraints.size()), info, drawer,
+                            dispatcher);
 }
 
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(

@@ -24,8 +24,10 @@
 
 #include <BulletDynamics/ConstraintSolver/btSequentialImpulseConstraintSolver.h>
 
+#include <utility>
 #include <vector>
 
+#include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/solve/island_solver.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -39,6 +41,9 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
                                        btTypedConstraint** constraints, int constraint_count,
                                        const btContactSolverInfo& info, btIDebugDraw* drawer,
                                        btDispatcher* dispatcher) override;
+
+    /// How contacts turned before the coming solve; null: nobody knows.
+    void set_held(const HeldContacts* held) noexcept { held_ = held; }
 
     [[nodiscard]] const solve::IslandReport& last() const noexcept { return report_; }
 
@@ -63,6 +68,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_plastic_joints(const btContactSolverInfo& info);
     void load_rows();
     void load_contacts();
+    void find_turned(btPersistentManifold** manifolds, int count, double tick);
+    [[nodiscard]] double turned(const void* point) const;
     void store();
     [[nodiscard]] IslandSeat seat(btRigidBody& body) const;
     solve::IslandRow& add_row(btSolverConstraint& row);
@@ -76,6 +83,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::vector<btTypedConstraint*> others_;
     std::vector<btSolverConstraint*> read_; ///< Bullet's rows, in the order of the island's
     std::size_t first_read_ = 0;
+    const HeldContacts* held_ = nullptr;
+    std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };
 
 } // namespace ductile::bullet

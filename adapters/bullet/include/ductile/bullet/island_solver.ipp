@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "ductile/bullet/convert.hpp"
@@ -130,6 +131,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     load_plastic_joints(info);
     first_read_ = island_.rows.size();
     load_rows();
+    find_turned(manifolds, manifold_count, double(info.m_timeStep));
     load_contacts();
     report_ = solver_.solve(island_);
     store();
@@ -214,6 +216,26 @@ DUCTILE_INLINE void IslandSolver::load_rows() {
     }
 }
 
+DUCTILE_INLINE void IslandSolver::find_turned(btPersistentManifold** manifolds, int count,
+                                              double tick) {
+    turned_.clear();
+    for (int i = 0; held_ != nullptr && i < count; ++i) {
+        for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
+            const btManifoldPoint& point = manifolds[i]->getContactPoint(k);
+            const double speed = held_->turned(*manifolds[i], point, tick);
+            if (speed != 0) turned_.emplace_back(&point, speed);
+        }
+    }
+    std::sort(turned_.begin(), turned_.end());
+}
+
+DUCTILE_INLINE double IslandSolver::turned(const void* point) const {
+    const auto found = std::lower_bound(
+        turned_.begin(), turned_.end(), point,
+        [](const auto& entry, const void* key) { return std::less<>()(entry.first, key); });
+    return found != turned_.end() && found->first == point ? found->second : 0;
+}
+
 /// A normal row and, after it, its friction rows, sliding and rolling ones, on one cone.
 DUCTILE_INLINE void IslandSolver::load_contacts() {
     btConstraintArray& contacts = m_tmpSolverContactConstraintPool;
@@ -229,7 +251,8 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
             ++block.count;
             return added;
         };
-        take(contacts[i]);
+        solve::IslandRow& normal = take(contacts[i]);
+        normal.target += turned(contacts[i].m_originalContactPoint);
         const auto take_friction = [&](btConstraintArray& pool, int& next) {
             for (; next < pool.size() && pool[next].m_frictionIndex == i; ++next) {
                 // no more than a block holds: sliding comes first, then rolling about the normal

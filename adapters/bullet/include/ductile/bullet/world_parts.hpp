@@ -33,12 +33,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
+#include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/held_forces.hpp"
 #include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/local_tick.hpp"
@@ -110,6 +112,10 @@ class WorldParts final : public PartEngine {
     /// back.
     [[nodiscard]] bool join_touched();
 
+    [[nodiscard]] std::span<btPersistentManifold* const> manifolds();
+    [[nodiscard]] bool concerns(const btCollisionObject& object);
+    void look_at_pushes(double h);
+
     /// Back to before it, with the sections open that it was beyond.
     void do_again();
     const PartMotion& tell();
@@ -130,6 +136,8 @@ class WorldParts final : public PartEngine {
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
+    HeldContacts held_;
+    double half_ = 0;     ///< of the last part that stands, since which bodies went straight on [s]
     double apart_ = 0;    ///< energy with which a gap has to close to count [J]
     bool closes_ = false; ///< a contact, as the last look ahead found
     PartRisk risk_;

@@ -178,6 +178,9 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     const bool metered = keeps_ledger_ || at_risk_;
     if (metered) meter_.before_step();
     if (ahead) {
+        if (at_risk_) {
+            held_.see(manifolds(), half_, [this](const auto& body) { return concerns(body); });
+        }
         half_ahead_.move(local_ ? scope_.bodies() : MovingBodies::all(world_), btScalar(h), ways_,
                          btScalar(time_));
         time_ += h;
@@ -185,7 +188,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     }
     members_.before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
-    front_.set_kind(ahead ? TickKind::part : TickKind::blow);
+    front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),
                        [this, h] { half_ahead_.finish(scope_.bodies(), btScalar(h)); });
@@ -199,6 +202,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     if (local_ && scope_.bodies().empty()) { // all stands
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
+        motion_.contact_lost = false;
         return motion_;
     }
     // so short a part closes what is left of a gap: its impulses are a blow's
@@ -215,7 +219,29 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
     motion_.contact_work = metered ? meter_.step_of_contacts() : 0;
     motion_.closed = closing_.closed_early(world_, h, apart_);
+    look_at_pushes(h);
     return motion_;
+}
+
+DUCTILE_INLINE std::span<btPersistentManifold* const> WorldParts::manifolds() {
+    if (local_) return scope_.manifolds();
+    btDispatcher& dispatcher = *world_.getDispatcher();
+    return {dispatcher.getInternalManifoldPointer(), std::size_t(dispatcher.getNumManifolds())};
+}
+
+DUCTILE_INLINE bool WorldParts::concerns(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body != nullptr && !body->isStaticOrKinematicObject() &&
+           closing_.touches_plastic(world_, *body);
+}
+
+/// Where what flows could be off by them: contacts that are gone, or turned too far to be followed.
+DUCTILE_INLINE void WorldParts::look_at_pushes(double h) {
+    motion_.contact_lost = false;
+    if (!at_risk_ || !may_misplace(motion_, h, apart_)) return;
+    const auto concerned = [this](const auto& body) { return concerns(body); };
+    say_turned(motion_, held_.turn(manifolds(), h, concerned));
+    motion_.contact_lost = held_.lost(world_, manifolds(), h, concerned);
 }
 
 DUCTILE_INLINE void WorldParts::do_again() {
@@ -234,10 +260,13 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     }
     while (local_ && join_touched()) tick(blow_length, false);
     motion_.closed = 0;
+    motion_.contact_lost = false;
     return tell();
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) {
+    half_ = h / 2;
+    held_.accept();
     if (h > 0) meter_.rings_down(members_.count_vibration());
     accept_(h);
     if (!(h > 0) || members_.empty()) return;

@@ -54,8 +54,17 @@ class ClosingContactsFinder {
     /// After the solve: how hard the contacts of the part push, by their joints' feedback.
     void see_forces(std::span<const NamedContact> contacts);
     /// As PartEngine's.
-    void save() noexcept { kept_force_ = force_; }
-    void put_back() noexcept { force_ = kept_force_; }
+    void save() {
+        kept_force_ = force_;
+        kept_pushing_ = pushing_;
+    }
+    void put_back() {
+        force_ = kept_force_;
+        pushing_ = kept_pushing_;
+    }
+    /// Whether bodies that pushed each other, in the last part or when it began, have no contact
+    /// among those looked at: one slid off the other, or was pushed off.
+    [[nodiscard]] bool lost();
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
     /// When the first gap among those looked at closes with more energy than `apart` [J] [s].
@@ -81,12 +90,19 @@ class ClosingContactsFinder {
         bool is_new;   ///< the bodies had no contact when last remembered
     };
     using Pair = std::pair<dBodyID, dBodyID>;
+    /// Who touches whom: bodies and geoms, which are null where `make` collides without any.
+    using Mates = std::pair<Pair, std::pair<dGeomID, dGeomID>>;
+    [[nodiscard]] static Mates mates(const NamedContact& named);
+    using Push = std::pair<Mates, double>; ///< with its force [N]
     void find_islands(std::span<const NamedContact> contacts,
                       std::span<PlasticConstraint* const> joints);
 
     std::vector<dBodyID> island_;       ///< bodies that can move, of all of them, sorted
     std::vector<Touch> touches_;        ///< that close
     std::vector<Pair> pairs_, before_;  ///< of bodies with contacts, sorted
+    std::vector<Mates> touching_;       ///< looked at, sorted
+    std::vector<Push> pushing_, began_; ///< in the last part, and when it began
+    std::vector<Push> kept_pushing_;
     double force_ = 0, kept_force_ = 0; ///< F: largest of a contact in the last part with one [N]
 };
 

@@ -145,10 +145,12 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
     find_islands(contacts, joints);
     touches_.clear();
     pairs_.clear();
+    touching_.clear();
     for (const NamedContact& named : contacts) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
         if (!is_plastic(a) && !is_plastic(b)) continue;
-        pairs_.push_back(std::minmax(a, b, std::less<dBodyID>()));
+        touching_.push_back(mates(named));
+        pairs_.push_back(touching_.back().first);
         const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
         const Vector3<double> point = to_core(named.contact.geom.pos);
         const Vector3<double> normal =
@@ -164,18 +166,38 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
                             speed * speed / (2 * yields), is_new});
     }
     std::sort(pairs_.begin(), pairs_.end());
+    std::sort(touching_.begin(), touching_.end());
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {
     double largest = 0;
+    began_ = std::exchange(pushing_, {});
     for (const NamedContact& named : contacts) {
         const dJointFeedback* feedback = dJointGetFeedback(named.joint);
         const auto [a, b, reversed] = attached_bodies(named.joint);
         if (feedback == nullptr || (!is_plastic(a) && !is_plastic(b))) continue;
         const double force = dot(to_core(feedback->f1), to_core(named.contact.geom.normal));
         largest = std::max(largest, std::abs(force));
+        pushing_.emplace_back(mates(named), std::abs(force));
     }
     if (largest > 0) force_ = largest;
+}
+
+DUCTILE_INLINE auto ClosingContactsFinder::mates(const NamedContact& named) -> Mates {
+    const AttachedBodies bodies = attached_bodies(named.joint);
+    const dContactGeom& geom = named.contact.geom;
+    return {std::minmax(bodies.a, bodies.b, std::less<dBodyID>()),
+            std::minmax(geom.g1, geom.g2, std::less<dGeomID>())};
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::lost() {
+    const auto is_lost = [this](const Push& push) {
+        constexpr double noticed = 0.01; // of the largest force
+        return push.second > noticed * force_ &&
+               !std::binary_search(touching_.begin(), touching_.end(), push.first);
+    };
+    const bool gone = std::any_of(began_.begin(), began_.end(), is_lost);
+    return std::erase_if(pushing_, is_lost) > 0 || gone;
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {

@@ -29,6 +29,7 @@
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/contact_maker.hpp"
+#include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
@@ -36,6 +37,7 @@
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/driven_course.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile::ode {
 
@@ -102,6 +104,8 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
+    /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
+    [[nodiscard]] double turned(const NamedContact& named, double h) const;
     void open_others();
     const PartMotion& tell();
     [[nodiscard]] double next_gap(double h, double apart);
@@ -117,6 +121,7 @@ class WorldParts final : public PartEngine {
     RestingIslands resting_;
     WorldSnapshot snapshot_, looked_from_;
     ClosingContactsFinder closing_;
+    std::vector<std::pair<AttachedBodies, SeenContact>> seen_, kept_seen_; ///< as a part starts
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]

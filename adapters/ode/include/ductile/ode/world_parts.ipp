@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "ductile/frame/part_settings.hpp"
@@ -138,6 +139,7 @@ DUCTILE_INLINE void WorldParts::save() {
     kept_time_ = time_;
     of_.meter.keep();
     closing_.save();
+    kept_seen_ = seen_;
     snapshot_.take(of_.bodies, of_.joints);
 }
 
@@ -145,6 +147,7 @@ DUCTILE_INLINE void WorldParts::put_back() {
     snapshot_.put_back();
     of_.meter.put_back();
     closing_.put_back();
+    seen_ = kept_seen_;
     time_ = kept_time_;
     looked_ = false;
 }
@@ -195,10 +198,20 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
     motion_.contact_work = of_.meter.step_of_contacts();
+    motion_.contact_lost = false;
     if (closing_.any_plastic() && of_.maker) {
         look();
         looked_ = true;
         closed_ = std::min(closed_, closing_.closed(h, h / 2, apart_));
+        motion_.contact_lost = closing_.lost();
+        double spin = 0;
+        for (const NamedContact& named : of_.contacts) {
+            const AttachedBodies bodies = attached_bodies(named.joint);
+            for (dBodyID body : {bodies.a, bodies.b}) {
+                if (closing_.is_plastic(body)) spin = std::max(spin, norm(angular_velocity(body)));
+            }
+        }
+        if (may_misplace(motion_, h, apart_)) say_turned(motion_, spin * h);
     }
     motion_.closed = closed_ < h ? closed_ : 0;
     return motion_;
@@ -207,10 +220,12 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     tick(blow_length, true);
     motion_.closed = 0;
+    motion_.contact_lost = false;
     return tell();
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) try {
+    seen_.clear();
     of_.accept(h);
 } catch (...) { // a listener's
     leave();
@@ -228,6 +243,26 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
 }
 
 // ---- contacts
+
+namespace detail {
+
+/// With the normal on the first of its bodies.
+[[nodiscard]] DUCTILE_INLINE std::pair<AttachedBodies, SeenContact> seen_contact(
+    const NamedContact& named) {
+    const AttachedBodies bodies = attached_bodies(named.joint);
+    const Vector3<double> point = to_core(named.contact.geom.pos);
+    return {bodies,
+            {.point = point,
+             .normal = scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal)),
+             .arm_a = arm_of(bodies.a, point),
+             .arm_b = arm_of(bodies.b, point)}};
+}
+[[nodiscard]] DUCTILE_INLINE bool before(const AttachedBodies& x, const AttachedBodies& y) {
+    const std::less<dBodyID> less;
+    return x.a != y.a ? less(x.a, y.a) : less(x.b, y.b);
+}
+
+} // namespace detail
 
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
@@ -248,16 +283,15 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
         const double gap = closed_depth - double(named.contact.geom.depth);
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
-        const bool open = !blow && gap > 0 && plastic;
         if (!plastic && (surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
         surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
         if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
-        if (open) {
+        if (!blow && plastic) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
-            surface.motionN -= dReal(2 * gap / h);
+            surface.motionN += dReal(turned(named, h) - std::max(0.0, 2 * gap / h));
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -265,6 +299,28 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         dJointSetFeedback(named.joint, dJointGetFeedback(old));
         dJointDisable(old);
     }
+}
+
+DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
+    const auto [bodies, now] = detail::seen_contact(named);
+    const auto first = std::lower_bound(seen_.begin(), seen_.end(), bodies,
+                                        [](const auto& seen, const AttachedBodies& key) {
+                                            return detail::before(seen.first, key);
+                                        });
+    const SeenContact* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto seen = first; seen != seen_.end() && seen->first == bodies; ++seen) {
+        const double distance = norm(difference(seen->second.point, now.point));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &seen->second;
+    }
+    if (nearest == nullptr) return 0;
+    const auto motion = [](dBodyID body) {
+        return body == nullptr ? ContactBody{}
+                               : ContactBody{linear_velocity(body), angular_velocity(body)};
+    };
+    return turned_contact(now, *nearest, motion(bodies.a), motion(bodies.b), h / 2, h / 2);
 }
 
 DUCTILE_INLINE void WorldParts::open_others() {
@@ -279,7 +335,11 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     ClosingContacts found;
     if (!of_.maker) return found;
     if (!std::exchange(looked_, true)) look();
+    seen_.clear();
     if (!closing_.any_plastic()) return found;
+    for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
+    std::stable_sort(seen_.begin(), seen_.end(),
+                     [](const auto& x, const auto& y) { return detail::before(x.first, y.first); });
     closing_.remember();
     found.strikes = closing_.strikes(touching);
     if (found.strikes) return found;

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of held_contacts.hpp.
+#pragma once
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/held_contacts.hpp"
+
+namespace ductile::bullet {
+
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE ContactBody contact_body(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    if (body == nullptr || body->isStaticObject()) return {};
+    return {to_core(body->getLinearVelocity()), to_core(body->getAngularVelocity())};
+}
+
+/// Solved `ago` [s] ago, since when the bodies went straight on.
+[[nodiscard]] DUCTILE_INLINE SeenContact seen_contact(const btPersistentManifold& manifold,
+                                                      const btManifoldPoint& point, double ago) {
+    const auto arm = [ago](const btCollisionObject& object, const btVector3& at) {
+        const ContactBody body = contact_body(object);
+        const Vector3<double> centre =
+            difference(to_core(object.getWorldTransform().getOrigin()), scaled(ago, body.velocity));
+        return difference(to_core(at), centre);
+    };
+    return {.point = to_core(point.getPositionWorldOnB()),
+            .normal = to_core(point.m_normalWorldOnB),
+            .arm_a = arm(*manifold.getBody0(), point.getPositionWorldOnA()),
+            .arm_b = arm(*manifold.getBody1(), point.getPositionWorldOnB())};
+}
+
+[[nodiscard]] DUCTILE_INLINE HeldContacts::Bodies bodies_of(const btPersistentManifold& manifold) {
+    return {manifold.getBody0(), manifold.getBody1()};
+}
+
+[[nodiscard]] DUCTILE_INLINE double pushes(const btPersistentManifold& manifold) {
+    double impulse = 0;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        impulse += double(manifold.getContactPoint(k).getAppliedImpulse());
+    }
+    return impulse;
+}
+
+/// Whether two bodies have a point nearer than the threshold.
+struct AnyContact final : btCollisionWorld::ContactResultCallback {
+    bool found = false;
+    explicit AnyContact(btScalar reach) { m_closestDistanceThreshold = reach; }
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+        found = found || point.getDistance() <= m_closestDistanceThreshold;
+        return 0;
+    }
+};
+
+} // namespace detail
+
+DUCTILE_INLINE void HeldContacts::see(std::span<btPersistentManifold* const> manifolds, double ago,
+                                      const Concerns& concerns) {
+    ago_ = ago;
+    seen_.clear();
+    pushed_.clear();
+    for (const btPersistentManifold* manifold : manifolds) {
+        if (manifold->getNumContacts() == 0) continue;
+        if (!concerns(*manifold->getBody0()) && !concerns(*manifold->getBody1())) continue;
+        const Bodies bodies = detail::bodies_of(*manifold);
+        for (int k = 0; k < manifold->getNumContacts(); ++k) {
+            seen_.push_back(
+                {bodies, detail::seen_contact(*manifold, manifold->getContactPoint(k), ago)});
+        }
+        const bool is_gone = std::find(gone_.begin(), gone_.end(), bodies) != gone_.end();
+        if (!is_gone && detail::pushes(*manifold) > 0) pushed_.push_back(bodies);
+    }
+    std::stable_sort(seen_.begin(), seen_.end(),
+                     [](const Seen& x, const Seen& y) { return x.bodies < y.bodies; });
+}
+
+DUCTILE_INLINE double HeldContacts::turned(const btPersistentManifold& manifold,
+                                           const btManifoldPoint& point, double h) const {
+    const Bodies bodies = detail::bodies_of(manifold);
+    const SeenContact now = detail::seen_contact(manifold, point, 0);
+    const auto first =
+        std::lower_bound(seen_.begin(), seen_.end(), bodies,
+                         [](const Seen& seen, const Bodies& key) { return seen.bodies < key; });
+    const SeenContact* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto seen = first; seen != seen_.end() && seen->bodies == bodies; ++seen) {
+        const double distance = norm(difference(seen->contact.point, now.point));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &seen->contact;
+    }
+    if (nearest == nullptr) return 0;
+    return turned_contact(now, *nearest, detail::contact_body(*bodies.first),
+                          detail::contact_body(*bodies.second), ago_ + h / 2, h / 2);
+}
+
+DUCTILE_INLINE double HeldContacts::turn(std::span<btPersistentManifold* const> manifolds, double h,
+                                         const Concerns& concerns) {
+    double spin = 0;
+    for (const btPersistentManifold* manifold : manifolds) {
+        if (!(detail::pushes(*manifold) > 0)) continue;
+        for (const btCollisionObject* object : {manifold->getBody0(), manifold->getBody1()}) {
+            if (concerns(*object)) spin = std::max(spin, norm(detail::contact_body(*object).spin));
+        }
+    }
+    return spin * h;
+}
+
+DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
+                                       std::span<btPersistentManifold* const> manifolds, double h,
+                                       const Concerns& concerns) {
+    constexpr double noticed = 0.01; // of the largest impulse
+    double largest = 0;
+    for (const btPersistentManifold* manifold : manifolds) {
+        largest = std::max(largest, detail::pushes(*manifold));
+    }
+    std::vector<Bodies> pushing = pushed_;
+    for (const btPersistentManifold* manifold : manifolds) {
+        if (!(detail::pushes(*manifold) > noticed * largest)) continue;
+        if (!concerns(*manifold->getBody0()) && !concerns(*manifold->getBody1())) continue;
+        pushing.push_back(detail::bodies_of(*manifold));
+    }
+    std::sort(pushing.begin(), pushing.end());
+    pushing.erase(std::unique(pushing.begin(), pushing.end()), pushing.end());
+    lost_.clear();
+    for (const Bodies& bodies : pushing) {
+        const ContactBody a = detail::contact_body(*bodies.first),
+                          b = detail::contact_body(*bodies.second);
+        detail::AnyContact contact(
+            btScalar(closed_gap + h * norm(difference(a.velocity, b.velocity))));
+        world.contactPairTest(const_cast<btCollisionObject*>(bodies.first),
+                              const_cast<btCollisionObject*>(bodies.second), contact);
+        if (!contact.found) lost_.push_back(bodies);
+    }
+    return !lost_.empty();
+}
+
+} // namespace ductile::bullet

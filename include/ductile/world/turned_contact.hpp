@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+//
+// How fast a contact closes only because it turned. In a part of a frame (frame/README.md) contacts
+// are solved as they are in its middle. Asked to close no more there, a contact that turns with its
+// bodies takes F h (J' v)/2 of energy in each part, of the order of h over all of them. So it is
+// asked to be where it should at the end: it comes to the solve at w and leaves it at -w, as rows
+// of joints do (joint/any_link.hpp). w is the difference between two geometries, of the same
+// velocities:
+//
+//   c(g) = -n_g·(v_A + ω_A × r_A,g - v_B - ω_B × r_B,g),   w = (c(now) - c(then)) h/(2 t)
+//
+//   n, r   normal, on A, and arms of the contact: as it is (now), as it was seen last (then)
+//   t      time between the two; h/2 where it was seen at the start of the part        [s]
+//
+// Of no use where the contact is another one by now: it moved farther than its bodies, or its
+// normal turned faster than they do. It then does not count. h -> 0, no turning, a sphere that
+// rolls on what stands: w = 0.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "ductile/frame/part_engine.hpp"
+#include "ductile/vocabulary/vector.hpp"
+
+namespace ductile {
+
+/// World axes.
+struct SeenContact {
+    Vector3<double> point{0, 0, 0};                 ///< [m]
+    Vector3<double> normal{0, 0, 0};                ///< on A, unit
+    Vector3<double> arm_a{0, 0, 0}, arm_b{0, 0, 0}; ///< from the centres of mass [m]
+};
+
+/// Of a body; zero where it cannot move.
+struct ContactBody {
+    Vector3<double> velocity{0, 0, 0}; ///< [m/s]
+    Vector3<double> spin{0, 0, 0};     ///< [rad/s]
+
+    [[nodiscard]] Vector3<double> at(const Vector3<double>& arm) const {
+        return sum(velocity, cross(spin, arm));
+    }
+};
+
+/// w [m/s]; `time`: t > 0, `half`: h/2 [s].
+[[nodiscard]] inline double turned_contact(const SeenContact& now, const SeenContact& then,
+                                           const ContactBody& a, const ContactBody& b, double time,
+                                           double half) {
+    constexpr double most = 1.5; // times what the bodies do
+    const double speed = std::max(norm(a.at(now.arm_a)), norm(b.at(now.arm_b)));
+    const double turn = norm(a.spin) + norm(b.spin);
+    if (!(norm(difference(now.point, then.point)) <= most * speed * time) ||
+        !(norm(difference(now.normal, then.normal)) <= most * turn * time)) {
+        return 0;
+    }
+    const auto closing = [&](const SeenContact& seen) {
+        return -dot(seen.normal, difference(a.at(seen.arm_a), b.at(seen.arm_b)));
+    };
+    return (closing(now) - closing(then)) * half / time;
+}
+
+/// Turn of a body in a part up to which w tells where its contacts will be: what is left, of third
+/// order, is some 1e-4 of its arms [rad].
+inline constexpr double followed_turn = 0.1;
+
+/// A part in which a body that something pushes turned by `turn` [rad] is cut into equal ones where
+/// that was too far: said by a row that moves, as if its joint could not follow.
+inline void say_turned(PartMotion& motion, double turn) {
+    if (!(turn > followed_turn)) return;
+    for (PartRow& row : motion.rows) {
+        if (!row.moves()) continue;
+        row.too_far = std::max(row.too_far, turn);
+        return;
+    }
+}
+
+/// Whether what a contact does to the flows of a part of `h` [s] could matter beside `least` [J].
+[[nodiscard]] inline bool may_misplace(const PartMotion& motion, double h, double least) {
+    constexpr double noticed = 0.1;
+    double work = 0;
+    for (const PartRow& row : motion.rows) {
+        if (row.moves()) work += row.strength * std::abs(row.start + row.end) / 4 * h;
+    }
+    return work > noticed * least;
+}
+
+} // namespace ductile
