@@ -94,7 +94,7 @@ TEST_CASE("a cantilever collapses in ODE as in Bullet", "[members]") {
         const Fallen in_bullet = fall(world, post, 0.3, dt);
         const in_ode::Rig ode_rig({0, -9.81, 0});
         ode::World ode_world(ode_rig.id, {.tolerance = tolerance, .warn = {}});
-        ode::Member ode_post(ode_rig.body(0, {}, {0, 0, 0}), of, in_ode::here);
+        ode::Member ode_post(ode_rig.body(0, {0, 0, 0}, {0, 0, 0}), of, in_ode::here);
         const Fallen in_ode = fall(ode_world, ode_post, 0.3, dt);
         CAPTURE(tolerance, in_bullet.absorbed, in_ode.absorbed);
         CHECK(in_bullet.absorbed > 0.5);

@@ -40,7 +40,7 @@ struct Rig : OdeEngine {
         dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
         return body;
     }
-    [[nodiscard]] dGeomID box(dBodyID body, const V3& half, const V3& offset = {0, 0, 0}) const {
+    dGeomID box(dBodyID body, const V3& half, const V3& offset = {0, 0, 0}) const {
         const dGeomID geom = dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()),
                                         dReal(2 * half.z()));
         dGeomSetBody(geom, body);
@@ -66,10 +66,13 @@ struct Rig : OdeEngine {
         return joint;
     }
     /// Contacts without friction of all that touches, but of what joints hold together.
-    void meet(ode::World& world) {
+    void collide(ode::World& world) {
         world_ = &world;
-        world.on_contacts({.space = space, .group = contacts},
-                          [this] { dSpaceCollide(space, this, &Rig::near); });
+        dSpaceCollide(space, this, &Rig::near);
+    }
+    /// The same, by the World.
+    void meet(ode::World& world) {
+        world.on_contacts({.space = space, .group = contacts}, [this, &world] { collide(world); });
     }
 
   private:
@@ -137,7 +140,7 @@ struct Struck {
         : world(rig.id, {.tolerance = tolerance, .warn = {}}), mass(rig.body(1, {1, 1, 1}, {0, 0, 1})) {
         world.add(mass);
         if (just_in_time) {
-            member = std::make_unique<ode::Member>(rig.body(0, {}, {0, 0, 0}), of, here);
+            member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
             pin = rig.pin(member->body_of(1), mass, {0, 0, 1});
             world.add(*member, "post");
         } else {
@@ -171,7 +174,7 @@ struct BallOnPost {
         dGeomSetBody(dCreateSphere(rig.space, dReal(radius)), ball);
         set_velocity(ball, {0, speed, 0});
         world.add(ball);
-        const dBodyID body = rig.body(0, {}, {0, 0, 0});
+        const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
         rig.boxes(body, of, half);
         post = std::make_unique<ode::Member>(body, of, here);
         world.add(*post, "post");
