@@ -41,8 +41,8 @@ struct Rig : OdeEngine {
         return body;
     }
     dGeomID box(dBodyID body, const V3& half, const V3& offset = {0, 0, 0}) const {
-        const dGeomID geom = dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()),
-                                        dReal(2 * half.z()));
+        const dGeomID geom =
+            dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()), dReal(2 * half.z()));
         dGeomSetBody(geom, body);
         dGeomSetOffsetPosition(geom, dReal(offset.x()), dReal(offset.y()), dReal(offset.z()));
         return geom;
@@ -137,7 +137,8 @@ struct Struck {
     dJointID pin;
 
     Struck(const Member& of, bool just_in_time, double tolerance = 0)
-        : world(rig.id, {.tolerance = tolerance, .warn = {}}), mass(rig.body(1, {1, 1, 1}, {0, 0, 1})) {
+        : world(rig.id, {.tolerance = tolerance, .warn = {}}),
+          mass(rig.body(1, {1, 1, 1}, {0, 0, 1})) {
         world.add(mass);
         if (just_in_time) {
             member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);

@@ -50,8 +50,7 @@ struct MemberBox {
     }
     const double off = norm(frame.origin);
     if (!(off <= share * of.length())) {
-        check::fail("Member.start_in_body", off, "m",
-                    "0: the member's centre is to be the body's");
+        check::fail("Member.start_in_body", off, "m", "0: the member's centre is to be the body's");
     }
     frame.origin.setZero();
     return frame;

@@ -76,8 +76,8 @@ DUCTILE_INLINE void Member::attach(double place, Maker maker) {
         throw std::logic_error("Member.attach: must be called before the member is in a World");
     }
     const int segment = description().on_axis("Member.attach.place", place).segment;
-    attachments_.push_back({place, segment, std::move(maker), nullptr,
-                            std::make_unique<btJointFeedback>()});
+    attachments_.push_back(
+        {place, segment, std::move(maker), nullptr, std::make_unique<btJointFeedback>()});
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {

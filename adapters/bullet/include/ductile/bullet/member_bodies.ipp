@@ -91,7 +91,8 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
         const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
         const JointFrame<double> in_lower = lower.section(description(), section, true);
         const bool ground = pieces_[i].own == nullptr;
-        const btTransform frame = to_bullet(hinge_frame(ground ? placed(held_, in_lower) : in_lower));
+        const btTransform frame =
+            to_bullet(hinge_frame(ground ? placed(held_, in_lower) : in_lower));
         OpenSection open{section, std::make_unique<btJointFeedback>(), nullptr};
         open.hinge = std::make_unique<PlasticHinge<UsualAxisJoint>>(
             *pieces_[i + 1].body, *pieces_[i].body,

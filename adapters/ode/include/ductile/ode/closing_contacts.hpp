@@ -46,8 +46,8 @@ inline constexpr double closed_depth = 1e-4;
 
 class ClosingContactsFinder {
   public:
-    /// The contacts of the bodies as they are, of islands of these joints and of bodies of `members`,
-    /// which are struck like them.
+    /// The contacts of the bodies as they are, of islands of these joints and of bodies of
+    /// `members`, which are struck like them.
     /// @throws std::logic_error where one has a contact that was not named.
     void look(std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints,
               std::span<const dBodyID> members);
@@ -84,8 +84,7 @@ class ClosingContactsFinder {
     };
     using Pair = std::pair<dBodyID, dBodyID>;
     void find_islands(std::span<const NamedContact> contacts,
-                      std::span<PlasticConstraint* const> joints,
-                      std::span<const dBodyID> members);
+                      std::span<PlasticConstraint* const> joints, std::span<const dBodyID> members);
 
     std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all, sorted
     std::vector<Touch> touches_;        ///< that close

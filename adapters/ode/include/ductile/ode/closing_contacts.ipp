@@ -106,9 +106,9 @@ struct MovingGeom {
 
 } // namespace detail
 
-DUCTILE_INLINE void ClosingContactsFinder::find_islands(
-    std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints,
-    std::span<const dBodyID> members) {
+DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
+                                                        std::span<PlasticConstraint* const> joints,
+                                                        std::span<const dBodyID> members) {
     std::unordered_set<dBodyID> found;
     std::unordered_set<dJointID> named;
     for (const NamedContact& contact : contacts) named.insert(contact.joint);

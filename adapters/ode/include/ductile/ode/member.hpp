@@ -16,11 +16,11 @@
 // callback is not, as ODE does not tell it. `of` finds the member of a body in a contact callback.
 // Bodies of pieces end when sections open and close: keep no address of one.
 //
-// What holds on to it. Geoms go along (member_geoms.hpp). So do the user's joints, anchors, axes and
-// angle as they are: balls and hinges by their anchor, what has none by `attach`; joints of other
-// kinds are refused. Contacts have to be named, and go to the body that has the segment; those of
-// two pieces that hang together are none. Forces: apply_force, as a body's own loses the point where
-// it acted.
+// What holds on to it. Geoms go along (member_geoms.hpp). So do the user's joints, anchors, axes
+// and angle as they are: balls and hinges by their anchor, what has none by `attach`; joints of
+// other kinds are refused. Contacts have to be named, and go to the body that has the segment;
+// those of two pieces that hang together are none. Forces: apply_force, as a body's own loses the
+// point where it acted.
 //
 // Where it ends while it is open it is one body first, bent as it is.
 //
@@ -55,9 +55,9 @@ struct OpenSection {
 class Member final : public Divisible, public DividedMember<OpenSection> {
   public:
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
-    /// @throws std::invalid_argument where the body is null, is kinematic and the member not clamped
-    /// or the other way round, has another mass than the member, its centre elsewhere, or is a
-    /// member already, or a frame is none.
+    /// @throws std::invalid_argument where the body is null, is kinematic and the member not
+    /// clamped or the other way round, has another mass than the member, its centre elsewhere, or
+    /// is a member already, or a frame is none.
     Member(dBodyID body, ductile::Member member, const JointFrame<double>& start_in_body,
            const MemberBox& box = {});
     DUCTILE_INLINE ~Member() override;
@@ -65,8 +65,8 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     /// Null for a body that belongs to no member.
     [[nodiscard]] static Member* of(dBodyID body);
 
-    /// Bodies that it is now, from its start, but for the user's where that has nothing but the held
-    /// end.
+    /// Bodies that it is now, from its start, but for the user's where that has nothing but the
+    /// held end.
     [[nodiscard]] std::vector<dBodyID> pieces() const;
     /// The body that has a segment now.
     [[nodiscard]] DUCTILE_INLINE dBodyID body_of(int segment) const override;

@@ -98,8 +98,8 @@ DUCTILE_INLINE const Member::PieceBody& Member::piece_on(dBodyID body) const {
 DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
     const int first = piece_on(a).run.first, second = piece_on(b).run.first;
     for (const OpenSection& open : joints_) {
-        const bool between = std::min(first, second) <= open.section &&
-                             open.section < std::max(first, second);
+        const bool between =
+            std::min(first, second) <= open.section && open.section < std::max(first, second);
         if (between && open.hinge->queries().broken()) return false;
     }
     return true;
@@ -108,7 +108,8 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
 // ---- its life
 
 DUCTILE_INLINE void Member::attach(double place, dJointID joint) {
-    if (joint == nullptr) throw std::invalid_argument("Member.attach.joint = null: must be a joint");
+    if (joint == nullptr)
+        throw std::invalid_argument("Member.attach.joint = null: must be a joint");
     const int segment = description().on_axis("Member.attach.place", place).segment;
     std::erase_if(told_, [joint](const auto& told) { return told.first == joint; });
     told_.emplace_back(joint, segment);
@@ -144,8 +145,9 @@ DUCTILE_INLINE void Member::leave() {
 DUCTILE_INLINE void Member::require_possible() {
     if (is_missing_) throw std::logic_error("Member.body: must be in the World: World::add it");
     if ((dBodyIsKinematic(user_) != 0) != description().clamped()) {
-        throw std::logic_error("Member.body: must be kinematic where the member is clamped, and "
-                               "nowhere else");
+        throw std::logic_error(
+            "Member.body: must be kinematic where the member is clamped, and "
+            "nowhere else");
     }
     if (description().clamped()) {
         if (!is_zero(linear_velocity(user_)) || !is_zero(angular_velocity(user_))) {
@@ -184,9 +186,8 @@ DUCTILE_INLINE void Member::find_holds() {
         for (int k = 0, count = dBodyGetNumJoints(body); k < count; ++k) {
             const dJointID joint = dBodyGetJoint(body, k);
             const bool own =
-                std::any_of(joints_.begin(), joints_.end(), [joint](const OpenSection& open) {
-                    return open.hinge->id() == joint;
-                });
+                std::any_of(joints_.begin(), joints_.end(),
+                            [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
             holds_.push_back({joint, body, segment_of(joint, i)});
         }

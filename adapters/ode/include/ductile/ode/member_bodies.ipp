@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of member.hpp: pieces, the joints between them, what holds on to them. A part of member.ipp.
+// Bodies of member.hpp: pieces, the joints between them, what holds on to them. A part of
+// member.ipp.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
 
@@ -46,8 +49,8 @@ DUCTILE_INLINE void copy_manners(dBodyID from, dBodyID body) {
     dBodySetAutoDisableAngularThreshold(body, dBodyGetAutoDisableAngularThreshold(from));
     dBodySetAutoDisableSteps(body, dBodyGetAutoDisableSteps(from));
     dBodySetAutoDisableTime(body, dBodyGetAutoDisableTime(from));
-    dBodySetAutoDisableAverageSamplesCount(
-        body, unsigned(dBodyGetAutoDisableAverageSamplesCount(from)));
+    dBodySetAutoDisableAverageSamplesCount(body,
+                                           unsigned(dBodyGetAutoDisableAverageSamplesCount(from)));
     dBodySetLinearDamping(body, dBodyGetLinearDamping(from));
     dBodySetLinearDampingThreshold(body, dBodyGetLinearDampingThreshold(from));
     dBodySetAngularDamping(body, dBodyGetAngularDamping(from));
@@ -76,15 +79,23 @@ DUCTILE_INLINE void attach_ball(dJointID joint, dBodyID first, dBodyID second) {
     if (other != nullptr) dBodyGetPosRelPoint(other, b[0], b[1], b[2], in_other);
     dJointSetBallAnchor2(joint, in_other[0], in_other[1], in_other[2]);
 }
-/// Its angle goes on.
-DUCTILE_INLINE void attach_hinge(dJointID joint, dBodyID first, dBodyID second) {
+/// Its angle goes on: ODE begins to count where the axis is set, so that is done where the angle is
+/// zero (its dJointSetHingeAxisOffset is right for bodies that are turned alike alone).
+DUCTILE_INLINE void attach_hinge(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) {
     dVector3 anchor, axis;
     dJointGetHingeAnchor(joint, anchor);
     dJointGetHingeAxis(joint, axis);
     const dReal angle = dJointGetHingeAngle(joint);
     dJointAttach(joint, first, second);
     dJointSetHingeAnchor(joint, anchor[0], anchor[1], anchor[2]);
-    dJointSetHingeAxisOffset(joint, axis[0], axis[1], axis[2], angle);
+    WorldSnapshot pose;
+    pose.take(std::span(&changed, 1), {});
+    dMatrix3 back, turned;
+    dRFromAxisAndAngle(back, axis[0], axis[1], axis[2], changed == first ? -angle : angle);
+    dMultiply0_333(turned, back, dBodyGetRotation(changed));
+    dBodySetRotation(changed, turned);
+    dJointSetHingeAxis(joint, axis[0], axis[1], axis[2]);
+    pose.put_poses_back();
 }
 /// A joint of the user's that `from` has goes to `to`.
 DUCTILE_INLINE void hand_over(dJointID joint, dBodyID from, dBodyID to) {
@@ -95,7 +106,7 @@ DUCTILE_INLINE void hand_over(dJointID joint, dBodyID from, dBodyID to) {
         case dJointTypeBall:
             return attach_ball(joint, bodies[0], bodies[1]);
         case dJointTypeHinge:
-            return attach_hinge(joint, bodies[0], bodies[1]);
+            return attach_hinge(joint, bodies[0], bodies[1], to);
         default:
             dJointAttach(joint, bodies[0], bodies[1]);
             dJointSetFixed(joint);

@@ -23,8 +23,8 @@ namespace ductile::ode {
 class MemberGeoms {
   public:
     /// `whole`, which is straight, is at `in_body` in the user's body.
-    MemberGeoms(dBodyID user, const ductile::Member& member, const MemberBox& box, const MemberPiece& whole,
-                const JointFrame<double>& in_body);
+    MemberGeoms(dBodyID user, const ductile::Member& member, const MemberBox& box,
+                const MemberPiece& whole, const JointFrame<double>& in_body);
     MemberGeoms(const MemberGeoms&) = delete;
     MemberGeoms& operator=(const MemberGeoms&) = delete;
 

@@ -28,8 +28,7 @@ DUCTILE_INLINE void Member::apply_forces() {
         const dBodyID body = body_of(force.at.segment);
         if (!can_move(body)) continue;
         const JointFrame<double> segment = pose(force.at.segment);
-        const Vector3<double> place =
-            sum(segment.origin, times(segment.axes, force.at.in_segment));
+        const Vector3<double> place = sum(segment.origin, times(segment.axes, force.at.in_segment));
         const Vector3<double> arm = difference(place, to_core(dBodyGetPosition(body)));
         add_force(body, force.force, cross(arm, force.force));
     }
@@ -171,17 +170,21 @@ DUCTILE_INLINE void Member::read_steps(double dt) {
         }
         if (!before.solved) continue;
         const dBodyID body = pieces_[i].body;
-        step.change = {difference(before.after.velocity, before.motion.velocity),
-                       difference(before.after.spin, before.motion.spin)};
+        step.change.velocity = difference(before.after.velocity, before.motion.velocity);
         if (dBodyGetGravityMode(body) != 0) {
             step.change.velocity = difference(step.change.velocity, fallen);
         }
         step.spin = before.motion.spin;
-        if (dBodyGetGyroscopicMode(body) != 0) step.dt = dt;
-        if (pieces_[i].own) continue;
-        // its inertia is the user's
-        step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes),
-                                 times(before.inertia, step.change.spin));
+        // the body's inertia may be the user's, and ODE's gyroscopic moment is an implicit one
+        Vector3<double> about =
+            times(before.inertia, difference(before.after.spin, before.motion.spin));
+        if (dBodyGetGyroscopicMode(body) != 0) {
+            step.dt = dt;
+            const Vector3<double> own = times(piece.inertia_in_world(step.pose.axes), step.spin);
+            about = difference(about, sum(gyroscopic_impulse(body, before.inertia, step.spin, dt),
+                                          scaled(dt, cross(step.spin, own))));
+        }
+        step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);
     }
 }
 

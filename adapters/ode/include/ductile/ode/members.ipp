@@ -102,7 +102,7 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     if (members_.empty()) return;
     list_contacts(contacts);
     for (const Course& course : members_) require_named(course);
-    lent_.clear(); // not sooner: the ledger reads it when the step stands
+    lent_.clear();      // not sooner: the ledger reads it when the step stands
     borrowers_.clear(); // contacts of a step that was never looked at may be gone
     held_by_.clear();
     for (const Course& course : members_) course.of->before_solve(held_by_);

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "ductile/ductile.hpp"
-#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/divisible.hpp"
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/joint_constraint.hpp"

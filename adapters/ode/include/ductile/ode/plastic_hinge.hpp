@@ -41,9 +41,8 @@ class PlasticHinge final : public LinkJoint<Joint, JointConstraint> {
     /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
     /// or the frame is not finite or its axis has no length.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
-        : PlasticHinge(std::move(joint), world,
-                       Base::require_bodies("PlasticHinge", world, a, b), b,
-                       Base::frame_along("PlasticHinge.frame", frame.axis, frame.anchor)) {}
+        : PlasticHinge(std::move(joint), world, Base::require_bodies("PlasticHinge", world, a, b),
+                       b, Base::frame_along("PlasticHinge.frame", frame.axis, frame.anchor)) {}
 
     /// Frames in body `a` and in body `b`, or the static world: origin at the pivot, z along the
     /// hinge.

@@ -114,8 +114,8 @@ class World final : public SteppedWorld {
     /// To be called before the body is destroyed.
     void remove(dBodyID body);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
-    /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies of
-    /// a member that hang together is disabled.
+    /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies
+    /// of a member that hang together is disabled.
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
     void add_contact(dJointID joint, const dContact& contact);
