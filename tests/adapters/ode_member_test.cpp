@@ -836,3 +836,36 @@ TEST_CASE("a member, its World and ODE's may end in any order", "[ode][member]")
         dWorldStep(rig->id, dReal(1e-3));
     }
 }
+
+TEST_CASE("forces on bodies that end in the frame are forgotten with them", "[ode][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        BallOnPost scene(heavy_post(), 100, 2, tolerance);
+        const double dt = tolerance > 0 ? 1.0 / 60 : 1e-3;
+        int most = 0;
+        for (double t = 0; t < 0.7; t += dt) {
+            for (const dBodyID piece : scene.post->pieces()) {
+                if (dBodyIsKinematic(piece) == 0) dBodyAddForce(piece, 0, 0, dReal(0.1));
+            }
+            most = std::max(most, int(scene.post->pieces().size()));
+            scene.world.step(dt);
+        }
+        CHECK(most > 1);
+        CHECK(scene.post->absorbed_energy() > 50);
+    }
+}
+
+TEST_CASE("a member may be removed when it splits, and its world goes on", "[ode][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        BallOnPost scene(heavy_post(), 100, 2, tolerance);
+        bool removed = false;
+        scene.world.on_event([&](const JointEvent<double>& event) {
+            if (event.kind != EventKind::yielded || removed) return;
+            scene.world.remove(*scene.post);
+            removed = true;
+        });
+        scene.go(0.2, tolerance > 0 ? 1.0 / 60 : 1e-3);
+        CHECK(removed);
+        CHECK(scene.post->whole());
+        CHECK(dBodyGetLinearVel(scene.ball)[1] < 0.1); // the rest of it stands
+    }
+}

@@ -93,11 +93,11 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         dJointID joint;
         dBodyID body;
         int segment;
+        bool acts; ///< it is enabled
     };
     /// Of a piece, where the step solves it.
     struct Before {
         JointFrame<double> pose; ///< of its body
-        Matrix3<double> inertia; ///< of its body, world axes
         BodyMotion motion, after;
         bool solved = false;
     };

@@ -189,7 +189,7 @@ DUCTILE_INLINE void Member::find_holds() {
                 std::any_of(joints_.begin(), joints_.end(),
                             [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
-            holds_.push_back({joint, body, segment_of(joint, i)});
+            holds_.push_back({joint, body, segment_of(joint, i), dJointIsEnabled(joint) != 0});
         }
     }
 }

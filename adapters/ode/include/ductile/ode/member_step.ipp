@@ -42,7 +42,6 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
         before.pose = detail::frame_of(piece.body);
         before.solved = can_move(piece.body) && dBodyIsEnabled(piece.body) != 0;
         if (!before.solved) continue;
-        before.inertia = inertia(piece.body);
         before.motion = detail::motion_of(piece.body);
     }
 }
@@ -85,6 +84,7 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
         all += dt * norm(wrench_of(*touch.feedback, touch.of_a).force);
     }
     for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
         add(wrench_of(*dJointGetFeedback(hold.joint), attached_bodies(hold.joint).a == hold.body));
     }
     for (const OpenSection& open : joints_) {
@@ -133,6 +133,7 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
         add_load(wrench_of(*touch.feedback, touch.of_a), touch.segment, dt);
     }
     for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
         const bool of_a = attached_bodies(hold.joint).a == hold.body;
         add_load(wrench_of(*dJointGetFeedback(hold.joint), of_a), hold.segment, dt);
     }
@@ -176,12 +177,14 @@ DUCTILE_INLINE void Member::read_steps(double dt) {
         }
         step.spin = before.motion.spin;
         // the body's inertia may be the user's, and ODE's gyroscopic moment is an implicit one
-        Vector3<double> about =
-            times(before.inertia, difference(before.after.spin, before.motion.spin));
+        dMass mass;
+        dBodyGetMass(body, &mass);
+        const Matrix3<double> inertia = sandwiched(before.pose.axes, matrix_to_core(mass.I));
+        Vector3<double> about = times(inertia, difference(before.after.spin, before.motion.spin));
         if (dBodyGetGyroscopicMode(body) != 0) {
             step.dt = dt;
             const Vector3<double> own = times(piece.inertia_in_world(step.pose.axes), step.spin);
-            about = difference(about, sum(gyroscopic_impulse(body, before.inertia, step.spin, dt),
+            about = difference(about, sum(gyroscopic_impulse(body, inertia, step.spin, dt),
                                           scaled(dt, cross(step.spin, own))));
         }
         step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);

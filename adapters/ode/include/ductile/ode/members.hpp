@@ -75,6 +75,7 @@ class Members {
   private:
     struct Course {
         Divisible* of;
+        std::vector<dBodyID> bodies{};
         std::vector<Touch> touches{};
         std::vector<int> found{};
     };
@@ -87,7 +88,7 @@ class Members {
     void note_bodies();
     [[nodiscard]] bool look(double dt, bool blow);
     void list_contacts(std::span<const NamedContact> contacts);
-    void require_named(const Course& course) const;
+    static void require_named(const Course& course);
     [[nodiscard]] const dJointFeedback* feedback_of(dJointID joint);
     void take_feedback_back();
 

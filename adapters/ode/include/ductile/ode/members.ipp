@@ -36,7 +36,8 @@ DUCTILE_INLINE void Members::note_bodies() {
     bodies_.clear();
     owners_.clear();
     for (std::size_t i = 0; i < members_.size(); ++i) {
-        for (dBodyID body : members_[i].of->bodies()) {
+        members_[i].bodies = members_[i].of->bodies();
+        for (dBodyID body : members_[i].bodies) {
             bodies_.push_back(body);
             owners_[body] = i;
         }
@@ -126,9 +127,9 @@ DUCTILE_INLINE void Members::list_contacts(std::span<const NamedContact> contact
         }
     }
 }
-DUCTILE_INLINE void Members::require_named(const Course& course) const {
+DUCTILE_INLINE void Members::require_named(const Course& course) {
     std::size_t contacts = 0;
-    for (dBodyID body : course.of->bodies()) {
+    for (dBodyID body : course.bodies) {
         for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
             contacts += dJointGetType(joint) == dJointTypeContact && dJointIsEnabled(joint) != 0;

@@ -137,6 +137,8 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
     if (meter_) meter_->remove(body);
     members_.body_left(body);
+    forces_.forget(body);
+    if (parts_ != nullptr) parts_->forget(body);
 }
 
 DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) {

@@ -66,6 +66,8 @@ class WorldParts final : public PartEngine {
     void begin(double length);
     /// It is over.
     void end();
+    /// To be called before a body is destroyed, in a frame too.
+    void forget(dBodyID body);
 
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;

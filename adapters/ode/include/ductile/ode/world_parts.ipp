@@ -79,6 +79,16 @@ DUCTILE_INLINE void WorldParts::leave() {
     driven_.clear();
 }
 
+DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
+    const auto is_it = [body](const auto& kept) { return kept.body == body; };
+    forces_.forget(body);
+    resting_.forget(body);
+    std::erase(asleep_, body);
+    std::erase_if(damped_, is_it);
+    std::erase_if(driven_, is_it);
+    std::erase_if(last_driven_, is_it);
+}
+
 DUCTILE_INLINE void WorldParts::begin_driven() {
     for (dBodyID body : of_.bodies) {
         if (dBodyIsKinematic(body) == 0) continue;
