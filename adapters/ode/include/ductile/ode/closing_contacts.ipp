@@ -162,9 +162,10 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const Vector3<double> of_a = sum(linear_velocity(a), cross(angular_velocity(a), arm_a));
         const Vector3<double> of_b = sum(linear_velocity(b), cross(angular_velocity(b), arm_b));
         const double speed = dot(normal, difference(of_b, of_a));
+        if (!(speed > 0)) continue;
         const double yields =
             detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
-        if (!(speed > 0) || !(yields > 0)) continue;
+        if (!(yields > 0)) continue;
         touches_.push_back({closed_depth - double(named.contact.geom.depth), speed,
                             speed * speed / (2 * yields), is_new});
     }

@@ -58,7 +58,7 @@ DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& 
     return nullptr;
 }
 DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
-    if (members_.empty()) return false;
+    if (members_.empty() || a == nullptr || b == nullptr) return false;
     const auto of_a = owners_.find(a), of_b = owners_.find(b);
     return of_a != owners_.end() && of_b != owners_.end() && of_a->second == of_b->second &&
            members_[of_a->second].of->hangs_together(a, b);
