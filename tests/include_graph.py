@@ -23,7 +23,7 @@ ALLOWED = {
     "solve": {"vocabulary", "numeric"},
     "frame": {"vocabulary"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
-    "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint"},
+    "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint", "world"},
     "world": {"vocabulary", "fracture", "joint", "fidelity", "solve", "frame"},
     "fidelity": {"vocabulary", "material", "section", "law", "fracture", "joint"},
     "structure": {"vocabulary", "numeric", "material", "section", "law", "surface", "fracture", "joint", "member",

@@ -11,6 +11,9 @@
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
+#include <ductile/ode/member.ipp>
+#include <ductile/ode/member_geoms.ipp>
+#include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>
 #include <ductile/ode/plastic_motor.ipp>

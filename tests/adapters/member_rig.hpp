@@ -186,13 +186,4 @@ struct BallOnPost {
     }
 };
 
-inline Member heavy_post(int segments = 10, double strength = 500) {
-    MemberParameters p;
-    p.segments = lumped_segments(2, 24, segments, {1e-4, 1e-4, 2e-4});
-    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
-    p.sections.assign(p.segments.size() - 1,
-                      UsualAxisJoint(Perfect<double>({.strength = strength})));
-    return Member(p);
-}
-
 } // namespace ductile::test

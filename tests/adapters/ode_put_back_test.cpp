@@ -41,6 +41,7 @@ struct Pile {
     std::vector<ode::NamedContact> contacts;
     std::optional<ode::ContactMaker> maker;
     ode::EnergyMeter meter{engine.id};
+    ode::Members members; ///< none
     ode::IslandSolver islands;
     ode::WorldParts parts{{.world = engine.id,
                            .bodies = bodies,
@@ -48,6 +49,7 @@ struct Pile {
                            .contacts = contacts,
                            .maker = maker,
                            .meter = meter,
+                           .members = members,
                            .solve = [this](double dt) { solve(dt); },
                            .book = [this](double dt) { book(dt); },
                            .number = [](const ode::PlasticConstraint&) { return 0u; },

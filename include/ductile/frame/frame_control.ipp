@@ -133,7 +133,6 @@ DUCTILE_INLINE void FrameControl::forget_accelerations() noexcept {
 
 /// Does a part of `h` or less, not past `gap`, of the frame's `left`; returns its length [s].
 DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double gap, double left) {
-    constexpr int tries_at_gaps = 6;
     const double shortest = engine.shortest_part();
     const bool at_gap = gap < h;
     if (at_gap) h = std::max(gap, detail::hair * shortest);

@@ -39,6 +39,9 @@ struct ClosingContacts {
     double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
 };
 
+/// How often a part is put back for gaps that closed in it unforeseen.
+inline constexpr int tries_at_gaps = 6;
+
 class PartEngine {
   public:
     /// False where the coming part will stand, as far as can be told before it: nothing is near its

@@ -51,6 +51,12 @@ struct MemberParameters {
     double bending_stiffness = std::numeric_limits<double>::infinity();
 };
 
+/// On the axis of a segment. Plain value.
+struct MemberPlace {
+    int segment = 0;
+    Vector3<double> in_segment = Vector3<double>::Zero(); ///< from its middle, its axes [m]
+};
+
 /// Immutable.
 class Member {
   public:
@@ -116,6 +122,17 @@ class Member {
             end += segment(k + 1).length;
         }
         return k;
+    }
+    /// The same, and where in it; `name`: what is asked for.
+    /// @throws std::invalid_argument where that is beyond the ends.
+    [[nodiscard]] MemberPlace on_axis(const char* name, double place) const {
+        const double hair = 1e-9 * length_; // lengths of segments add up with round-off
+        if (!(place >= -hair && place <= length_ + hair)) {
+            check::between(name, place, 0.0, length_, "m", true);
+        }
+        const int k = segment_at(place);
+        const double middle = (k > 0 ? this->place(k - 1) : 0) + segment(k).length / 2;
+        return {k, {0, 0, place - middle}};
     }
 
   private:

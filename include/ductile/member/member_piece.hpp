@@ -20,6 +20,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -94,6 +95,27 @@ struct MemberPiece {
         return along_axes({1 / inertia[0], 1 / inertia[1], 1 / inertia[2]}, axes);
     }
 };
+
+/// The segment of a piece at `pose` that is nearest to `point`, both in the world; not one that has
+/// no length.
+[[nodiscard]] inline int nearest_segment(const Member& member, const MemberPiece& piece,
+                                         const JointFrame<double>& pose,
+                                         const Vector3<double>& point) {
+    int nearest = piece.run.last;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = piece.run.first; k <= piece.run.last; ++k) {
+        if (member.segment(k).held) continue;
+        const JointFrame<double> segment = placed(pose, piece.segment(k));
+        Vector3<double> off = transposed_times(segment.axes, difference(point, segment.origin));
+        const double half = member.segment(k).length / 2;
+        off[2] -= std::clamp(off[2], -half, half);
+        const double away = dot(off, off);
+        if (away >= least) continue;
+        least = away;
+        nearest = k;
+    }
+    return nearest;
+}
 
 /// `state` says how far the sections within the run are bent.
 [[nodiscard]] inline MemberPiece make_piece(const Member& member, const MemberState& state,

@@ -16,7 +16,6 @@
 #include "ductile/bullet/local_tick.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/member.hpp"
-#include "ductile/bullet/member_book.hpp"
 #include "ductile/bullet/member_snapshot.hpp"
 #include "ductile/bullet/member_tick.hpp"
 #include "ductile/bullet/members.hpp"

@@ -35,13 +35,20 @@
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/joint/usual_joints.hpp"
-#include "ductile/member/member_course.hpp"
+#include "ductile/member/divided_member.hpp"
 #include "ductile/vocabulary/linkage.hpp"
-#include "ductile/world/joint_report.hpp"
 
 namespace ductile::bullet {
 
-class Member {
+/// A section that flows, or did.
+struct OpenSection {
+    int section;
+    std::unique_ptr<btJointFeedback> feedback;
+    std::unique_ptr<PlasticHinge<UsualAxisJoint>> hinge;
+};
+
+/// What it says of its sections: member/divided_member.hpp. All of it: member_snapshot.hpp.
+class Member : public DividedMember<OpenSection> {
   public:
     /// Makes a constraint between a body of the member and whatever it holds; `place`: in that
     /// body, axes of the member.
@@ -62,28 +69,12 @@ class Member {
     /// Null for a body that belongs to no member.
     [[nodiscard]] static Member* of(const btCollisionObject* object);
 
-    [[nodiscard]] const ductile::Member& description() const noexcept { return course_.member(); }
-    [[nodiscard]] bool whole() const noexcept { return course_.whole(); }
-    [[nodiscard]] int open_sections() const noexcept { return course_.open_sections(); }
     /// Bodies that it is now, from its start, but for the ground at a held one.
     [[nodiscard]] std::vector<btRigidBody*> pieces() const;
     /// The body that has a segment now.
     [[nodiscard]] btRigidBody& body_of(int segment) const;
     /// Middle of a segment, axes of the member: what to draw.
     [[nodiscard]] btTransform pose(int segment) const;
-    /// Of a section, accumulated plastic rotation [rad], and how far it is bent now [rad].
-    [[nodiscard]] double plastic_rotation(int section) const;
-    [[nodiscard]] double bend(int section) const;
-    /// By all sections, what blows leave in vibration left out [J].
-    [[nodiscard]] double absorbed_energy() const;
-    /// What an elastic member gives back of what its sections took (member/blow.hpp) [J].
-    [[nodiscard]] double vibration() const noexcept { return course_.vibration().lost; }
-    /// All of it: member_snapshot.hpp.
-    [[nodiscard]] MemberState state() const;
-    /// Largest share of what acted on it that was left over in the last step that was looked at
-    /// closely (internal_forces.hpp): impulses that it does not know of.
-    [[nodiscard]] double left_over() const noexcept { return course_.left_over(); }
-
     /// A constraint at `place` [m] along the member, on its axis, now and whenever bodies change.
     /// To be called before it is added to a World.
     /// @throws std::invalid_argument where the place is beyond the ends or nothing is made;
@@ -96,12 +87,6 @@ class Member {
     friend class Members;
     friend class MemberSnapshot;
     friend class MemberTick;
-    using Hinge = PlasticHinge<UsualAxisJoint>;
-    struct OpenSection {
-        int section;
-        std::unique_ptr<btJointFeedback> feedback;
-        std::unique_ptr<Hinge> hinge;
-    };
     struct Attachment {
         double place;
         int segment;
@@ -110,21 +95,13 @@ class Member {
         std::unique_ptr<btJointFeedback> feedback;
         const btRigidBody* body = nullptr; ///< of the constraint
     };
-    struct Force {
-        Vector3<double> force;
-        int segment;
-        Vector3<double> in_segment;
-    };
     [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
     [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
-    [[nodiscard]] JointReport<double> report() const;
-    void require_place(const char* name, double place) const;
     void require_possible() const;
     void require_free(const btDiscreteDynamicsWorld& world) const;
     void enter(btDiscreteDynamicsWorld& world);
     void leave();
-    void note_sections();
     void open(std::span<const int> sections, bool ahead);
     void close(std::span<const int> sections, bool ahead);
     void become(const std::vector<PlacedPiece>& pieces, bool ahead);
@@ -136,7 +113,6 @@ class Member {
     void note_broken();
 
     btRigidBody& user_;
-    MemberCourse course_;
     std::unique_ptr<PieceMaker> maker_;
     JointFrame<double> held_; ///< where a held segment is
     btDiscreteDynamicsWorld* world_ = nullptr;
@@ -146,9 +122,7 @@ class Member {
     std::vector<PieceBody> pieces_;    ///< by piece
     PassingBodies passing_;            ///< of them; ends before they do
     int broken_ = 0;                   ///< sections
-    std::vector<OpenSection> joints_;
     std::vector<Attachment> attachments_;
-    std::vector<Force> forces_;
 };
 
 } // namespace ductile::bullet

@@ -11,29 +11,12 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/member.hpp"
-#include "ductile/bullet/member_book.hpp"
-#include "ductile/vocabulary/check.hpp"
 
 namespace ductile::bullet {
 
-namespace detail {
-
-/// PlasticHinge turns about z, a member bends about x.
-[[nodiscard]] DUCTILE_INLINE btTransform hinge_frame(const JointFrame<double>& frame) {
-    Matrix3<double> axes;
-    for (int i = 0; i < 3; ++i) {
-        axes(i, 0) = frame.axes(i, 1);
-        axes(i, 1) = frame.axes(i, 2);
-        axes(i, 2) = frame.axes(i, 0);
-    }
-    return to_bullet(JointFrame<double>{frame.origin, axes});
-}
-
-} // namespace detail
-
 DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
                               const btTransform& start_in_body, const MemberBox& box)
-    : user_(body), course_(std::move(member)) {
+    : DividedMember(std::move(member)), user_(body) {
     const ductile::Member& of = description();
     if (body.isKinematicObject()) {
         throw std::invalid_argument("Member.body: must not be kinematic");
@@ -46,42 +29,25 @@ DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
     if (Member::of(&body) != nullptr) {
         throw std::invalid_argument("Member.body: must not be a member already");
     }
-    if (box.half_width != 0 || box.half_height != 0) {
-        check::positive("Member.box.half_width", box.half_width, "m");
-        check::positive("Member.box.half_height", box.half_height, "m");
-    }
+    box.validate();
     const MemberPiece& whole = course_.pieces().front();
     const JointFrame<double> start = to_core(start_in_body);
-    JointFrame<double> whole_in_body = frame_around(start, whole.section(of, 0, false));
-    if (!of.clamped()) {
-        constexpr double share = 1e-3;
-        const auto mass = double(body.getMass());
-        if (!(std::abs(mass - of.mass()) <= share * of.mass())) {
-            check::fail("Member.body.mass", mass, "kg",
-                        "that of the member, " + number_text(of.mass(), 6) + " kg");
-        }
-        const double off = norm(whole_in_body.origin);
-        if (!(off <= share * of.length())) {
-            check::fail("Member.start_in_body", off, "m",
-                        "0: the member's centre is to be the body's");
-        }
-        whole_in_body.origin.setZero();
-    }
-    maker_ = std::make_unique<PieceMaker>(body, of, box, whole_in_body);
+    const JointFrame<double> in_body = whole_in_body(of, whole, start, double(body.getMass()));
+    maker_ = std::make_unique<PieceMaker>(body, of, box, in_body);
     held_ = placed(to_core(body.getCenterOfMassTransform()), start);
     pieces_.push_back({&user_, nullptr, nullptr, whole.run});
-    detail::MemberBook::all().enter(&user_, this);
+    MemberBook<Member>::all().enter(&user_, this);
 }
 
 DUCTILE_INLINE Member::~Member() {
     if (const auto ends = std::exchange(ends_, nullptr)) ends();
     leave();
-    for (const PieceBody& piece : pieces_) detail::MemberBook::all().leave(piece.body);
-    detail::MemberBook::all().leave(&user_);
+    for (const PieceBody& piece : pieces_) MemberBook<Member>::all().leave(piece.body);
+    MemberBook<Member>::all().leave(&user_);
 }
 
 DUCTILE_INLINE Member* Member::of(const btCollisionObject* object) {
-    return detail::MemberBook::all().find(object);
+    return MemberBook<Member>::all().find(object);
 }
 
 // ---- what it says
@@ -103,71 +69,22 @@ DUCTILE_INLINE btTransform Member::pose(int segment) const {
     return to_bullet(placed(frame_of(piece), course_.pieces()[piece].segment(segment)));
 }
 
-DUCTILE_INLINE double Member::plastic_rotation(int section) const {
-    return state()[std::size_t(section)].joint.plastic_travel;
-}
-
-DUCTILE_INLINE double Member::bend(int section) const { return state()[std::size_t(section)].bend; }
-
-DUCTILE_INLINE MemberState Member::state() const {
-    MemberState state = course_.state();
-    for (const OpenSection& open : joints_) {
-        SectionState& section = state[std::size_t(open.section)];
-        section.joint = open.hinge->joint().state();
-        section.bend = open.hinge->rotation();
-    }
-    return state;
-}
-
-DUCTILE_INLINE double Member::absorbed_energy() const {
-    double sum = course_.closed_work() - vibration();
-    for (const OpenSection& open : joints_) sum += open.hinge->absorbed_energy();
-    return sum;
-}
-
-DUCTILE_INLINE JointReport<double> Member::report() const {
-    JointReport<double> all;
-    for (const OpenSection& open : joints_) {
-        const JointReport<double> report = open.hinge->queries().report();
-        all.first_yield = all.first_yield || report.first_yield;
-        all.coarse = all.coarse || report.coarse;
-        all.residual = std::max(all.residual, report.residual);
-        all.step_error = std::max(all.step_error, report.step_error);
-        all.plastic_travel += report.plastic_travel;
-        if (int(report.outcome) > int(all.outcome)) all.outcome = report.outcome;
-        if (report.fracture) all.fracture = report.fracture;
-    }
-    all.absorbed_energy = absorbed_energy();
-    all.plastic_travel += course_.closed_travel();
-    return all;
-}
-
 // ---- its life
-
-/// Lengths of segments add up with round-off.
-DUCTILE_INLINE void Member::require_place(const char* name, double place) const {
-    const double length = description().length(), hair = 1e-9 * length;
-    if (place >= -hair && place <= length + hair) return;
-    check::between(name, place, 0.0, length, "m", true);
-}
 
 DUCTILE_INLINE void Member::attach(double place, Maker maker) {
     if (world_ != nullptr) {
         throw std::logic_error("Member.attach: must be called before the member is in a World");
     }
-    require_place("Member.attach.place", place);
-    attachments_.push_back({place, description().segment_at(place), std::move(maker), nullptr,
-                            std::make_unique<btJointFeedback>()});
+    const int segment = description().on_axis("Member.attach.place", place).segment;
+    attachments_.push_back(
+        {place, segment, std::move(maker), nullptr, std::make_unique<btJointFeedback>()});
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
-    require_place("Member.apply_force.place", place);
-    const int segment = description().segment_at(place);
-    const double middle = (segment > 0 ? description().place(segment - 1) : 0) +
-                          description().segment(segment).length / 2;
+    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
     if (forces_.empty() && pushed_) pushed_();
-    forces_.push_back({to_core(force), segment, {0, 0, place - middle}});
-    body_of(segment).activate();
+    forces_.push_back({to_core(force), at});
+    body_of(at.segment).activate();
 }
 
 DUCTILE_INLINE void Member::require_possible() const {
@@ -257,16 +174,6 @@ DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
             times(all[0].piece->inverse_inertia_in_world(all[0].pose.axes), to_core(about));
     }
     return all;
-}
-
-/// Into the course's state what the joints of open sections went through.
-DUCTILE_INLINE void Member::note_sections() {
-    for (const OpenSection& open : joints_) {
-        SectionState& section = course_.section(open.section);
-        section.joint = open.hinge->joint().state();
-        if (!open.hinge->is_awake_member()) section.joint.flowing = false; // not any more
-        section.bend = open.hinge->rotation();
-    }
 }
 
 DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ductile/bullet/convert.hpp"
-#include "ductile/bullet/member_book.hpp"
 
 namespace ductile::bullet {
 
@@ -46,7 +45,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     }
     for (PieceBody& piece : old) {
         if (piece.own == nullptr) continue;
-        detail::MemberBook::all().leave(piece.body);
+        MemberBook<Member>::all().leave(piece.body);
         world_->removeRigidBody(piece.body);
     }
     if (pieces.size() == 1) {
@@ -56,7 +55,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             if (made[i] == nullptr) continue;
             pieces_[i] = maker_->make(*made[i]);
-            if (pieces_[i].own != nullptr) detail::MemberBook::all().enter(pieces_[i].body, this);
+            if (pieces_[i].own != nullptr) MemberBook<Member>::all().enter(pieces_[i].body, this);
         }
         let_pieces_pass();
     }
@@ -92,18 +91,15 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
         const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
         const JointFrame<double> in_lower = lower.section(description(), section, true);
         const bool ground = pieces_[i].own == nullptr;
-        const btTransform frame = detail::hinge_frame(ground ? placed(held_, in_lower) : in_lower);
+        const btTransform frame =
+            to_bullet(hinge_frame(ground ? placed(held_, in_lower) : in_lower));
         OpenSection open{section, std::make_unique<btJointFeedback>(), nullptr};
-        open.hinge = std::make_unique<Hinge>(
+        open.hinge = std::make_unique<PlasticHinge<UsualAxisJoint>>(
             *pieces_[i + 1].body, *pieces_[i].body,
-            detail::hinge_frame(upper.section(description(), section + 1, false)), frame,
+            to_bullet(hinge_frame(upper.section(description(), section + 1, false))), frame,
             description().section(section), Meeting::as_they_are);
-        Hinge& hinge = *open.hinge;
-        Hinge::State state = hinge.state();
-        const double bend = state.joint.plastic_offset;
-        state.joint = course_.section(section).joint;
-        state.joint.plastic_offset = bend;
-        hinge.restore(state);
+        PlasticHinge<UsualAxisJoint>& hinge = *open.hinge;
+        go_on(hinge, course_.section(section));
         hinge.setJointFeedback(open.feedback.get());
         hinge.set_ahead(ahead);
         hinge.add_to(*world_);

@@ -19,7 +19,7 @@ DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
                            piece.body->getAngularVelocity()});
     }
     for (std::size_t i = 0; i + 1 < member.pieces_.size(); ++i) {
-        for (const Member::OpenSection& open : member.joints_) {
+        for (const OpenSection& open : member.joints_) {
             if (open.section == member.pieces_[i].run.last) joints_.push_back(open.hinge->state());
         }
     }

@@ -73,10 +73,6 @@ class MemberTick final : public Divisible {
                                         const btVector3& gravity) const;
     [[nodiscard]] bool is_plain() const;
     void finish_steps(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
-    [[nodiscard]] static int segment_at(const Member& member, std::size_t piece,
-                                        const JointFrame<double>& pose,
-                                        const Vector3<double>& point);
-
     Member& member_;
     std::vector<PieceStep> steps_;
     std::vector<Touch> touches_;

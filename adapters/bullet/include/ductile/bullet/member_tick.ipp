@@ -25,7 +25,7 @@ DUCTILE_INLINE double MemberTick::closed_work() const { return member_.course_.c
 DUCTILE_INLINE double MemberTick::unmissed_work() const { return member_.course_.unmissed_work(); }
 
 DUCTILE_INLINE const void* MemberTick::key_of(const PlasticConstraint& joint, int& section) const {
-    for (const Member::OpenSection& open : member_.joints_) {
+    for (const OpenSection& open : member_.joints_) {
         if (open.hinge.get() != &joint) continue;
         section = open.section;
         return &member_;
@@ -34,12 +34,12 @@ DUCTILE_INLINE const void* MemberTick::key_of(const PlasticConstraint& joint, in
 }
 
 DUCTILE_INLINE void MemberTick::apply_forces() {
-    for (const Member::Force& force : member_.forces_) {
-        btRigidBody& body = member_.body_of(force.segment);
+    for (const auto& force : member_.forces_) {
+        btRigidBody& body = member_.body_of(force.at.segment);
         if (body.isStaticObject()) continue;
-        const btTransform pose = member_.pose(force.segment);
+        const btTransform pose = member_.pose(force.at.segment);
         body.applyForce(to_bullet(force.force),
-                        pose * to_bullet(force.in_segment) - body.getCenterOfMassPosition());
+                        pose * to_bullet(force.at.in_segment) - body.getCenterOfMassPosition());
     }
 }
 DUCTILE_INLINE void MemberTick::drop_forces() { member_.forces_.clear(); }
@@ -195,26 +195,6 @@ DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const Body
     return sum * (1 + hair);
 }
 
-DUCTILE_INLINE int MemberTick::segment_at(const Member& member, std::size_t piece,
-                                          const JointFrame<double>& pose,
-                                          const Vector3<double>& point) {
-    const MemberPiece& of = member.course_.pieces()[piece];
-    int nearest = of.run.last;
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = of.run.first; k <= of.run.last; ++k) {
-        if (member.description().segment(k).held) continue;
-        const JointFrame<double> segment = placed(pose, of.segment(k));
-        Vector3<double> off = transposed_times(segment.axes, difference(point, segment.origin));
-        const double half = member.description().segment(k).length / 2;
-        off[2] -= std::clamp(off[2], -half, half);
-        const double away = dot(off, off);
-        if (away >= least) continue;
-        least = away;
-        nearest = k;
-    }
-    return nearest;
-}
-
 DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifold, bool of_a,
                                              std::span<const BodyBefore> before) {
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
@@ -229,7 +209,8 @@ DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifol
         if (contact.impulse.isZero()) continue;
         MemberLoad& load = loads_.emplace_back();
         load.point = to_core(contact.at);
-        load.segment = segment_at(member, piece, steps_[piece].pose, load.point);
+        load.segment = nearest_segment(member.description(), member.course_.pieces()[piece],
+                                       steps_[piece].pose, load.point);
         load.impulse = to_core(contact.impulse);
         strike_.energy += contact.energy;
         if (contact.closing > strike_.speed) {
@@ -265,7 +246,7 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         if (!solved) continue;
         add(constraint, member.course_.piece_of(attachment.segment), attachment.segment);
     }
-    for (const Member::OpenSection& open : member.joints_) {
+    for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;
         const std::size_t lower = member.course_.piece_of(open.section);
         if (member.pieces_[lower].own != nullptr) add(*open.hinge, lower, open.section);
@@ -275,16 +256,11 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
 
 DUCTILE_INLINE void MemberTick::read_forces(double dt, bool lists) {
     const Member& member = member_;
-    for (const Member::Force& force : member.forces_) {
+    for (const auto& force : member.forces_) {
         sum_ += dt * norm(force.force);
         if (!lists) continue;
-        const std::size_t piece = member.course_.piece_of(force.segment);
-        const JointFrame<double> at =
-            placed(steps_[piece].pose, member.course_.pieces()[piece].segment(force.segment));
-        MemberLoad& load = loads_.emplace_back();
-        load.segment = force.segment;
-        load.point = sum(at.origin, times(at.axes, force.in_segment));
-        load.impulse = scaled(dt, force.force);
+        const std::size_t piece = member.course_.piece_of(force.at.segment);
+        loads_.push_back(member.load(force, steps_[piece].pose, dt));
     }
 }
 

@@ -13,16 +13,12 @@
 #include <memory>
 #include <vector>
 
-#include "ductile/member/member_piece.hpp"
+#include "ductile/member/divided_member.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
-/// Of the boxes that pieces collide with, along x and y of the member [m], > 0; both 0: pieces
-/// collide with nothing.
-struct MemberBox {
-    double half_width = 0, half_height = 0;
-};
+using ductile::MemberBox;
 
 /// Friction, restitution, damping, factors, flags and the user's pointers of one body for another.
 void copy_manners(const btRigidBody& from, btRigidBody& body);

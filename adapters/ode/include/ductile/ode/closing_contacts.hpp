@@ -46,9 +46,11 @@ inline constexpr double closed_depth = 1e-4;
 
 class ClosingContactsFinder {
   public:
-    /// The contacts of the bodies as they are, of islands of these joints.
+    /// The contacts of the bodies as they are, of islands of these joints and of bodies of
+    /// `members`, which are struck like them.
     /// @throws std::logic_error where one has a contact that was not named.
-    void look(std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints);
+    void look(std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints,
+              std::span<const dBodyID> members);
     /// Which bodies have contacts now, so that others are new.
     void remember() { before_ = pairs_; }
     /// After the solve: how hard the contacts of the part push, by their joints' feedback.
@@ -95,9 +97,9 @@ class ClosingContactsFinder {
     [[nodiscard]] static Mates mates(const NamedContact& named);
     using Push = std::pair<Mates, double>; ///< with its force [N]
     void find_islands(std::span<const NamedContact> contacts,
-                      std::span<PlasticConstraint* const> joints);
+                      std::span<PlasticConstraint* const> joints, std::span<const dBodyID> members);
 
-    std::vector<dBodyID> island_;       ///< bodies that can move, of all of them, sorted
+    std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all, sorted
     std::vector<Touch> touches_;        ///< that close
     std::vector<Pair> pairs_, before_;  ///< of bodies with contacts, sorted
     std::vector<Mates> touching_;       ///< looked at, sorted

@@ -106,8 +106,9 @@ struct MovingGeom {
 
 } // namespace detail
 
-DUCTILE_INLINE void ClosingContactsFinder::find_islands(
-    std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints) {
+DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
+                                                        std::span<PlasticConstraint* const> joints,
+                                                        std::span<const dBodyID> members) {
     std::unordered_set<dBodyID> found;
     std::unordered_set<dJointID> named;
     for (const NamedContact& contact : contacts) named.insert(contact.joint);
@@ -115,6 +116,9 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(
     const auto add = [&](dBodyID body) {
         if (can_move(body) && found.insert(body).second) island_.push_back(body);
     };
+    for (dBodyID body : members) {
+        if (found.insert(body).second) island_.push_back(body);
+    }
     for (const PlasticConstraint* joint : joints) {
         if (joint->queries().broken() || dJointIsEnabled(joint->id()) == 0) continue;
         for (const int side : {0, 1}) add(dJointGetBody(joint->id(), side));
@@ -141,8 +145,9 @@ DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(dBodyID body) const {
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> contacts,
-                                                std::span<PlasticConstraint* const> joints) {
-    find_islands(contacts, joints);
+                                                std::span<PlasticConstraint* const> joints,
+                                                std::span<const dBodyID> members) {
+    find_islands(contacts, joints, members);
     touches_.clear();
     pairs_.clear();
     touching_.clear();
@@ -159,9 +164,10 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const Vector3<double> of_a = sum(linear_velocity(a), cross(angular_velocity(a), arm_a));
         const Vector3<double> of_b = sum(linear_velocity(b), cross(angular_velocity(b), arm_b));
         const double speed = dot(normal, difference(of_b, of_a));
+        if (!(speed > 0)) continue;
         const double yields =
             detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
-        if (!(speed > 0) || !(yields > 0)) continue;
+        if (!(yields > 0)) continue;
         touches_.push_back({closed_depth - double(named.contact.geom.depth), speed,
                             speed * speed / (2 * yields), is_new});
     }

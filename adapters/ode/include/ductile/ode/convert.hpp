@@ -45,6 +45,14 @@ namespace ductile::ode {
     return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>(0, 0, 0);
 }
 
+/// Of a world point of the body; null: the static world.
+[[nodiscard]] inline Vector3<double> velocity_at(dBodyID body,
+                                                 const Vector3<double>& point) noexcept {
+    if (body == nullptr) return Vector3<double>(0, 0, 0);
+    const Vector3<double> arm = difference(point, to_core(dBodyGetPosition(body)));
+    return sum(linear_velocity(body), cross(angular_velocity(body), arm));
+}
+
 /// The body as a joint at `point` (world) sees it; the static world and kinematic bodies cannot
 /// move.
 [[nodiscard]] inline BodyAtJoint<double> at_joint(dBodyID body,

@@ -14,7 +14,7 @@
 
 namespace ductile::ode {
 
-/// Not thread-safe. No body may be destroyed between `hold` and `apply`.
+/// Not thread-safe.
 class HeldForces {
   public:
     void hold(std::span<const dBodyID> bodies) {
@@ -26,6 +26,10 @@ class HeldForces {
     }
     void apply() const {
         for (const auto& [body, force, torque] : held_) add_force(body, force, torque);
+    }
+    /// To be called before a body is destroyed.
+    void forget(dBodyID body) {
+        std::erase_if(held_, [body](const Held& held) { return held.body == body; });
     }
     /// To these alone.
     void apply_to(std::span<const dBodyID> bodies) const {

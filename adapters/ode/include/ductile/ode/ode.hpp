@@ -4,10 +4,14 @@
 #pragma once
 
 #include "ductile/ductile.hpp"
+#include "ductile/ode/divisible.hpp"
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/joint_axes.hpp"
 #include "ductile/ode/joint_constraint.hpp"
+#include "ductile/ode/member.hpp"
+#include "ductile/ode/member_geoms.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/plastic_hinge.hpp"

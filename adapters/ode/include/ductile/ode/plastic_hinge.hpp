@@ -41,9 +41,17 @@ class PlasticHinge final : public LinkJoint<Joint, JointConstraint> {
     /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
     /// or the frame is not finite or its axis has no length.
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const HingeFrame& frame, Joint joint)
-        : PlasticHinge(std::move(joint), world,
-                       Base::require_bodies("PlasticHinge", world, a, b), b,
-                       Base::frame_along("PlasticHinge.frame", frame.axis, frame.anchor)) {}
+        : PlasticHinge(std::move(joint), world, Base::require_bodies("PlasticHinge", world, a, b),
+                       b, Base::frame_along("PlasticHinge.frame", frame.axis, frame.anchor)) {}
+
+    /// Frames in body `a` and in body `b`, or the static world: origin at the pivot, z along the
+    /// hinge.
+    /// @throws std::invalid_argument as above, and where the frames do not meet (joint_checks.hpp).
+    PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const JointFrame<double>& in_a,
+                 const JointFrame<double>& in_b, Joint joint)
+        : Base(Link<Joint>(std::move(joint), {axis}, Base::require_frame("in_a", in_a),
+                           Base::require_frame("in_b", in_b)),
+               world, Base::require_bodies("PlasticHinge", world, a, b), b) {}
 
     /// Angle of A relative to B about the axis, not wrapped [rad].
     [[nodiscard]] double rotation() const { return Base::position(axis); }

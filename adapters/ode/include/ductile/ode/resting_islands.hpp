@@ -29,6 +29,11 @@ class RestingIslands {
     /// Keeps ODE from counting until `end`.
     void begin(std::span<const dBodyID> bodies);
     void end();
+    /// To be called before a body is destroyed.
+    void forget(dBodyID body) {
+        std::erase_if(samples_, [body](const auto& entry) { return entry.first == body; });
+        idle_.erase(body);
+    }
     /// A frame of `length` [s] is over, its contacts are there. True where a body fell asleep.
     bool look(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> joints,
               double length);

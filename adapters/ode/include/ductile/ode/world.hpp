@@ -33,6 +33,10 @@
 // those of contacts are called in every part, also of those that are put back. Islands fall asleep
 // as a whole, told once a frame (resting_islands.hpp).
 //
+// Members (member.hpp) are one body until a section yields. While there are any, each step is kept
+// before it is done, and done again with more sections open until none that is closed is beyond its
+// strength. ODE's counters of steps and time until sleep count what was put back too.
+//
 // Not thread-safe. ODE's world must outlive every step; all else may end in any order.
 #pragma once
 
@@ -47,10 +51,13 @@
 
 #include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/energy_meter.hpp"
+#include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/island_solver.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/ode/world_parts.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/stepped_world.hpp"
 
@@ -79,6 +86,8 @@ class World final : public SteppedWorld {
     World(dWorldID world, WorldParameters parameters);
     /// Steps, collects events, and says nothing by itself; no ledger.
     explicit World(dWorldID world, Solver solver = Solver::direct);
+    /// Joints and members stay in ODE's world.
+    ~World();
 
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
@@ -92,13 +101,21 @@ class World final : public SteppedWorld {
     void add(SteppedConstraint& constraint);
     void remove(SteppedConstraint& constraint);
 
+    /// Looks after a member until it ends or is removed; its body is added where it was not.
+    /// @throws std::invalid_argument where it is in a world already, its body is of another one, a
+    /// joint that cannot go along holds that, or this World's solver is Solver::quick.
+    void add(Divisible& member, std::string name = {});
+    /// One that is open is one body first, bent as it is.
+    void remove(Divisible& member);
+
     /// Tells of a dynamic body: ODE does not say which a world has.
     /// @throws std::invalid_argument where it is null or here already.
     void add(dBodyID body);
     /// To be called before the body is destroyed.
     void remove(dBodyID body);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
-    /// islands with plastic joints are solved with it (island_solver.hpp).
+    /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies
+    /// of a member that hang together is disabled.
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
     void add_contact(dJointID joint, const dContact& contact);
@@ -120,7 +137,15 @@ class World final : public SteppedWorld {
         return tells_ledger_ ? &meter_->ledger() : nullptr;
     }
 
+    friend class Member;
+    /// Of a member: it is not reported by itself.
+    void take_in(PlasticConstraint& joint);
     void forget(PlasticConstraint& joint);
+    void step_with_members(double dt);
+    /// Does what changes bodies of members, and tells the ledger.
+    template <class Change>
+    void rearrange(const Change& change);
+    void tell_of_members();
     /// Of each plastic joint, by the first of those that hang together.
     [[nodiscard]] std::vector<std::size_t> islands() const;
     void start_frames(const WorldParameters& parameters);
@@ -143,6 +168,9 @@ class World final : public SteppedWorld {
     std::vector<dBodyID> bodies_;
     std::vector<NamedContact> contacts_; ///< of the coming step
     IslandSolver islands_;
+    Members members_;
+    WorldSnapshot snapshot_; ///< of a step, while there are members
+    HeldForces forces_;
     std::optional<ContactMaker> maker_;
     std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance
 };

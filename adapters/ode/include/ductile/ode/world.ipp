@@ -37,12 +37,19 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         .contacts = contacts_,
         .maker = maker_,
         .meter = *meter_,
+        .members = members_,
         .solve = [this](double dt) { solve(dt); },
         .book = [this](double dt) { book(dt); },
-        .number = [this](const PlasticConstraint& joint) { return supervisor().number(&joint); },
+        .number =
+            [this](const PlasticConstraint& joint) {
+                int section = 0;
+                const void* key = members_.key_of(joint, section);
+                return supervisor().number(key != nullptr ? key : &joint);
+            },
         .accept =
             [this](double h) {
                 let_go_of_broken();
+                tell_of_members(); // what opened did so as the part began
                 part_stands(h);
             },
     });
@@ -50,12 +57,20 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
 DUCTILE_INLINE World::World(dWorldID world, Solver solver)
     : World(world, WorldParameters{.solver = solver, .ledger = false, .warn = nullptr}) {}
 
+DUCTILE_INLINE World::~World() {
+    parts_.reset();
+    members_.leave();
+}
+
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
     const dBodyID body = dJointGetBody(joint.id(), 0);
     if (body != nullptr && dBodyGetWorld(body) != world_) {
         throw std::invalid_argument("World.add.joint: must be one between bodies of this world");
     }
     supervisor().add(&joint, std::move(name), [&joint] { return joint.queries().report(); });
+    take_in(joint);
+}
+DUCTILE_INLINE void World::take_in(PlasticConstraint& joint) {
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
     islands_.add(joint);
@@ -75,6 +90,26 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     islands_.remove(joint);
     if (meter_) meter_->remove(joint);
 }
+DUCTILE_INLINE void World::add(Divisible& member, std::string name) {
+    if (solver_ == Solver::quick) {
+        throw std::invalid_argument(
+            "World.add.member: must not be added to a World of Solver::quick, as what its sweeps "
+            "leave unsolved would yield");
+    }
+    member.enter(*this);
+    for (dBodyID body : member.bodies()) {
+        if (std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end()) add(body);
+    }
+    members_.add(member);
+    supervisor().add(&member, std::move(name), [&member] { return member.section_report(); });
+}
+DUCTILE_INLINE void World::remove(Divisible& member) {
+    if (!members_.has(member)) return;
+    supervisor().remove(&member);
+    rearrange([&] { member.leave(); });
+    members_.remove(member);
+}
+
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
     if (parts_ != nullptr) {
         throw std::invalid_argument(
@@ -96,10 +131,14 @@ DUCTILE_INLINE void World::add(dBodyID body) {
     }
     bodies_.push_back(body);
     if (meter_) meter_->add(body);
+    members_.body_came(body);
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
     if (meter_) meter_->remove(body);
+    members_.body_left(body);
+    forces_.forget(body);
+    if (parts_ != nullptr) parts_->forget(body);
 }
 
 DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) {
@@ -107,6 +146,10 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) 
         throw std::logic_error(
             "World.add_contact: in a world with a tolerance contacts are made by what on_contacts "
             "was given, as each part of a step needs its own");
+    }
+    if (members_.hang_together(dJointGetBody(joint, 0), dJointGetBody(joint, 1))) {
+        dJointDisable(joint);
+        return;
     }
     contacts_.push_back({joint, contact});
 }
@@ -119,10 +162,15 @@ DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
 
 DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
+    members_.require_possible();
     if (parts_ != nullptr) require_all_bodies();
 }
 DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) maker_->make(bodies_);
+    if (!members_.empty()) {
+        step_with_members(dt);
+        return;
+    }
     if (meter_) {
         for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
         meter_->before_step();
@@ -135,6 +183,51 @@ DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) maker_->clear();
 }
 
+template <class Change>
+void World::rearrange(const Change& change) {
+    const double before = meter_ ? meter_->held().total() : 0;
+    change();
+    if (meter_) meter_->bodies_rearranged(before);
+}
+
+/// The step, again with more sections open until none that is closed is beyond its strength.
+DUCTILE_INLINE void World::step_with_members(double dt) {
+    forces_.hold(bodies_);
+    for (;;) {
+        snapshot_.take(bodies_, plastic_);
+        members_.before_solve(contacts_);
+        members_.apply_forces();
+        if (meter_) {
+            meter_->keep();
+            for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
+            meter_->before_step();
+        }
+        solve(dt);
+        book(dt);
+        if (!members_.look(dt)) break;
+        snapshot_.put_back();
+        if (meter_) meter_->put_back();
+        rearrange([this] { members_.open_found(false); });
+        forces_.apply();
+    }
+    let_go_of_broken();
+    if (meter_) meter_->after_step(dt);
+    if (members_.any_open()) {
+        const double vibration = members_.count_vibration();
+        if (meter_) meter_->rings_down(vibration);
+        rearrange([this] { members_.close_held(false); });
+    }
+    tell_of_members();
+    members_.drop_forces();
+    contacts_.clear();
+    if (maker_) maker_->clear();
+}
+DUCTILE_INLINE void World::tell_of_members() {
+    members_.tell([this](const void* key, int section, EventKind kind) {
+        supervisor().tell_section(key, kind, section);
+    });
+}
+
 DUCTILE_INLINE void World::solve(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
     islands_.before_step(contacts_, dt, parts_ == nullptr);
@@ -144,6 +237,7 @@ DUCTILE_INLINE void World::solve(double dt) {
         dWorldQuickStep(world_, dReal(dt));
     }
     islands_.after_step();
+    members_.after_solve();
 }
 DUCTILE_INLINE void World::book(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
@@ -161,7 +255,11 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
     parts_->begin(length);
     return *parts_;
 }
-DUCTILE_INLINE void World::end_frame() { parts_->end(); }
+DUCTILE_INLINE void World::end_frame() {
+    parts_->end();
+    members_.drop_forces();
+    tell_of_members();
+}
 
 DUCTILE_INLINE bool World::has_body(const void* body) const {
     if (body == nullptr) return false;

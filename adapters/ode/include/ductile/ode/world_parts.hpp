@@ -33,6 +33,7 @@
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/resting_islands.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -51,6 +52,7 @@ class WorldParts final : public PartEngine {
         std::vector<NamedContact>& contacts; ///< of the coming step
         std::optional<ContactMaker>& maker;
         EnergyMeter& meter;
+        Members& members;
         std::function<void(double)> solve; ///< ODE's step [s]
         std::function<void(double)> book;  ///< it is what the joints did [s]
         std::function<std::size_t(const PlasticConstraint&)> number;
@@ -66,6 +68,8 @@ class WorldParts final : public PartEngine {
     void begin(double length);
     /// It is over.
     void end();
+    /// To be called before a body is destroyed, in a frame too.
+    void forget(dBodyID body);
 
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;
@@ -92,6 +96,13 @@ class WorldParts final : public PartEngine {
 
     /// What a frame set is as it was.
     void leave();
+    /// What it set of the bodies alone, and that it sets it.
+    void leave_bodies();
+    void begin_bodies();
+    /// Does what changes bodies of members, and tells the ledger.
+    template <class Change>
+    void rearrange(const Change& change);
+    void do_again();
     void begin_driven();
     void drive_as_at(double time) const;
     void go_as_at(double time) const;
@@ -125,6 +136,7 @@ class WorldParts final : public PartEngine {
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
+    int early_ = 0; ///< parts since `save` that were too long for that
     PartMotion motion_;
 };
 

@@ -51,24 +51,43 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
         if (dBodyIsEnabled(body) == 0) asleep_.push_back(body);
-        const Damped damped{body, dBodyGetLinearDamping(body), dBodyGetAngularDamping(body)};
-        if (damped.linear != 0 || damped.angular != 0) damped_.push_back(damped);
     }
     drop_forces();
-    resting_.begin(of_.bodies);
+    begin_bodies();
     for (PlasticConstraint* joint : of_.joints) joint->begin_frame();
 }
 
-DUCTILE_INLINE void WorldParts::leave() {
+DUCTILE_INLINE void WorldParts::begin_bodies() {
+    for (dBodyID body : of_.bodies) {
+        const Damped damped{body, dBodyGetLinearDamping(body), dBodyGetAngularDamping(body)};
+        if (damped.linear != 0 || damped.angular != 0) damped_.push_back(damped);
+    }
+    resting_.begin(of_.bodies);
+}
+DUCTILE_INLINE void WorldParts::leave_bodies() {
     resting_.end();
     damp(1);
     damped_.clear();
+}
+
+DUCTILE_INLINE void WorldParts::leave() {
+    leave_bodies();
     for (const Driven& driven : driven_) {
         drive(driven.mean.velocity, driven.mean.spin, driven.body);
     }
     if (driven_.empty()) return;
     std::swap(driven_, last_driven_);
     driven_.clear();
+}
+
+DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
+    const auto is_it = [body](const auto& kept) { return kept.body == body; };
+    forces_.forget(body);
+    resting_.forget(body);
+    std::erase(asleep_, body);
+    std::erase_if(damped_, is_it);
+    std::erase_if(driven_, is_it);
+    std::erase_if(last_driven_, is_it);
 }
 
 DUCTILE_INLINE void WorldParts::begin_driven() {
@@ -136,6 +155,7 @@ DUCTILE_INLINE void WorldParts::damp(double share) {
 // ---- a part
 
 DUCTILE_INLINE void WorldParts::save() {
+    early_ = 0;
     kept_time_ = time_;
     of_.meter.keep();
     closing_.save();
@@ -163,6 +183,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     }
     go_as_at(time_ + half / 2); // the mean of the first half
     forces_.apply();
+    of_.members.apply_forces();
     of_.meter.before_step();
     half_ahead_.move(of_.bodies, half);
     drive_as_at(end);
@@ -171,6 +192,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
     if (blow) open_others();
+    of_.members.before_solve(of_.contacts);
     for (const auto& [joint, contact] : of_.contacts) of_.meter.add_contact(joint, contact.geom);
     of_.meter.look_at_contacts();
     damp(blow ? 0 : h / length_);
@@ -194,7 +216,15 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
-    tick(h, false);
+    // so short a part closes what is left of a gap: its impulses are a blow's
+    const bool instant = h < shortest_part();
+    if (instant) of_.members.begin_blow();
+    const auto beyond = [&] {
+        // a contact that began unforeseen pushed for too long: the frame cuts the part there first
+        if (closed_ < h && early_++ < tries_at_gaps) return false;
+        return instant ? of_.members.look_blow(h) : of_.members.look(h);
+    };
+    for (tick(h, false); beyond(); tick(h, false)) do_again();
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
     motion_.contact_work = of_.meter.step_of_contacts();
@@ -218,15 +248,37 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    tick(blow_length, true);
+    if (!of_.members.empty()) save();
+    of_.members.begin_blow();
+    for (tick(blow_length, true); of_.members.look_blow(blow_length); tick(blow_length, true)) {
+        do_again();
+    }
     motion_.closed = 0;
     motion_.contact_lost = false;
     return tell();
 }
 
+DUCTILE_INLINE void WorldParts::do_again() {
+    put_back();
+    rearrange([this] { of_.members.open_found(true); });
+    save();
+}
+
+template <class Change>
+void WorldParts::rearrange(const Change& change) {
+    leave_bodies(); // pieces behave as the user's body does
+    const double before = of_.meter.held().total();
+    change();
+    of_.meter.bodies_rearranged(before);
+    begin_bodies();
+}
+
 DUCTILE_INLINE void WorldParts::accept(double h) try {
     seen_.clear();
+    const bool open = h > 0 && of_.members.any_open();
+    if (open) of_.meter.rings_down(of_.members.count_vibration());
     of_.accept(h);
+    if (open) rearrange([this] { of_.members.close_held(true); });
 } catch (...) { // a listener's
     leave();
     throw;
@@ -234,9 +286,17 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
-    motion_.plastic_work = 0;
+    motion_.plastic_work = of_.members.closed_work();
+    motion_.closed_work = of_.members.unmissed_work();
     for (const PlasticConstraint* joint : of_.joints) {
+        const std::size_t first = motion_.rows.size();
         joint->list_part_rows(of_.number(*joint), motion_.rows);
+        int section = 0;
+        if (of_.members.key_of(*joint, section) != nullptr) {
+            for (std::size_t k = first; k < motion_.rows.size(); ++k) {
+                motion_.rows[k].section = section + 1;
+            }
+        }
         motion_.plastic_work += joint->queries().absorbed_energy();
     }
     return motion_;
@@ -267,7 +327,7 @@ namespace detail {
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
     if (of_.maker) of_.maker->make(of_.bodies);
-    closing_.look(of_.contacts, of_.joints);
+    closing_.look(of_.contacts, of_.joints, of_.members.bodies());
 } catch (...) {
     if (moved != nullptr) moved->put_poses_back();
     if (moved == &snapshot_) of_.meter.put_back();

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member.hpp.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/member.hpp"
+#include "ductile/world/joint_checks.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(dBodyID body) {
+    return {to_core(dBodyGetPosition(body)), matrix_to_core(dBodyGetRotation(body))};
+}
+[[nodiscard]] DUCTILE_INLINE BodyMotion motion_of(dBodyID body) {
+    return {linear_velocity(body), angular_velocity(body)};
+}
+[[nodiscard]] DUCTILE_INLINE dBodyID require_body(dBodyID body) {
+    if (body == nullptr) throw std::invalid_argument("Member.body = null: must be a body");
+    return body;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
+                              const JointFrame<double>& start_in_body, const MemberBox& box)
+    : DividedMember(std::move(member)),
+      user_(detail::require_body(body)),
+      life_(WorldLife::of(dBodyGetWorld(body))) {
+    const ductile::Member& of = description();
+    if ((dBodyIsKinematic(body) != 0) != of.clamped()) {
+        throw std::invalid_argument(
+            of.clamped() ? "Member.body: must be kinematic for a clamped member"
+                         : "Member.body: must not be kinematic where the member is not clamped");
+    }
+    if (Member::of(body) != nullptr) {
+        throw std::invalid_argument("Member.body: must not be a member already");
+    }
+    constexpr double round_off = 1e-9;
+    require_frame("Member.start_in_body", start_in_body, round_off);
+    box.validate();
+    dBodyGetMass(body, &mass_);
+    const MemberPiece& whole = course_.pieces().front();
+    first_in_body_ = whole_in_body_ = whole_in_body(of, whole, start_in_body, double(mass_.mass));
+    geoms_ = std::make_unique<MemberGeoms>(body, of, box, whole, first_in_body_);
+    pieces_.push_back({user_, whole.run, false});
+    MemberBook<Member>::all().enter(user_, this);
+}
+
+DUCTILE_INLINE Member::~Member() {
+    if (world_ != nullptr) world_->remove(*this);
+    for (const PieceBody& piece : pieces_) MemberBook<Member>::all().leave(piece.body);
+    MemberBook<Member>::all().leave(user_);
+}
+
+DUCTILE_INLINE Member* Member::of(dBodyID body) { return MemberBook<Member>::all().find(body); }
+
+// ---- what it says
+
+DUCTILE_INLINE std::vector<dBodyID> Member::pieces() const {
+    std::vector<dBodyID> bodies;
+    for (const PieceBody& piece : pieces_) {
+        const bool ground = piece.run.first == piece.run.last && description().clamped();
+        if (piece.own || !ground) bodies.push_back(piece.body);
+    }
+    return bodies;
+}
+DUCTILE_INLINE std::vector<dBodyID> Member::bodies() const {
+    std::vector<dBodyID> bodies;
+    for (const PieceBody& piece : pieces_) bodies.push_back(piece.body);
+    return bodies;
+}
+DUCTILE_INLINE dBodyID Member::body_of(int segment) const {
+    return pieces_[course_.piece_of(segment)].body;
+}
+DUCTILE_INLINE JointFrame<double> Member::pose(int segment) const {
+    const std::size_t piece = course_.piece_of(segment);
+    return placed(frame_of(piece), course_.pieces()[piece].segment(segment));
+}
+DUCTILE_INLINE int Member::section_of(const PlasticConstraint& joint) const {
+    for (const OpenSection& open : joints_) {
+        if (open.hinge.get() == &joint) return open.section;
+    }
+    return no_section;
+}
+
+DUCTILE_INLINE const Member::PieceBody& Member::piece_on(dBodyID body) const {
+    return *std::find_if(pieces_.begin(), pieces_.end(),
+                         [body](const PieceBody& piece) { return piece.body == body; });
+}
+/// Pieces that hang together do, those with a broken section between them meet.
+DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
+    const int first = piece_on(a).run.first, second = piece_on(b).run.first;
+    for (const OpenSection& open : joints_) {
+        const bool between =
+            std::min(first, second) <= open.section && open.section < std::max(first, second);
+        if (between && open.hinge->queries().broken()) return false;
+    }
+    return true;
+}
+
+// ---- its life
+
+DUCTILE_INLINE void Member::attach(double place, dJointID joint) {
+    if (joint == nullptr)
+        throw std::invalid_argument("Member.attach.joint = null: must be a joint");
+    const int segment = description().on_axis("Member.attach.place", place).segment;
+    std::erase_if(told_, [joint](const auto& told) { return told.first == joint; });
+    told_.emplace_back(joint, segment);
+}
+DUCTILE_INLINE void Member::apply_force(const Vector3<double>& force, double place) {
+    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
+    forces_.push_back({force, at});
+    if (can_move(body_of(at.segment))) dBodyEnable(body_of(at.segment));
+}
+
+DUCTILE_INLINE void Member::enter(World& world) {
+    if (world_ != nullptr) {
+        throw std::invalid_argument("World.add.member: must not be in a world already");
+    }
+    if (!life_->goes_on() || dBodyGetWorld(user_) != world.id()) {
+        throw std::invalid_argument("World.add.member: its body must be one of this world");
+    }
+    require_possible();
+    world_ = &world;
+}
+DUCTILE_INLINE void Member::leave() {
+    if (world_ == nullptr) return;
+    if (life_->goes_on() && !whole()) {
+        find_holds();
+        note_sections();
+        std::vector<int> all;
+        for (const OpenSection& open : joints_) all.push_back(open.section);
+        become(course_.close(all, placed_pieces()), false);
+    }
+    world_ = nullptr;
+}
+
+DUCTILE_INLINE void Member::require_possible() {
+    if (is_missing_) throw std::logic_error("Member.body: must be in the World: World::add it");
+    if ((dBodyIsKinematic(user_) != 0) != description().clamped()) {
+        throw std::logic_error(
+            "Member.body: must be kinematic where the member is clamped, and "
+            "nowhere else");
+    }
+    if (description().clamped()) {
+        if (!is_zero(linear_velocity(user_)) || !is_zero(angular_velocity(user_))) {
+            throw std::logic_error("Member.body: must not move where the member is clamped");
+        }
+        dBodyDisable(user_); // what hangs on it may sleep
+    }
+    find_holds();
+}
+
+/// The segment that a joint on a piece holds.
+DUCTILE_INLINE int Member::segment_of(dJointID joint, std::size_t piece) const {
+    const dJointType type = dJointGetType(joint);
+    if (type != dJointTypeBall && type != dJointTypeHinge && type != dJointTypeFixed) {
+        throw std::invalid_argument(
+            "World.add.member: joints of its body must be balls, hinges or fixed: others, also "
+            "plastic ones, cannot go to another body as they are");
+    }
+    for (const auto& [told, segment] : told_) {
+        if (told == joint) return segment;
+    }
+    if (type == dJointTypeFixed) {
+        throw std::invalid_argument(
+            "World.add.member: a fixed joint of its body must be told where it holds: "
+            "Member::attach");
+    }
+    dVector3 anchor;
+    (type == dJointTypeBall ? dJointGetBallAnchor : dJointGetHingeAnchor)(joint, anchor);
+    return nearest_segment(description(), course_.pieces()[piece], frame_of(piece),
+                           to_core(anchor));
+}
+DUCTILE_INLINE void Member::find_holds() {
+    holds_.clear();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        const dBodyID body = pieces_[i].body;
+        for (int k = 0, count = dBodyGetNumJoints(body); k < count; ++k) {
+            const dJointID joint = dBodyGetJoint(body, k);
+            const bool own =
+                std::any_of(joints_.begin(), joints_.end(),
+                            [joint](const OpenSection& open) { return open.hinge->id() == joint; });
+            if (own || dJointGetType(joint) == dJointTypeContact) continue;
+            holds_.push_back({joint, body, segment_of(joint, i), dJointIsEnabled(joint) != 0});
+        }
+    }
+}
+
+DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {
+    note_sections();
+    become(course_.open(sections, placed_pieces()), ahead);
+}
+DUCTILE_INLINE double Member::count_vibration() {
+    if (joints_.empty()) return 0;
+    note_sections();
+    return course_.count_vibration();
+}
+DUCTILE_INLINE std::vector<int> Member::close_held(bool ahead) {
+    if (joints_.empty()) return {};
+    note_sections();
+    const std::vector<int> held = course_.held();
+    if (!held.empty()) become(course_.close(held, placed_pieces()), ahead);
+    return held;
+}
+
+} // namespace ductile::ode
+
+#include "ductile/ode/member_bodies.ipp" // IWYU pragma: keep
+#include "ductile/ode/member_step.ipp"   // IWYU pragma: keep

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member.hpp: pieces, the joints between them, what holds on to them. A part of
+// member.ipp.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ductile/numeric/lu.hpp"
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/world_snapshot.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+DUCTILE_INLINE void put(dBodyID body, const JointFrame<double>& pose, const BodyMotion& motion) {
+    dMatrix3 turned{};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            turned[4 * row + column] = dReal(pose.axes(row, column));
+        }
+    }
+    const Vector3<double>&at = pose.origin, &v = motion.velocity, &w = motion.spin;
+    dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+    dBodySetRotation(body, turned);
+    dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
+    dBodySetAngularVel(body, dReal(w.x()), dReal(w.y()), dReal(w.z()));
+    dBodySetForce(body, 0, 0, 0);
+    dBodySetTorque(body, 0, 0, 0);
+}
+
+DUCTILE_INLINE void set_mass(dBodyID body, const MemberPiece& piece) {
+    dMass mass;
+    dMassSetParameters(&mass, dReal(piece.mass), 0, 0, 0, dReal(piece.inertia[0]),
+                       dReal(piece.inertia[1]), dReal(piece.inertia[2]), 0, 0, 0);
+    dBodySetMass(body, &mass);
+}
+
+DUCTILE_INLINE void copy_manners(dBodyID from, dBodyID body) {
+    dBodySetAutoDisableFlag(body, dBodyGetAutoDisableFlag(from));
+    dBodySetAutoDisableLinearThreshold(body, dBodyGetAutoDisableLinearThreshold(from));
+    dBodySetAutoDisableAngularThreshold(body, dBodyGetAutoDisableAngularThreshold(from));
+    dBodySetAutoDisableSteps(body, dBodyGetAutoDisableSteps(from));
+    dBodySetAutoDisableTime(body, dBodyGetAutoDisableTime(from));
+    dBodySetAutoDisableAverageSamplesCount(body,
+                                           unsigned(dBodyGetAutoDisableAverageSamplesCount(from)));
+    dBodySetLinearDamping(body, dBodyGetLinearDamping(from));
+    dBodySetLinearDampingThreshold(body, dBodyGetLinearDampingThreshold(from));
+    dBodySetAngularDamping(body, dBodyGetAngularDamping(from));
+    dBodySetAngularDampingThreshold(body, dBodyGetAngularDampingThreshold(from));
+    dBodySetMaxAngularSpeed(body, dBodyGetMaxAngularSpeed(from));
+    dBodySetGravityMode(body, dBodyGetGravityMode(from));
+    dBodySetGyroscopicMode(body, dBodyGetGyroscopicMode(from));
+    dBodySetFiniteRotationMode(body, dBodyGetFiniteRotationMode(from));
+    dVector3 axis;
+    dBodyGetFiniteRotationAxis(from, axis);
+    dBodySetFiniteRotationAxis(body, axis[0], axis[1], axis[2]);
+    dBodySetData(body, dBodyGetData(from));
+}
+
+/// Anchors stay where they are, each on its own body.
+DUCTILE_INLINE void attach_ball(dJointID joint, dBodyID first, dBodyID second) {
+    dVector3 on_first, on_second;
+    dJointGetBallAnchor(joint, on_first);
+    dJointGetBallAnchor2(joint, on_second);
+    dJointAttach(joint, first, second);
+    const bool reversed = attached_bodies(joint).reversed;
+    const dReal *a = reversed ? on_second : on_first, *b = reversed ? on_first : on_second;
+    dJointSetBallAnchor(joint, a[0], a[1], a[2]);
+    const dBodyID other = attached_bodies(joint).b;
+    dVector3 in_other{b[0], b[1], b[2], 0};
+    if (other != nullptr) dBodyGetPosRelPoint(other, b[0], b[1], b[2], in_other);
+    dJointSetBallAnchor2(joint, in_other[0], in_other[1], in_other[2]);
+}
+/// Its angle goes on: ODE begins to count where the axis is set, so that is done where the angle is
+/// zero (its dJointSetHingeAxisOffset is right for bodies that are turned alike alone).
+DUCTILE_INLINE void attach_hinge(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) {
+    dVector3 anchor, axis;
+    dJointGetHingeAnchor(joint, anchor);
+    dJointGetHingeAxis(joint, axis);
+    const dReal angle = dJointGetHingeAngle(joint);
+    dJointAttach(joint, first, second);
+    dJointSetHingeAnchor(joint, anchor[0], anchor[1], anchor[2]);
+    WorldSnapshot pose;
+    pose.take(std::span(&changed, 1), {});
+    dMatrix3 back, turned;
+    dRFromAxisAndAngle(back, axis[0], axis[1], axis[2], changed == first ? -angle : angle);
+    dMultiply0_333(turned, back, dBodyGetRotation(changed));
+    dBodySetRotation(changed, turned);
+    dJointSetHingeAxis(joint, axis[0], axis[1], axis[2]);
+    pose.put_poses_back();
+}
+/// A joint of the user's that `from` has goes to `to`.
+DUCTILE_INLINE void hand_over(dJointID joint, dBodyID from, dBodyID to) {
+    if (from == to) return;
+    std::array<dBodyID, 2> bodies{dJointGetBody(joint, 0), dJointGetBody(joint, 1)};
+    std::replace(bodies.begin(), bodies.end(), from, to);
+    switch (dJointGetType(joint)) {
+        case dJointTypeBall:
+            return attach_ball(joint, bodies[0], bodies[1]);
+        case dJointTypeHinge:
+            return attach_hinge(joint, bodies[0], bodies[1], to);
+        default:
+            dJointAttach(joint, bodies[0], bodies[1]);
+            dJointSetFixed(joint);
+    }
+}
+
+} // namespace detail
+
+/// The frame of a piece in its body.
+DUCTILE_INLINE JointFrame<double> Member::in_body(std::size_t piece) const {
+    return pieces_[piece].own ? JointFrame<double>{} : whole_in_body_;
+}
+DUCTILE_INLINE JointFrame<double> Member::frame_of(std::size_t piece) const {
+    return placed(detail::frame_of(pieces_[piece].body), in_body(piece));
+}
+DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
+    std::vector<PlacedPiece> all;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        PlacedPiece& piece = all.emplace_back(PlacedPiece{&course_.pieces()[i], frame_of(i), {}});
+        if (!piece.piece->held) piece.motion = detail::motion_of(pieces_[i].body);
+    }
+    if (whole() && !description().clamped()) {
+        // the moment of momentum is that of the user's inertia
+        all[0].motion.spin = times(all[0].piece->inverse_inertia_in_world(all[0].pose.axes),
+                                   times(inertia(user_), all[0].motion.spin));
+    }
+    return all;
+}
+
+DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool ahead) {
+    const bool was_whole = pieces_.size() == 1;
+    std::vector<PieceBody> old = std::exchange(pieces_, {});
+    for (const PlacedPiece& placed : pieces) {
+        const auto kept = std::find_if(old.begin(), old.end(), [&placed](const PieceBody& piece) {
+            return piece.own && piece.run == placed.piece->run;
+        });
+        if (pieces.size() > 1 && kept != old.end()) {
+            pieces_.push_back(*kept);
+            old.erase(kept);
+        } else {
+            pieces_.push_back(make_body(placed));
+        }
+    }
+    if (!description().clamped()) {
+        if (pieces.size() == 1) {
+            put_whole(pieces[0]);
+        } else if (was_whole) {
+            take_out();
+        }
+    }
+    put_geoms();
+    for (Hold& hold : holds_) {
+        const dBodyID from = std::exchange(hold.body, body_of(hold.segment));
+        detail::hand_over(hold.joint, from, hold.body);
+    }
+    // joints end before their bodies
+    std::erase_if(joints_, [this](const OpenSection& open) {
+        const std::size_t lower = course_.piece_of(open.section);
+        const dBodyID below = pieces_[lower].own ? pieces_[lower].body : nullptr;
+        return !course_.section(open.section).open ||
+               open.hinge->bodies() != AttachedBodies{pieces_[lower + 1].body, below, false};
+    });
+    for (const PieceBody& piece : old) {
+        if (!piece.own) continue;
+        MemberBook<Member>::all().leave(piece.body);
+        world_->remove(piece.body);
+        dBodyDestroy(piece.body);
+    }
+    make_joints(ahead);
+}
+
+DUCTILE_INLINE auto Member::make_body(const PlacedPiece& placed) -> PieceBody {
+    const MemberPiece& of = *placed.piece;
+    if (of.held || of.run == MemberRun{0, description().segments() - 1}) {
+        return {user_, of.run, false};
+    }
+    const dBodyID body = dBodyCreate(dBodyGetWorld(user_));
+    detail::set_mass(body, of);
+    detail::copy_manners(user_, body);
+    detail::put(body, placed.pose, placed.motion);
+    world_->add(body);
+    MemberBook<Member>::all().enter(body, this);
+    return {body, of.run, true};
+}
+
+DUCTILE_INLINE void Member::take_out() {
+    detail::put(user_, detail::frame_of(user_), {});
+    dBodyDisable(user_);
+    world_->remove(user_);
+    is_missing_ = false;
+}
+
+/// Of a member that moves.
+DUCTILE_INLINE void Member::put_whole(const PlacedPiece& placed) {
+    const MemberPiece& of = *placed.piece;
+    if (course_.is_straight()) {
+        dBodySetMass(user_, &mass_);
+        whole_in_body_ = first_in_body_;
+    } else {
+        // the frame of a piece is that of its centre and main axes
+        detail::set_mass(user_, of);
+        whole_in_body_ = {};
+    }
+    detail::put(user_, frame_around(placed.pose, whole_in_body_), placed.motion);
+    // the moment of momentum is that of the pieces
+    const Vector3<double> about = times(of.inertia_in_world(placed.pose.axes), placed.motion.spin);
+    const Vector3<double> spin = times(numeric::inverse(inertia(user_)), about);
+    dBodySetAngularVel(user_, dReal(spin.x()), dReal(spin.y()), dReal(spin.z()));
+    dBodyEnable(user_);
+    world_->add(user_);
+}
+
+DUCTILE_INLINE void Member::put_geoms() {
+    if (whole() && course_.is_straight()) {
+        geoms_->put_straight();
+        return;
+    }
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+        geoms_->put(course_.pieces()[i], pieces_[i].body, in_body(i));
+    }
+}
+
+DUCTILE_INLINE void Member::make_joints(bool ahead) {
+    for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
+        const int section = pieces_[i].run.last;
+        if (std::any_of(joints_.begin(), joints_.end(),
+                        [&](const OpenSection& open) { return open.section == section; })) {
+            continue;
+        }
+        const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
+        const JointFrame<double> in_lower = lower.section(description(), section, true);
+        const bool held = !pieces_[i].own;
+        OpenSection open{section, nullptr};
+        open.hinge = std::make_unique<Hinge>(
+            dBodyGetWorld(user_), pieces_[i + 1].body, held ? nullptr : pieces_[i].body,
+            hinge_frame(upper.section(description(), section + 1, false)),
+            hinge_frame(held ? placed(frame_of(i), in_lower) : in_lower),
+            description().section(section));
+        go_on(*open.hinge, course_.section(section));
+        world_->take_in(*open.hinge);
+        if (ahead) open.hinge->begin_frame();
+        joints_.push_back(std::move(open));
+    }
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member_geoms.hpp.
+#pragma once
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/member_geoms.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE MemberGeoms::MemberGeoms(dBodyID user, const ductile::Member& member,
+                                        const MemberBox& box, const MemberPiece& whole,
+                                        const JointFrame<double>& in_body)
+    : user_(user), member_(member), box_(box), boxes_(std::size_t(member.segments()), nullptr) {
+    for (dGeomID geom = dBodyGetFirstGeom(user); geom != nullptr; geom = dBodyGetNextGeom(geom)) {
+        Geom& entry = users_.emplace_back();
+        entry.geom = geom;
+        entry.in_body = {to_core(dGeomGetOffsetPosition(geom)),
+                         matrix_to_core(dGeomGetOffsetRotation(geom))};
+        entry.segment = nearest_segment(member, whole, in_body, entry.in_body.origin);
+        const JointFrame<double> segment = placed(in_body, whole.segment(entry.segment));
+        entry.in_segment = {
+            transposed_times(segment.axes, difference(entry.in_body.origin, segment.origin)),
+            transposed_times(segment.axes, entry.in_body.axes)};
+    }
+}
+
+DUCTILE_INLINE void MemberGeoms::place(dGeomID geom, dBodyID body,
+                                       const JointFrame<double>& in_body) {
+    if (dGeomGetBody(geom) != body) dGeomSetBody(geom, body); // forgets the offset
+    const Vector3<double>& at = in_body.origin;
+    dMatrix3 turned{};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            turned[4 * row + column] = dReal(in_body.axes(row, column));
+        }
+    }
+    dGeomSetOffsetPosition(geom, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+    dGeomSetOffsetRotation(geom, turned);
+}
+
+DUCTILE_INLINE void MemberGeoms::put_straight() {
+    for (Geom& entry : users_) {
+        place(entry.geom, user_, entry.in_body);
+        if (box_.is_there() && boxes_.back() != nullptr && entry.enabled) dGeomEnable(entry.geom);
+    }
+    destroy_boxes();
+}
+
+DUCTILE_INLINE void MemberGeoms::put(const MemberPiece& piece, dBodyID body,
+                                     const JointFrame<double>& in_body) {
+    const auto put_on = [&](dGeomID geom, int segment, const JointFrame<double>& in_segment) {
+        place(geom, body, placed(placed(in_body, piece.segment(segment)), in_segment));
+    };
+    if (box_.is_there()) {
+        make_boxes();
+        for (int k = piece.run.first; k <= piece.run.last; ++k) {
+            if (boxes_[std::size_t(k)] != nullptr) put_on(boxes_[std::size_t(k)], k, {});
+        }
+        return;
+    }
+    for (const Geom& entry : users_) {
+        if (piece.run.holds(entry.segment)) put_on(entry.geom, entry.segment, entry.in_segment);
+    }
+}
+
+DUCTILE_INLINE void MemberGeoms::make_boxes() {
+    if (users_.empty()) return;
+    if (boxes_.back() == nullptr) {
+        for (Geom& entry : users_) {
+            entry.enabled = dGeomIsEnabled(entry.geom) != 0;
+            dGeomDisable(entry.geom);
+        }
+    }
+    const dGeomID like = users_.front().geom;
+    for (int k = 0; k < member_.segments(); ++k) {
+        dGeomID& box = boxes_[std::size_t(k)];
+        if (box != nullptr || member_.segment(k).held) continue;
+        box = dCreateBox(dGeomGetSpace(like), dReal(2 * box_.half_width),
+                         dReal(2 * box_.half_height), dReal(member_.segment(k).length));
+        dGeomSetData(box, dGeomGetData(like));
+        dGeomSetCategoryBits(box, dGeomGetCategoryBits(like));
+        dGeomSetCollideBits(box, dGeomGetCollideBits(like));
+    }
+}
+
+DUCTILE_INLINE void MemberGeoms::destroy_boxes() {
+    for (dGeomID& box : boxes_) {
+        if (box != nullptr) dGeomDestroy(box);
+        box = nullptr;
+    }
+}
+
+} // namespace ductile::ode

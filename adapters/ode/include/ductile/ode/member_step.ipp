@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of member.hpp: what acted on it in a step, and how its pieces went through it. A part of
+// member.ipp.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "ductile/ode/convert.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// Before ODE damped it, after its solve.
+[[nodiscard]] DUCTILE_INLINE Vector3<double> undamped(const Vector3<double>& velocity, double share,
+                                                      double threshold) {
+    const Vector3<double> before = scaled(1 / (1 - share), velocity);
+    return share > 0 && share < 1 && norm(before) > threshold ? before : velocity;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void Member::apply_forces() {
+    for (const Force& force : forces_) {
+        const dBodyID body = body_of(force.at.segment);
+        if (!can_move(body)) continue;
+        const JointFrame<double> segment = pose(force.at.segment);
+        const Vector3<double> place = sum(segment.origin, times(segment.axes, force.at.in_segment));
+        const Vector3<double> arm = difference(place, to_core(dBodyGetPosition(body)));
+        add_force(body, force.force, cross(arm, force.force));
+    }
+}
+
+DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
+    for (const Hold& hold : holds_) joints.push_back(hold.joint);
+    before_.clear();
+    for (const PieceBody& piece : pieces_) {
+        Before& before = before_.emplace_back();
+        before.pose = detail::frame_of(piece.body);
+        before.solved = can_move(piece.body) && dBodyIsEnabled(piece.body) != 0;
+        if (!before.solved) continue;
+        before.motion = detail::motion_of(piece.body);
+    }
+}
+DUCTILE_INLINE void Member::after_solve() {
+    if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
+    for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
+        const dBodyID body = pieces_[i].body;
+        before_[i].solved = can_move(body) && dBodyIsEnabled(body) != 0;
+        before_[i].after = {
+            detail::undamped(linear_velocity(body), double(dBodyGetLinearDamping(body)),
+                             double(dBodyGetLinearDampingThreshold(body))),
+            detail::undamped(angular_velocity(body), double(dBodyGetAngularDamping(body)),
+                             double(dBodyGetAngularDampingThreshold(body)))};
+    }
+}
+
+// ---- after it
+
+DUCTILE_INLINE auto Member::wrench_of(const dJointFeedback& feedback, bool of_a) -> Wrench {
+    return of_a ? Wrench{to_core(feedback.f1), to_core(feedback.t1)}
+                : Wrench{to_core(feedback.f2), to_core(feedback.t2)};
+}
+/// What the rows of a section gave, its angular motor and the rest.
+DUCTILE_INLINE auto Member::wrench_of(const OpenSection& open, bool of_upper) -> Wrench {
+    const OutsideForce& outside = open.hinge->outside_force();
+    Wrench wrench = wrench_of(*dJointGetFeedback(open.hinge->id()), of_upper);
+    wrench.force = sum(wrench.force, scaled(of_upper ? 1 : -1, outside.force));
+    wrench.torque = sum(wrench.torque, of_upper ? outside.torque_a : outside.torque_b);
+    return wrench;
+}
+
+/// Of joints and contacts that acted on it [N s].
+DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> touches) const {
+    const double length = description().length();
+    double all = 0;
+    const auto add = [&](const Wrench& wrench) {
+        all += dt * (norm(wrench.force) + norm(wrench.torque) / length);
+    };
+    for (const Touch& touch : touches) {
+        all += dt * norm(wrench_of(*touch.feedback, touch.of_a).force);
+    }
+    for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        add(wrench_of(*dJointGetFeedback(hold.joint), attached_bodies(hold.joint).a == hold.body));
+    }
+    for (const OpenSection& open : joints_) {
+        for (const bool of_upper : {true, false}) add(wrench_of(open, of_upper));
+    }
+    for (const Force& force : forces_) all += dt * norm(force.force);
+    return all;
+}
+
+/// Whatever the arms of what acted on it: those of impulses and of the masses that they move.
+DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touches) const {
+    constexpr double arms = 4; // of its length
+    const double length = description().length();
+    bool solved = description().clamped();
+    double all = 0;
+    if (solved) {
+        dVector3 gravity;
+        dWorldGetGravity(dBodyGetWorld(user_), gravity);
+        all += description().mass() * norm(to_core(gravity)) * dt;
+    }
+    for (std::size_t i = 0; i < before_.size(); ++i) {
+        if (!before_[i].solved) continue;
+        solved = true;
+        const Vector3<double>& spin = before_[i].motion.spin;
+        all += course_.pieces()[i].mass * dot(spin, spin) * length * dt;
+    }
+    if (!solved) return false;
+    all += sum_of_impulses(dt, touches);
+    return arms * all * length > course_.least_strength() * dt;
+}
+
+DUCTILE_INLINE void Member::add_load(const Wrench& wrench, int segment, double dt) {
+    // about the body's centre, which is the origin of its frame
+    const Vector3<double>& centre = before_[course_.piece_of(segment)].pose.origin;
+    loads_.push_back({segment, centre, scaled(dt, wrench.force), scaled(dt, wrench.torque)});
+}
+
+DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
+    read_steps(dt);
+    loads_.clear();
+    for (Touch& touch : touches) {
+        const dBodyID body = touch.of_a ? touch.bodies.a : touch.bodies.b;
+        const auto piece = std::size_t(&piece_on(body) - pieces_.data());
+        touch.segment = nearest_segment(description(), course_.pieces()[piece], steps_[piece].pose,
+                                        touch.point);
+        add_load(wrench_of(*touch.feedback, touch.of_a), touch.segment, dt);
+    }
+    for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        const bool of_a = attached_bodies(hold.joint).a == hold.body;
+        add_load(wrench_of(*dJointGetFeedback(hold.joint), of_a), hold.segment, dt);
+    }
+    for (const OpenSection& open : joints_) {
+        if (!open.hinge->is_awake_member()) continue;
+        add_load(wrench_of(open, true), open.section + 1, dt);
+        // one that is held on the static world says nothing of that
+        if (pieces_[course_.piece_of(open.section)].own) {
+            add_load(wrench_of(open, false), open.section, dt);
+        } else {
+            const MemberLoad upper = loads_.back();
+            loads_.push_back(
+                {open.section, upper.point, scaled(-1, upper.impulse), scaled(-1, upper.moment)});
+        }
+    }
+    for (const Force& force : forces_) {
+        loads_.push_back(load(force, steps_[course_.piece_of(force.at.segment)].pose, dt));
+    }
+}
+
+/// How its pieces went through the step.
+DUCTILE_INLINE void Member::read_steps(double dt) {
+    dVector3 world_gravity;
+    dWorldGetGravity(dBodyGetWorld(user_), world_gravity);
+    const Vector3<double> fallen = scaled(dt, to_core(world_gravity));
+    steps_.resize(pieces_.size());
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+        const Before& before = before_[i];
+        const MemberPiece& piece = course_.pieces()[i];
+        PieceStep& step = steps_[i] = {};
+        step.pose = placed(before.pose, in_body(i));
+        if (piece.held) {
+            step.change.velocity = scaled(-1, fallen);
+            continue;
+        }
+        if (!before.solved) continue;
+        const dBodyID body = pieces_[i].body;
+        step.change.velocity = difference(before.after.velocity, before.motion.velocity);
+        if (dBodyGetGravityMode(body) != 0) {
+            step.change.velocity = difference(step.change.velocity, fallen);
+        }
+        step.spin = before.motion.spin;
+        // the body's inertia may be the user's, and ODE's gyroscopic moment is an implicit one
+        dMass mass;
+        dBodyGetMass(body, &mass);
+        const Matrix3<double> inertia = sandwiched(before.pose.axes, matrix_to_core(mass.I));
+        Vector3<double> about = times(inertia, difference(before.after.spin, before.motion.spin));
+        if (dBodyGetGyroscopicMode(body) != 0) {
+            step.dt = dt;
+            const Vector3<double> own = times(piece.inertia_in_world(step.pose.axes), step.spin);
+            about = difference(about, sum(gyroscopic_impulse(body, inertia, step.spin, dt),
+                                          scaled(dt, cross(step.spin, own))));
+        }
+        step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);
+    }
+}
+
+DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
+                                        std::vector<int>& sections) {
+    if (!may_be_beyond(dt, touches)) return;
+    read(dt, touches);
+    sections = course_.beyond(steps_, loads_, dt);
+}
+
+DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
+                                        std::vector<int>& sections) {
+    if (touches.empty()) return;
+    read(dt, touches);
+    MemberStrike strike;
+    for (const Touch& touch : touches) {
+        const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
+        strike.energy += pressed * (touch.closing + touch.closing_speed()) / 2;
+        if (touch.closing > strike.speed) {
+            strike.speed = touch.closing;
+            strike.segment = touch.segment;
+        }
+    }
+    if (!(strike.energy > 0)) return;
+    const int section = course_.struck(steps_, loads_, strike);
+    if (section != no_section) sections.push_back(section);
+}
+
+} // namespace ductile::ode

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of members.hpp.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/members.hpp"
+
+namespace ductile::ode {
+
+// ---- who is here
+
+DUCTILE_INLINE bool Members::has(const Divisible& member) const noexcept {
+    return std::any_of(members_.begin(), members_.end(),
+                       [&](const Course& course) { return course.of == &member; });
+}
+DUCTILE_INLINE void Members::add(Divisible& member) {
+    members_.push_back({&member});
+    note_bodies();
+}
+DUCTILE_INLINE void Members::remove(Divisible& member) {
+    std::erase_if(members_, [&](const Course& course) { return course.of == &member; });
+    std::erase_if(happened_, [&](const Happened& entry) { return entry.of == &member; });
+    note_bodies();
+}
+DUCTILE_INLINE void Members::leave() {
+    for (const Course& course : std::exchange(members_, {})) course.of->leave();
+    note_bodies();
+}
+
+DUCTILE_INLINE void Members::note_bodies() {
+    bodies_.clear();
+    owners_.clear();
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        members_[i].bodies = members_[i].of->bodies();
+        for (dBodyID body : members_[i].bodies) {
+            bodies_.push_back(body);
+            owners_[body] = i;
+        }
+    }
+}
+DUCTILE_INLINE void Members::body_left(dBodyID body) {
+    for (const Course& course : members_) course.of->body_left(body);
+}
+DUCTILE_INLINE void Members::body_came(dBodyID body) {
+    for (const Course& course : members_) course.of->body_came(body);
+}
+
+DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
+    for (const Course& course : members_) {
+        section = course.of->section_of(joint);
+        if (section >= 0) return course.of;
+    }
+    return nullptr;
+}
+DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
+    if (members_.empty() || a == nullptr || b == nullptr) return false;
+    const auto of_a = owners_.find(a), of_b = owners_.find(b);
+    return of_a != owners_.end() && of_b != owners_.end() && of_a->second == of_b->second &&
+           members_[of_a->second].of->hangs_together(a, b);
+}
+DUCTILE_INLINE double Members::closed_work() const {
+    double sum = 0;
+    for (const Course& course : members_) sum += course.of->closed_work();
+    return sum;
+}
+DUCTILE_INLINE double Members::unmissed_work() const {
+    double least = 0;
+    for (const Course& course : members_) {
+        const double work = course.of->unmissed_work();
+        if (least == 0 || (work > 0 && work < least)) least = work;
+    }
+    return least;
+}
+DUCTILE_INLINE void Members::require_possible() const {
+    for (const Course& course : members_) course.of->require_possible();
+}
+
+// ---- around the solve
+
+DUCTILE_INLINE void Members::apply_forces() const {
+    for (const Course& course : members_) course.of->apply_forces();
+}
+DUCTILE_INLINE void Members::drop_forces() const {
+    for (const Course& course : members_) course.of->drop_forces();
+}
+
+DUCTILE_INLINE const dJointFeedback* Members::feedback_of(dJointID joint) {
+    if (const dJointFeedback* has = dJointGetFeedback(joint)) return has;
+    borrowers_.push_back(joint);
+    dJointSetFeedback(joint, &lent_.emplace_back());
+    return &lent_.back();
+}
+DUCTILE_INLINE void Members::take_feedback_back() {
+    for (dJointID joint : std::exchange(borrowers_, {})) dJointSetFeedback(joint, nullptr);
+}
+
+DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts) {
+    if (members_.empty()) return;
+    list_contacts(contacts);
+    for (const Course& course : members_) require_named(course);
+    lent_.clear();      // not sooner: the ledger reads it when the step stands
+    borrowers_.clear(); // contacts of a step that was never looked at may be gone
+    held_by_.clear();
+    for (const Course& course : members_) course.of->before_solve(held_by_);
+    for (dJointID joint : held_by_) static_cast<void>(feedback_of(joint));
+    for (Course& course : members_) {
+        for (Touch& touch : course.touches) touch.feedback = feedback_of(touch.joint);
+    }
+}
+DUCTILE_INLINE void Members::list_contacts(std::span<const NamedContact> contacts) {
+    for (Course& course : members_) course.touches.clear();
+    for (const NamedContact& named : contacts) {
+        if (dJointIsEnabled(named.joint) == 0) continue;
+        const AttachedBodies bodies = attached_bodies(named.joint);
+        for (const bool of_a : {true, false}) {
+            const auto owner = owners_.find(of_a ? bodies.a : bodies.b);
+            if (owner == owners_.end()) continue;
+            Touch touch{named.joint, bodies, of_a, to_core(named.contact.geom.pos),
+                        scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal))};
+            touch.closing = touch.closing_speed();
+            members_[owner->second].touches.push_back(touch);
+        }
+    }
+}
+DUCTILE_INLINE void Members::require_named(const Course& course) {
+    std::size_t contacts = 0;
+    for (dBodyID body : course.bodies) {
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            contacts += dJointGetType(joint) == dJointTypeContact && dJointIsEnabled(joint) != 0;
+        }
+    }
+    if (contacts == course.touches.size()) return;
+    throw std::logic_error(
+        "World.step: a contact of a member was not named: World::add_contact each, once");
+}
+
+DUCTILE_INLINE bool Members::any_open() const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Course& course) { return course.of->is_open(); });
+}
+DUCTILE_INLINE void Members::after_solve() const {
+    for (const Course& course : members_) course.of->after_solve();
+}
+
+// ---- after it
+
+DUCTILE_INLINE void Members::begin_blow() const {
+    for (const Course& course : members_) course.of->begin_blow();
+}
+
+DUCTILE_INLINE bool Members::look(double dt, bool blow) {
+    bool any = false;
+    for (Course& course : members_) {
+        course.found.clear();
+        if (blow) {
+            course.of->find_struck(dt, course.touches, course.found);
+        } else {
+            course.of->find_beyond(dt, course.touches, course.found);
+        }
+        any = any || !course.found.empty();
+    }
+    take_feedback_back();
+    return any;
+}
+
+DUCTILE_INLINE void Members::open_found(bool ahead) {
+    struct Attached {
+        dBodyID a, b; ///< as the user attached them
+    };
+    for (Course& course : members_) {
+        if (course.found.empty()) continue;
+        std::vector<Attached> attached;
+        for (const Touch& touch : course.touches) {
+            attached.push_back({dJointGetBody(touch.joint, 0), dJointGetBody(touch.joint, 1)});
+        }
+        course.of->open(course.found, ahead);
+        for (std::size_t i = 0; i < attached.size(); ++i) {
+            const Touch& touch = course.touches[i];
+            const bool first = touch.of_a != touch.bodies.reversed;
+            (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
+            dJointAttach(touch.joint, attached[i].a, attached[i].b);
+        }
+        for (const int section : course.found) {
+            happened_.push_back({course.of, section, EventKind::split});
+        }
+        course.found.clear();
+    }
+    note_bodies();
+}
+
+DUCTILE_INLINE double Members::count_vibration() const {
+    double sum = 0;
+    for (const Course& course : members_) sum += course.of->count_vibration();
+    return sum;
+}
+
+DUCTILE_INLINE void Members::close_held(bool ahead) {
+    for (const Course& course : members_) {
+        for (const int section : course.of->close_held(ahead)) {
+            happened_.push_back({course.of, section, EventKind::fused});
+        }
+    }
+    note_bodies();
+}
+
+DUCTILE_INLINE void Members::tell(const Tell& tell) {
+    for (const Happened& entry : std::exchange(happened_, {})) {
+        tell(entry.of, entry.section, entry.kind);
+    }
+}
+
+} // namespace ductile::ode

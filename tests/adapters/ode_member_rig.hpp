@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+//
+// What the tests of members put into an ODE world, and the scenes that most of them need: those of
+// member_rig.hpp.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "adapters/ode_engine.hpp"
+#include "core/member/strips.hpp"
+#include "ductile/ode/ode.hpp"
+
+namespace ductile::test::in_ode {
+
+using V3 = Vector3<double>;
+inline const JointFrame<double> here{};
+
+/// Outlives its Worlds and members.
+struct Rig : OdeEngine {
+    explicit Rig(const V3& gravity = {0, 0, 0}) {
+        dRandSetSeed(0);
+        dWorldSetCFM(id, 1e-13);
+        dWorldSetGravity(id, dReal(gravity.x()), dReal(gravity.y()), dReal(gravity.z()));
+    }
+    /// Of no mass: kinematic.
+    dBodyID body(double mass, const V3& inertia, const V3& at) const {
+        const dBodyID body = dBodyCreate(id);
+        if (mass > 0) {
+            dMass m;
+            dMassSetParameters(&m, dReal(mass), 0, 0, 0, dReal(inertia.x()), dReal(inertia.y()),
+                               dReal(inertia.z()), 0, 0, 0);
+            dBodySetMass(body, &m);
+        } else {
+            dBodySetKinematic(body);
+        }
+        dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        return body;
+    }
+    dGeomID box(dBodyID body, const V3& half, const V3& offset = {0, 0, 0}) const {
+        const dGeomID geom =
+            dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()), dReal(2 * half.z()));
+        dGeomSetBody(geom, body);
+        dGeomSetOffsetPosition(geom, dReal(offset.x()), dReal(offset.y()), dReal(offset.z()));
+        return geom;
+    }
+    /// A box on each segment of a straight member that starts `start` along z in its body.
+    std::vector<dGeomID> boxes(dBodyID body, const Member& of, double half,
+                               double start = 0) const {
+        std::vector<dGeomID> geoms;
+        for (int k = of.clamped() ? 1 : 0; k < of.segments(); ++k) {
+            const double length = of.segment(k).length;
+            const double middle = start + (k > 0 ? of.place(k - 1) : 0) + length / 2;
+            geoms.push_back(box(body, {half, half, length / 2}, {0, 0, middle}));
+        }
+        return geoms;
+    }
+    /// A ball joint of the engine's own, where `point` is.
+    dJointID pin(dBodyID a, dBodyID b, const V3& point) const {
+        const dJointID joint = dJointCreateBall(id, nullptr);
+        dJointAttach(joint, a, b);
+        dJointSetBallAnchor(joint, dReal(point.x()), dReal(point.y()), dReal(point.z()));
+        return joint;
+    }
+    /// Contacts without friction of all that touches, but of what joints hold together.
+    void collide(ode::World& world) {
+        world_ = &world;
+        dSpaceCollide(space, this, &Rig::near);
+    }
+    /// The same, by the World.
+    void meet(ode::World& world) {
+        world.on_contacts({.space = space, .group = contacts}, [this, &world] { collide(world); });
+    }
+
+  private:
+    static void near(void* data, dGeomID a, dGeomID b) {
+        auto& rig = *static_cast<Rig*>(data);
+        if (are_joined(a, b)) return;
+        dSurfaceParameters surface{};
+        surface.mode = dContactApprox1;
+        rig.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
+            rig.world_->add_contact(joint, contact);
+        });
+    }
+    ode::World* world_ = nullptr;
+};
+
+inline void set_velocity(dBodyID body, const V3& v) {
+    dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
+}
+
+/// The same segments, each a body of its own.
+struct AlwaysJointed {
+    using Hinge = ode::PlasticHinge<UsualAxisJoint>;
+
+    AlwaysJointed(const Rig& rig, ode::World& world, const Member& member) {
+        double place = 0;
+        dBodyID before = nullptr;
+        for (int k = 0; k < member.segments(); ++k) {
+            const MemberSegment& segment = member.segment(k);
+            if (segment.held) continue;
+            const dBodyID body =
+                rig.body(segment.mass, segment.inertia, {0, 0, place + segment.length / 2});
+            world.add(body);
+            bodies.push_back(body);
+            if (k > 0) {
+                hinges.push_back(std::make_unique<Hinge>(
+                    rig.id, body, before,
+                    ode::HingeFrame{.anchor = {0, 0, place}, .axis = {1, 0, 0}},
+                    member.section(k - 1)));
+                world.add(*hinges.back());
+            }
+            before = body;
+            place += segment.length;
+        }
+    }
+    [[nodiscard]] double absorbed_energy() const {
+        double sum = 0;
+        for (const auto& hinge : hinges) sum += hinge->absorbed_energy();
+        return sum;
+    }
+
+    std::vector<dBodyID> bodies;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+};
+
+/// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
+struct Struck {
+    Rig rig;
+    ode::World world;
+    std::unique_ptr<AlwaysJointed> always;
+    std::unique_ptr<ode::Member> member;
+    dBodyID mass;
+    dJointID pin;
+
+    Struck(const Member& of, bool just_in_time, double tolerance = 0)
+        : world(rig.id, {.tolerance = tolerance, .warn = {}}),
+          mass(rig.body(1, {1, 1, 1}, {0, 0, 1})) {
+        world.add(mass);
+        if (just_in_time) {
+            member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
+            pin = rig.pin(member->body_of(1), mass, {0, 0, 1});
+            world.add(*member, "post");
+        } else {
+            always = std::make_unique<AlwaysJointed>(rig, world, of);
+            pin = rig.pin(always->bodies.back(), mass, {0, 0, 1});
+        }
+    }
+    void strike(double speed) const { set_velocity(mass, {0, speed, 0}); }
+    [[nodiscard]] double absorbed_energy() const {
+        return member ? member->absorbed_energy() : always->absorbed_energy();
+    }
+    [[nodiscard]] double bend(int section) const {
+        return member ? member->bend(section) : always->hinges[std::size_t(section)]->rotation();
+    }
+};
+
+/// A ball that strikes the end of a clamped post, 0 ... 2 s.
+struct BallOnPost {
+    Rig rig;
+    ode::World world;
+    std::unique_ptr<ode::Member> post;
+    dBodyID ball;
+
+    BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
+               double half = 0.05, double gap = 0.00713)
+        : world(rig.id, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
+        constexpr double radius = 0.1;
+        const double inertia = 0.4 * mass * radius * radius;
+        ball = rig.body(mass, {inertia, inertia, inertia},
+                        {0, -half - radius - gap, of.length() - 0.03});
+        dGeomSetBody(dCreateSphere(rig.space, dReal(radius)), ball);
+        set_velocity(ball, {0, speed, 0});
+        world.add(ball);
+        const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
+        rig.boxes(body, of, half);
+        post = std::make_unique<ode::Member>(body, of, here);
+        world.add(*post, "post");
+        rig.meet(world);
+    }
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+} // namespace ductile::test::in_ode
