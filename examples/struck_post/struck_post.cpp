@@ -14,7 +14,7 @@
 // what is left of the ball's motion along the bent post some more.
 //
 //   hit 1: 1509 J absorbed, tip at 0.164 m, one body
-//   hit 2: 3026 J absorbed, tip at -0.001 m, one body
+//   hit 2: 3026 J absorbed, tip at -0.002 m, one body
 //   hit 3: 4544 J absorbed, tip at 0.162 m, one body
 #include <btBulletDynamicsCommon.h>
 
