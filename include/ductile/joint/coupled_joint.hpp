@@ -149,8 +149,9 @@ class CoupledJoint {
   private:
     /// What all rows together did in a step.
     struct Taken {
-        Vector force;    ///< f; once the step has broken the joint, that just before [N | N m]
-        Scalar flow = 0; ///< [J]
+        Vector force;     ///< f; once the step has broken the joint, that just before [N | N m]
+        Scalar flow = 0;  ///< that is booked [J]
+        Scalar asked = 0; ///< all of it [J]
         StepError<Scalar> error{};
         int axis = 0; ///< that did most of it
         Eigen::Array<bool, dimension, 1> at_bound = Eigen::Array<bool, dimension, 1>::Zero();
@@ -306,13 +307,16 @@ class CoupledJoint {
 
     /// Uses up life for the work of flow of all rows together.
     void flow(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept {
-        const Scalar work = taken.flow;
+        const Scalar work = taken.flow, strength = first_strength_ * grown_;
+        const bool spent =
+            share_ < carries_nothing<Scalar> && uses_up(taken.asked / strength, left_);
         if (!(work > 0)) {
             step.other_work += work;
             step.direction.setZero();
+            state_.broken = spent;
+            if (spent) end_after(step, taken, reaction, Scalar(0), dt);
             return;
         }
-        const Scalar strength = first_strength_ * grown_;
         Scalar travel = work / strength;
         // of the travel whose work is booked: a spring's is where the step ends
         const Scalar slipped = -numeric::dot(taken.force, step.direction);
@@ -320,8 +324,8 @@ class CoupledJoint {
         const Scalar booked = differs ? std::min(work / slipped, Scalar(2)) : Scalar(1);
         const Scalar life = lives_.of(step.direction) * share_ * booked;
         const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
-        const bool last = uses_up(travel, left);
-        if (last) travel = left;
+        const bool last = spent || uses_up(travel, left);
+        if (last) travel = std::min(travel, left);
         step.plastic_work = strength * travel;
         state_.life = std::min(state_.life + life * (step.plastic_work / work), Scalar(1));
         state_.plastic_travel += travel;

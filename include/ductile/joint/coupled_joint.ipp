@@ -101,6 +101,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         step.other_work += booked.other + (1 - share) * booked.flow;
         if (!rigid(i)) state_.plastic_offset[i] += booked.travel;
         if (!solved) continue;
+        taken.asked += booked.flow;
         step.claimed += implicit_[i] * booked.flow;
         step.unclaimed += booked.travel == 0 ? implicit_[i] * booked.other : Scalar(0);
         step.direction[i] = share * booked.travel;

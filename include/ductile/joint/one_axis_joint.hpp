@@ -295,9 +295,10 @@ class OneAxisJoint {
         }
         step.claimed = solved_share() * std::max(work, Scalar(0));
         const Scalar booked = 1 - solved_share() * (1 - taken.granted);
+        const bool spent = share_ < carries_nothing<Scalar> && uses_up(std::abs(travel), left_);
         travel *= booked;
-        const bool last = uses_up(std::abs(travel), left_);
-        if (last) travel = std::copysign(left_, travel);
+        const bool last = spent || uses_up(std::abs(travel), left_);
+        if (last) travel = std::copysign(std::min(std::abs(travel), left_), travel);
         const FlowWork<Scalar> done = law_.commit(state_.law, travel);
         step.plastic_work = done.dissipated * fade_;
         step.elastic += done.stored * fade_;

@@ -26,7 +26,8 @@
 namespace ductile {
 
 /// Strength factor of a criterion midway through the travel `ahead` >= 0 [m | rad], or through what
-/// it leaves of it: beyond its end there is no strength to take [-]. `strength` without it [N | N m].
+/// it leaves of it: beyond its end there is no strength to take [-]. `strength` without it [N | N
+/// m].
 template <FractureCriterion Criterion>
 [[nodiscard]] typename Criterion::Scalar midway_factor(
     const Criterion& criterion, const typename Criterion::State& state,
@@ -38,10 +39,10 @@ template <FractureCriterion Criterion>
     return left < ahead ? criterion.strength_factor(state, left / 2) : factor;
 }
 
-/// Travel of a step that starts at `speed`, predicted from below, so that a step that can break does
-/// break: with the speed that the last step took, `before` less `after`, where the joint flowed in
-/// it, else with a stop inside this one. What somebody gave back between the steps, a driver or a
-/// kick, is not in it. All along the motion [m | rad, m/s | rad/s].
+/// Travel of a step that starts at `speed`, predicted from below, so that a step that can break
+/// does break: with the speed that the last step took, `before` less `after`, where the joint
+/// flowed in it, else with a stop inside this one. What somebody gave back between the steps, a
+/// driver or a kick, is not in it. All along the motion [m | rad, m/s | rad/s].
 template <std::floating_point S>
 [[nodiscard]] S travel_ahead(S speed, S before, S after, bool flowing, S dt) noexcept {
     const S lost = std::max(before - after, S(0));
@@ -67,6 +68,12 @@ template <std::floating_point S>
 [[nodiscard]] bool uses_up(S travel, S left) noexcept {
     return travel >= left * (1 - leftover_share<S>);
 }
+
+/// Below this share of its strength a joint carries nothing; what it would have flowed in a step
+/// ends it then, whatever part of that is booked (world/share_work.hpp): a part of what is left,
+/// step after step, has no end [-].
+template <std::floating_point S>
+inline constexpr S carries_nothing = S(0.01);
 
 /// Time from the start of the step until `distance` x is run through, in [0, dt] [s]; u, u' along
 /// the motion [m/s | rad/s], s in (0, 1].

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of world_parts.hpp: contacts, who makes them, what they are asked and which close. A part of
+// world_parts.ipp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "ductile/ode/convert.hpp"
+
+namespace ductile::ode {
+
+namespace detail {
+
+/// With the normal on the first of its bodies.
+[[nodiscard]] DUCTILE_INLINE std::pair<AttachedBodies, SeenContact> seen_contact(
+    const NamedContact& named) {
+    const AttachedBodies bodies = attached_bodies(named.joint);
+    const Vector3<double> point = to_core(named.contact.geom.pos);
+    return {bodies,
+            {.point = point,
+             .normal = scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal)),
+             .arm_a = arm_of(bodies.a, point),
+             .arm_b = arm_of(bodies.b, point)}};
+}
+[[nodiscard]] DUCTILE_INLINE bool before(const AttachedBodies& x, const AttachedBodies& y) {
+    const std::less<dBodyID> less;
+    return x.a != y.a ? less(x.a, y.a) : less(x.b, y.b);
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
+    of_.contacts.clear();
+    if (of_.maker) of_.maker->make(of_.bodies);
+    closing_.look(of_.contacts, of_.joints, of_.members.bodies());
+} catch (...) {
+    if (moved != nullptr) moved->put_poses_back();
+    if (moved == &snapshot_) of_.meter.put_back();
+    drop_forces();
+    forces_.apply(); // as they were
+    leave();
+    throw;
+}
+
+DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
+    for (NamedContact& named : of_.contacts) {
+        dSurfaceParameters& surface = named.contact.surface;
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        const double gap = closed_depth - double(named.contact.geom.depth);
+        const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
+        if (!plastic && (surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
+        if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
+        surface.mode |= dContactSoftERP;
+        surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
+        if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
+        if (!blow && plastic) {
+            if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
+            surface.mode |= dContactMotionN;
+            surface.motionN += dReal(turned(named, h) - std::max(0.0, 2 * gap / h));
+        }
+        const dJointID old = named.joint;
+        named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
+        dJointAttach(named.joint, dJointGetBody(old, 0), dJointGetBody(old, 1));
+        dJointSetFeedback(named.joint, dJointGetFeedback(old));
+        dJointDisable(old);
+    }
+}
+
+DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
+    const auto [bodies, now] = detail::seen_contact(named);
+    const auto first = std::lower_bound(seen_.begin(), seen_.end(), bodies,
+                                        [](const auto& seen, const AttachedBodies& key) {
+                                            return detail::before(seen.first, key);
+                                        });
+    const SeenContact* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto seen = first; seen != seen_.end() && seen->first == bodies; ++seen) {
+        const double distance = norm(difference(seen->second.point, now.point));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &seen->second;
+    }
+    if (nearest == nullptr) return 0;
+    const auto motion = [](dBodyID body) {
+        return body == nullptr ? ContactBody{}
+                               : ContactBody{linear_velocity(body), angular_velocity(body)};
+    };
+    return turned_contact(now, *nearest, motion(bodies.a), motion(bodies.b), h / 2, h / 2);
+}
+
+DUCTILE_INLINE void WorldParts::open_others() {
+    for (const NamedContact& named : of_.contacts) {
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        if (!closing_.is_plastic(a) && !closing_.is_plastic(b)) dJointDisable(named.joint);
+    }
+}
+
+DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    apart_ = apart;
+    ClosingContacts found;
+    if (!of_.maker) return found;
+    if (!std::exchange(looked_, true)) look();
+    seen_.clear();
+    if (!closing_.any_plastic()) return found;
+    for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
+    std::stable_sort(seen_.begin(), seen_.end(),
+                     [](const auto& x, const auto& y) { return detail::before(x.first, y.first); });
+    closing_.remember();
+    found.strikes = closing_.strikes(touching);
+    if (found.strikes) return found;
+    found.time = closing_.next_gap(apart);
+    if (!(found.time < h)) found.time = next_gap(h, apart);
+    return found;
+}
+
+DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
+    constexpr double most = 4096;
+    double next = std::numeric_limits<double>::infinity();
+    const double lengths = closing_.lengths(*of_.maker, of_.bodies, h);
+    if (!(lengths > 1)) return next; // the part itself is looked at twice
+    const int looks = int(std::min(std::ceil(lengths), most));
+    looked_from_.take(of_.bodies, {});
+    for (int i = 1; i <= looks && !(next < h); ++i) {
+        const double time = std::min(i / lengths, 1.0) * h;
+        half_ahead_.move(of_.bodies, time);
+        look(&looked_from_);
+        next = closing_.closed(time, time, apart);
+        looked_from_.put_poses_back();
+    }
+    looked_ = false;
+    return lengths > most ? std::min(next, most / lengths * h) : next;
+}
+
+} // namespace ductile::ode
