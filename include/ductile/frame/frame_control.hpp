@@ -81,6 +81,7 @@ class FrameControl {
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         double too_far = 0;   ///< largest PartRow::too_far [rad]
+        double power = 0;     ///< of all rows at their strength [W]
         bool ended = false;   ///< a flow ended in it
         bool moves = false;   ///< something was to be judged
     };

@@ -146,6 +146,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         const PartMotion& motion = engine.part(h);
         ++solves_;
         Judgement judged = judge(motion, h, shortest);
+        const double early = judged.closed;
         if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         // of one that turned too far it says nothing, and such a part is no way out
@@ -155,6 +156,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         const bool done = jump || !saved || spent() || tries > detail::most_tries ||
                           (h <= shortest && judged.closed == 0);
         if (good || done) {
+            // what a contact pushed before it touched moved rows for as long
+            if (spent()) judged.error += judged.power * early;
             stand(engine, motion, judged, h, at_event, jump, rings);
             return h;
         }
@@ -190,7 +193,7 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    double ahead = 0, power = 0, largest = 0, unmissed = motion.closed_work * detail::unmissed;
+    double ahead = 0, largest = 0, unmissed = motion.closed_work * detail::unmissed;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         unmissed += row.strength * row.least * detail::unmissed;
@@ -207,7 +210,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         }
         ahead += work_ahead(row, h);
         judged.of_rows = judged.error;
-        power += row.strength * std::abs(row.start + row.end) / 2;
+        judged.power += row.strength * std::abs(row.start + row.end) / 2;
     }
     judged.error += judged.given;
     judged.moves = !(ahead <= 0); // also where it is no number
@@ -216,7 +219,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (!(h <= shortest)) {
             judged.error += detail::contact_share * std::abs(motion.contact_work);
         }
-        if (motion.contact_lost) judged.error += power * h / 2;
+        if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
     const double share = detail::part_share * parameters_.tolerance;
     judged.tolerated = share * (motion.plastic_work + ahead + unmissed);

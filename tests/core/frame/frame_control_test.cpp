@@ -285,6 +285,31 @@ TEST_CASE("A part that turned too far is no way out of a force that does not com
     CHECK(engine.longest < frame / 2);
 }
 
+TEST_CASE("What a budget spent on gaps left is told", "[frame]") {
+    /// Something touches half way through each part, unforeseen, and pushes a row all along.
+    struct Touches final : ductile::PartEngine {
+        ductile::PartMotion motion{
+            .rows = {ductile::PartRow{.start = 1, .end = 1, .share = 1, .strength = 1}}};
+        double work = 0, kept = 0;
+        void save() override { kept = work; }
+        void put_back() override { work = kept; }
+        const ductile::PartMotion& part(double h) override {
+            motion.plastic_work = work += h;
+            motion.closed = h / 2;
+            return motion;
+        }
+        const ductile::PartMotion& blow() override { return motion; }
+        void accept(double) override {}
+        ductile::ClosingContacts closing(double, double, double) override { return {}; }
+        double kinetic_energy() const override { return 1; }
+    } engine;
+    FrameControl control({.tolerance = 0.01, .budget = 4});
+    const auto& report = control.frame(engine, frame);
+    CHECK(report.solves() <= 6);
+    CHECK_FALSE(control.run().believed());
+    CHECK(control.run().left.energy > 0.4 * frame);
+}
+
 TEST_CASE("A frame and its tolerance are checked by name", "[frame]") {
     Engine engine = sliding_mass();
     FrameControl control;
