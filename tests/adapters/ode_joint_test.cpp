@@ -11,10 +11,12 @@
 #include <array>
 #include <cmath>
 #include <cstdarg>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "adapters/six_axis.hpp"
+#include "ductile/ode/point_rows.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -175,8 +177,8 @@ TEST_CASE("bodies of any mass bend alike under forces in proportion", "[six]") {
 }
 
 TEST_CASE("rows that ODE solves itself bend bodies of any mass alike", "[six]") {
-    // beside a hinge of ODE's own, which keeps the island with ODE; where its solver takes a row out
-    // that is left as it is, all of the answer goes at A = 1e8 1/(kg m²)
+    // beside a hinge of ODE's own, which keeps the island with ODE; where its solver takes a row
+    // out that is left as it is, all of the answer goes at A = 1e8 1/(kg m²)
     const auto bent = [](double scale) {
         Rig rig("direct", none);
         const V6 capacity = scale * (V6() << 1e5, 1e5, 1e5, 60, 50, 40).finished();
@@ -287,6 +289,35 @@ TEST_CASE("after a break nothing of a six-axis joint is left on its bodies", "[s
     }
     for (const JointAxis axis : all_joint_axes) CHECK(joint.force(axis) == 0);
     CHECK(joint.utilisation() == 0);
+}
+
+TEST_CASE("rows that a step leaves out leave no force behind", "[six]") {
+    Rig rig(Rig::solvers().front(), none);
+    const dBodyID body = rig.body(1, sphere(0.5), none, none, none);
+    ode::PointRows rows(rig.world());
+    const auto pushed = [&](double along_z) {
+        std::array<ode::PointRow, 3> of;
+        for (int i = 0; i < 3; ++i) {
+            of[std::size_t(i)].direction[i] = 1;
+            of[std::size_t(i)].row = {.strength = i < 2 ? 5 : along_z, .velocity = 100};
+        }
+        rows.make(body, nullptr, none, of);
+        rig.step(0.01);
+        return rows.collect().force;
+    };
+    const V3 all = pushed(5), two = pushed(0);
+    CHECK(std::abs(all[2]) == Approx(5));
+    CHECK(std::abs(two[0]) == Approx(5));
+    CHECK(two[2] == 0);
+}
+
+TEST_CASE("rows are scaled to where ODE's direct solver keeps nine digits", "[six]") {
+    // taking one out loses a share of ε A²/8 (point_rows.hpp)
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    for (double diagonal = 1; diagonal < 1e13; diagonal *= 3) {
+        const double s = ode::row_scale(diagonal), made = s * s * diagonal;
+        CHECK(epsilon * made * made / 8 < 3e-9);
+    }
 }
 
 TEST_CASE("bodies that sleep on a six-axis joint wake as they fell asleep", "[six]") {
