@@ -230,6 +230,19 @@ TEST_CASE("a linear motor acts midway between the bodies and keeps their angular
     CHECK(std::abs(rig.ledger().unexplained()) < exact * 16);
 }
 
+TEST_CASE("a motor says by how much its pin was left unsolved", "[ode][motor]") {
+    Rig rig("quick", {3, -9.81, 5});
+    const V3 at(0.7, 0.2, -0.4);
+    auto body = rig.body(2, sphere(0.5), at, none, 3 * e1);
+    auto& motor = rig.motor(hinge(rig.world(), body, nullptr).axis, joint(12));
+    dWorldSetQuickStepNumIterations(rig.world(), 1);
+    rig.step(dt);
+    // the point of the body that is held, where it was when the step was solved
+    const V3 off = Rig::velocity(body) + Rig::spin(body).cross(-at);
+    REQUIRE(off.norm() > 1e-3);
+    CHECK(motor.rigid_residual() == Approx(off.cwiseAbs().maxCoeff()).epsilon(1e-3));
+}
+
 TEST_CASE("both axes of a universal flow at once, each with its own strength", "[ode][motor]") {
     const auto solver = GENERATE(from_range(Rig::solvers()));
     const bool wheel = GENERATE(false, true);
