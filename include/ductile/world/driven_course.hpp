@@ -60,15 +60,11 @@ class DrivenCourse {
     class Velocity {
       public:
         void begin(const Vector3<double>& mean, double length) noexcept {
-            const bool goes_on = past_.goes_on(mean, length);
-            const Vector3<double> last_slope = past_.slope;
             past_.book(mean, length);
-            start_ = goes_on ? end_ : mean;
+            start_ = past_.smooth > 0 ? end_ : mean;
             end_ = mean;
-            if (!goes_on) return;
-            const Vector3<double> bend = past_.smooth < 2 ? Vector3<double>(Vector3<double>::Zero())
-                                                          : difference(past_.slope, last_slope);
-            end_ = sum(end_, scaled(length / 4, sum(scaled(2, past_.slope), bend)));
+            if (past_.smooth > 0) end_ = sum(end_, scaled(length / 2, past_.slope));
+            if (past_.smooth > 1) end_ = sum(end_, scaled(length / 4, past_.change));
         }
         [[nodiscard]] Vector3<double> at(double share) const noexcept {
             return sum(start_, scaled(share, difference(end_, start_)));
