@@ -4,7 +4,8 @@
 // their surface, solve what is left exactly, look again.
 //
 //   round   rows at a bound: x = bound; blocks on their surface: x there
-//           Newton on the rest, with one factorisation as long as it converges by a tenth a step
+//           Newton on the rest, with one factorisation as long as it converges by a tenth a step,
+//           that of the last round where no side changed
 //           each row and block looks where it belongs; those that are wrong change over
 //           contacts that slide take the slip of now for their shift (contact_form.hpp),
 //           accelerated
@@ -53,7 +54,7 @@ class ActiveSet {
         return contacts_held_ && block.kind == BlockKind::contact;
     }
     void place();
-    [[nodiscard]] bool solve_free_rows();
+    [[nodiscard]] bool solve_free_rows(bool factored);
     [[nodiscard]] double set_right_sides();
     void set_tangents();
     [[nodiscard]] bool take_step();

@@ -28,13 +28,15 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits)
     begin();
     int fewest = std::numeric_limits<int>::max(), patience = limits.patience;
     slip_.restart();
+    bool same = false; // all sides are as they were, and the factors of use
     while (rounds_ < limits.rounds) {
         ++rounds_;
         place();
-        const bool solved = solve_free_rows();
+        const bool solved = solve_free_rows(same);
         const double moved = read_slips(); // before a guess takes the place of what was solved
         const int wrong = change_over();
         if (wrong == 0 && moved <= detail::settled * system.scale()) return solved;
+        same = wrong == 0 && solved;
         if (wrong == 0) { // contacts alone have to settle
             slip_.advance(shifts_, slips_);
             shift_contacts();
@@ -164,9 +166,10 @@ DUCTILE_INLINE bool ActiveSet::take_step() {
     return stays;
 }
 
-/// To round-off, with the sides as they are. What the factors were not made for, a surface that a
-/// block moved along, calls for others; round-off does not.
-DUCTILE_INLINE bool ActiveSet::solve_free_rows() {
+/// To round-off, with the sides as they are; `factored`: by factors that were made for these sides.
+/// What the factors were not made for, a surface that a block moved along, calls for others;
+/// round-off does not.
+DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     constexpr int steps = 12;
     constexpr double slow = 0.1, stalled = 0.5;
     const std::vector<IslandBlock>& blocks = system_->island().blocks;
@@ -174,8 +177,8 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows() {
         return block.state == BlockState::surface;
     });
     const double enough = detail::exactness * system_->scale();
-    set_tangents();
-    bool factored = false, stays = true;
+    if (!factored) set_tangents();
+    bool stays = true;
     int last = steps;
     double worst = 0, before = std::numeric_limits<double>::infinity();
     for (int step = 0;; ++step) {

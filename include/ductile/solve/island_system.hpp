@@ -43,6 +43,7 @@ class IslandSystem {
         double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
         double residual = 0;   ///< b - shift - J v - C x, C of the answer
         double weight = 0;     ///< W
+        double factored = 0;   ///< that of the last factors
         double right = 0;      ///< g
         double extra = 0;      ///< e
         double rest = 0;       ///< g - J dv
@@ -99,7 +100,13 @@ class IslandSystem {
         std::size_t first = 0, end = 0;
         int a = immovable, b = immovable;
         numeric::BlockLdlt::Place place{};
+        numeric::BlockLdlt::Block on_a, on_b, across; ///< Jᵀ D J of its rows, where `known`
+        bool known = false;
+        bool ranks = false; ///< terms of a block are in it
+
+        void add(double weight, const Vector6<double>& of_a, const Vector6<double>& of_b) noexcept;
     };
+    void update(Run& run) noexcept;
     void make_isotropic(const IslandBlock& block) noexcept;
     void find_runs();
     [[nodiscard]] bool is_forest();

@@ -12,11 +12,6 @@ namespace ductile::solve {
 
 namespace detail {
 
-/// u += f v
-DUCTILE_INLINE void add_scaled(Vector6<double>& u, double f, const Vector6<double>& v) noexcept {
-    u += f * v;
-}
-
 /// A row's entries on an axis that a body has locked are of no effect.
 DUCTILE_INLINE double own_effect(Vector6<double>& on, const IslandBody& body) noexcept {
     for (int i = 0; i < 6; ++i) {
@@ -131,7 +126,10 @@ DUCTILE_INLINE void IslandSystem::find_runs() {
     for (std::size_t i = 0; i < island_->rows.size(); ++i) {
         const IslandRow& row = island_->rows[i];
         if (runs_.empty() || runs_.back().a != row.a || runs_.back().b != row.b) {
-            runs_.push_back({.first = i, .end = i, .a = row.a, .b = row.b, .place = {}});
+            Run& run = runs_.emplace_back();
+            run.first = i;
+            run.a = row.a;
+            run.b = row.b;
             if (row.a >= 0 && row.b >= 0)
                 edges_.emplace_back(std::min(row.a, row.b), std::max(row.a, row.b));
         }
@@ -166,10 +164,8 @@ DUCTILE_INLINE void IslandSystem::update_velocities() noexcept {
     for (IslandBody& body : bodies) body.velocity.setZero();
     for (const IslandRow& row : island_->rows) {
         if (row.impulse == 0) continue;
-        if (row.a >= 0)
-            detail::add_scaled(bodies[std::size_t(row.a)].velocity, row.impulse, row.on_a);
-        if (row.b >= 0)
-            detail::add_scaled(bodies[std::size_t(row.b)].velocity, row.impulse, row.on_b);
+        if (row.a >= 0) bodies[std::size_t(row.a)].velocity += row.impulse * row.on_a;
+        if (row.b >= 0) bodies[std::size_t(row.b)].velocity += row.impulse * row.on_b;
     }
     for (IslandBody& body : bodies) {
         const Vector6<double> impulse = body.velocity;
@@ -188,28 +184,44 @@ DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
     }
 }
 
+/// J^T D J of the rows between two bodies, where D is another than the last time: most rows of a
+/// structure are as they were.
+DUCTILE_INLINE void IslandSystem::update(Run& run) noexcept {
+    bool same = run.known;
+    for (std::size_t i = run.first; i < run.end; ++i) {
+        Row& row = rows_[i];
+        same = same && row.weight == row.factored;
+        row.factored = row.weight;
+    }
+    if (same && !run.ranks) return;
+    run.known = true;
+    run.on_a.setZero();
+    run.on_b.setZero();
+    run.across.setZero();
+    for (std::size_t i = run.first; i < run.end; ++i) {
+        if (rows_[i].weight != 0) {
+            run.add(rows_[i].weight, island_->rows[i].on_a, island_->rows[i].on_b);
+        }
+    }
+}
+
+DUCTILE_INLINE void IslandSystem::Run::add(double weight, const Vector6<double>& of_a,
+                                           const Vector6<double>& of_b) noexcept {
+    if (a >= 0) on_a.noalias() += (weight * of_a) * of_a.transpose();
+    if (b >= 0) on_b.noalias() += (weight * of_b) * of_b.transpose();
+    if (a < 0 || b < 0) return;
+    const bool turned = place.transposed;
+    across.noalias() += (weight * (turned ? of_b : of_a)) * (turned ? of_a : of_b).transpose();
+}
+
 DUCTILE_INLINE bool IslandSystem::factor() noexcept {
     ++factorisations_;
     factors_.clear();
     for (std::size_t i = 0; i < island_->bodies.size(); ++i) {
         factors_.diagonal(int(i)) = island_->bodies[i].mass;
     }
-    const auto add = [this](const Run& run, double weight, const Vector6<double>& on_a,
-                            const Vector6<double>& on_b) {
-        if (run.a >= 0) factors_.diagonal(run.a).noalias() += (weight * on_a) * on_a.transpose();
-        if (run.b >= 0) factors_.diagonal(run.b).noalias() += (weight * on_b) * on_b.transpose();
-        if (run.a < 0 || run.b < 0) return;
-        const bool turned = run.place.transposed;
-        const Vector6<double>& left = turned ? on_b : on_a;
-        const Vector6<double>& right = turned ? on_a : on_b;
-        factors_.off_diagonal(run.place).noalias() += (weight * left) * right.transpose();
-    };
-    for (const Run& run : runs_) {
-        for (std::size_t i = run.first; i < run.end; ++i) {
-            const double weight = rows_[i].weight;
-            if (weight != 0) add(run, weight, island_->rows[i].on_a, island_->rows[i].on_b);
-        }
-    }
+    for (Run& run : runs_) update(run);
+    for (Run& run : runs_) run.ranks = false;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         const IslandBlock& given = island_->blocks[k];
         for (const Block::Term& term : blocks_[k].terms) {
@@ -217,11 +229,18 @@ DUCTILE_INLINE bool IslandSystem::factor() noexcept {
             Vector6<double> on_a = Vector6<double>::Zero(), on_b = Vector6<double>::Zero();
             for (int i = 0; i < given.count; ++i) {
                 const IslandRow& row = island_->rows[std::size_t(given.first + i)];
-                detail::add_scaled(on_a, term.direction[i], row.on_a);
-                detail::add_scaled(on_b, term.direction[i], row.on_b);
+                on_a += term.direction[i] * row.on_a;
+                on_b += term.direction[i] * row.on_b;
             }
-            add(runs_[blocks_[k].run], term.coefficient, on_a, on_b);
+            Run& run = runs_[blocks_[k].run];
+            run.add(term.coefficient, on_a, on_b);
+            run.ranks = true;
         }
+    }
+    for (const Run& run : runs_) {
+        if (run.a >= 0) factors_.diagonal(run.a) += run.on_a;
+        if (run.b >= 0) factors_.diagonal(run.b) += run.on_b;
+        if (run.a >= 0 && run.b >= 0) factors_.off_diagonal(run.place) += run.across;
     }
     return factors_.factor();
 }
@@ -251,8 +270,8 @@ DUCTILE_INLINE void IslandSystem::step() noexcept {
         const double impulse = rows_[i].change;
         if (impulse == 0) continue;
         const IslandRow& row = island_->rows[i];
-        if (row.a >= 0) detail::add_scaled(change_[std::size_t(row.a)], impulse, row.on_a);
-        if (row.b >= 0) detail::add_scaled(change_[std::size_t(row.b)], impulse, row.on_b);
+        if (row.a >= 0) change_[std::size_t(row.a)] += impulse * row.on_a;
+        if (row.b >= 0) change_[std::size_t(row.b)] += impulse * row.on_b;
     }
     factors_.solve(change_);
     for (std::size_t i = 0; i < rows_.size(); ++i) {

@@ -23,13 +23,8 @@ DUCTILE_INLINE solve::IslandBlock ellipsoid_of(const AnyLink<double>& link, int 
 }
 
 DUCTILE_INLINE void add_ellipsoid(solve::Island& island, const AnyLink<double>& link,
-                                  solve::IslandBlock block, int first, double dt) {
-    if (link.totals().flowing) {
-        block.state = solve::BlockState::surface;
-        for (int i = first; i < first + 6; ++i) {
-            island.rows[std::size_t(i)].impulse = link.forces()[i - first] * dt;
-        }
-    }
+                                  solve::IslandBlock block) {
+    if (link.totals().flowing) block.state = solve::BlockState::surface;
     island.blocks.push_back(block);
 }
 
@@ -85,9 +80,10 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
         row.softness = section_softness / (stiffness[i] * dt * dt);
         row.lower = limits.lower * dt;
         row.upper = limits.upper * dt;
+        row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
     if (on_surface) {
-        detail::add_ellipsoid(island, link, block, first, dt);
+        detail::add_ellipsoid(island, link, block);
     } else if (link.totals().flowing) {
         detail::begin_at_bounds(island, link, first);
     }
