@@ -12,7 +12,9 @@
 //                         force was that of its flow back
 //   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
 //                         three times that where the flow began within the part
-//   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
+//   one that flows with a force that was foretold, and is d R short of its strength:  + d |u + u'|
+//   h/2 an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of
+//   its
 //                         strength that makes it matter; nothing below 5 % of R
 //
 // Symbols
@@ -42,6 +44,7 @@ struct PartRow {
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
     double strength = 0;   ///< R; 0 where broken [N | N m]
+    double below = 0;      ///< share of R by which it flows below it, where its force was foretold
     bool pushes = false;   ///< the force went with u: it is that of a flow the other way
     double noise = 0;      ///< speed that is as good as rest [m/s | rad/s]
     double turning = 0;    ///< speed that a row may keep that turns with its bodies and holds
@@ -87,10 +90,11 @@ struct PartBefore {
     const double share = std::min(1.0, row.share);
     const bool moved = start > row.noise; // at the start of the part
     const double changed = 2 * std::abs(change / h - before.acceleration) / (h + before.length);
+    const double below = row.below * std::abs(row.start + row.end) * h / 2;
     if (row.elastic) {
         constexpr double idle = 0.05, least_weight = 0.3;
         if (share <= idle) return result;
-        result.travel = changed * h * h * h / 8 * std::max(share, least_weight);
+        result.travel = changed * h * h * h / 8 * std::max(share, least_weight) + below;
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
         result.travel = start * h * (1 - share) / 2;
         double stop = share * h;
@@ -103,7 +107,7 @@ struct PartBefore {
         if (stop > nothing * h && stop < whole * h) result.stop = stop;
         result.ended = result.travel > noticed * start * h;
     } else {
-        result.travel = changed * h * h * h / (moved ? 12 : 4);
+        result.travel = changed * h * h * h / (moved ? 12 : 4) + below;
     }
     return result;
 }

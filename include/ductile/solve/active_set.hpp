@@ -15,7 +15,8 @@
 // otherwise. A block that comes to its surface starts from there.
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
-// where many rows change over together: then the rounds end, and interior_point.hpp has the word.
+// where many rows change over together: then those alone that are most wrong do, and where the
+// rounds end without an answer interior_point.hpp has the word.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once
@@ -59,7 +60,11 @@ class ActiveSet {
     void set_tangents();
     [[nodiscard]] bool take_step();
     [[nodiscard]] int change_over();
-    [[nodiscard]] Side where(std::size_t row) const;
+    struct Place {
+        Side side = Side::free;
+        double off = 0; ///< [m/s | rad/s]
+    };
+    [[nodiscard]] Place where(std::size_t row) const;
     [[nodiscard]] double read_slips();
     void shift_contacts();
 
@@ -68,6 +73,7 @@ class ActiveSet {
     std::vector<double> shifts_, slips_; ///< of contacts, in order
     int rounds_ = 0;
     bool contacts_held_ = false;
+    bool cautious_ = false; ///< rows that are most wrong go first
 };
 
 } // namespace ductile::solve

@@ -29,6 +29,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits)
     int fewest = std::numeric_limits<int>::max(), patience = limits.patience;
     slip_.restart();
     bool same = false; // all sides are as they were, and the factors of use
+    cautious_ = false;
     while (rounds_ < limits.rounds) {
         ++rounds_;
         place();
@@ -49,7 +50,10 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits)
             fewest = wrong;
             patience = limits.patience;
         } else if (--patience <= 0) {
-            return false;
+            if (cautious_) return false;
+            cautious_ = true;
+            fewest = std::numeric_limits<int>::max();
+            patience = limits.rounds;
         }
     }
     return false;
@@ -179,20 +183,14 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     const double enough = detail::exactness * system_->scale();
     if (!factored) set_tangents();
     bool stays = true;
-    int last = steps;
     double worst = 0, before = std::numeric_limits<double>::infinity();
     for (int step = 0;; ++step) {
         system_->update_velocities();
         system_->update_residuals();
         worst = set_right_sides();
         if (worst <= enough) return true;
-        if (!stays || std::isnan(worst)) break;
-        if (step >= last || (step > 1 && !curved && worst > stalled * before)) {
-            if (worst <= detail::acceptance * system_->scale() || !system_->soften()) break;
-            last = step + steps;
-            before = std::numeric_limits<double>::infinity();
-            continue;
-        }
+        if (!stays || std::isnan(worst) || step >= steps) break;
+        if (step > 1 && !curved && worst > stalled * before) break;
         if (!factored || (curved && !(worst < slow * before))) {
             set_tangents();
             static_cast<void>(set_right_sides());
@@ -206,30 +204,41 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     return stays && worst <= detail::sufficient * system_->scale();
 }
 
-DUCTILE_INLINE Side ActiveSet::where(std::size_t i) const {
+/// Where a row belongs, and by how much it is wrong where it is [m/s | rad/s].
+DUCTILE_INLINE ActiveSet::Place ActiveSet::where(std::size_t i) const {
     const IslandRow& row = system_->island().rows[i];
     const IslandSystem::Row& work = system_->rows()[i];
-    if (work.own == 0 || !(row.lower < row.upper)) return row.side;
+    if (work.own == 0 || !(row.lower < row.upper)) return {row.side, 0};
     const double least = detail::acceptance * system_->scale();
-    if (row.side == Side::lower) return work.residual > least ? Side::free : Side::lower;
-    if (row.side == Side::upper) return work.residual < -least ? Side::free : Side::upper;
+    if (row.side != Side::free) {
+        const double off = row.side == Side::lower ? work.residual : -work.residual;
+        return {off > least ? Side::free : row.side, off};
+    }
     double cap = 0;
     if (std::isfinite(row.lower)) cap = std::abs(row.lower);
     if (std::isfinite(row.upper)) cap = std::max(cap, std::abs(row.upper));
     const double slack = 1e-10 * cap + least / work.metric;
-    return row.impulse < row.lower - slack   ? Side::lower
-           : row.impulse > row.upper + slack ? Side::upper
-                                             : Side::free;
+    if (row.impulse < row.lower - slack) {
+        return {Side::lower, (row.lower - row.impulse) * work.metric};
+    }
+    if (row.impulse > row.upper + slack) {
+        return {Side::upper, (row.impulse - row.upper) * work.metric};
+    }
+    return {Side::free, 0};
 }
 
 DUCTILE_INLINE int ActiveSet::change_over() {
     Island& island = system_->island();
     int wrong = 0;
+    double worst = 0;
+    for (std::size_t i = 0; cautious_ && i < island.rows.size(); ++i) {
+        if (system_->alone(i)) worst = std::max(worst, where(i).off);
+    }
     for (std::size_t i = 0; i < island.rows.size(); ++i) {
         if (!system_->alone(i)) continue;
-        const Side side = where(i);
-        wrong += side != island.rows[i].side;
-        island.rows[i].side = side;
+        const Place place = where(i);
+        wrong += place.side != island.rows[i].side;
+        if (place.off >= worst / 2) island.rows[i].side = place.side;
     }
     const double least = detail::acceptance * system_->scale();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {

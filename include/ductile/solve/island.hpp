@@ -17,9 +17,9 @@
 // of a beam held at both ends, would leave their forces undetermined. `softness` is the least
 // compliance of a row; for a joint of known section take some 1e-6 of its elastic compliance 1/(k
 // dt²): forces in a redundant structure are then those of the elastic structure, and unique.
-// Without one a row gets `least_softness` of its own effect, which a long chain feels: its rods are
-// light, and what its joints give adds up. So where bodies and joints form no loop, and no row can
-// repeat what others do, rows without a softness of their own are rigid.
+// Without one a row is rigid: it gets `least_softness` of its own effect, by which shares are the
+// same each time, and what it gives by it is taken out again (island_solver.hpp). What is left adds
+// up in long chains, whose rods are light.
 //
 // Symbols
 //   v      change of the bodies' velocities by the rows' impulses, world axes  [m/s | rad/s]
@@ -79,7 +79,6 @@ struct IslandRow {
     double upper = std::numeric_limits<double>::infinity();
     double impulse = 0;     ///< x: start and answer
     Side side = Side::free; ///< start and answer; not read in a block
-    int joint = -1;         ///< the same in rows of which none repeats another; -1: not known
 };
 
 enum class BlockKind : unsigned char { ellipsoid, contact };

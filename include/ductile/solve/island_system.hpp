@@ -37,17 +37,19 @@ class IslandSystem {
     /// Of a row.
     struct Row {
         double own = 0;        ///< its effect on itself, J M⁻¹ Jᵀ; 0: no body can follow
-        double compliance = 0; ///< C with softness: that of the factors
-        double give = 0;       ///< C of the answer, no softness where no row repeats another
-        double metric = 0;     ///< own + C
-        double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
-        double residual = 0;   ///< b - shift - J v - C x, C of the answer
-        double weight = 0;     ///< W
-        double factored = 0;   ///< that of the last factors
-        double right = 0;      ///< g
-        double extra = 0;      ///< e
-        double rest = 0;       ///< g - J dv
-        double change = 0;     ///< dx
+        double compliance = 0; ///< C with softness
+        bool rigid = false;    ///< C is least_softness, for the factors' sake
+        double kept = 0;       ///< x' of a rigid row: impulse at which it gives nothing
+        double kept_before = 0;
+        double metric = 0;   ///< own + C
+        double shift = 0;    ///< taken from b: the slip of a contact, see friction_cone.hpp
+        double residual = 0; ///< b - shift - J v - C (x - x')
+        double weight = 0;   ///< W
+        double factored = 0; ///< that of the last factors
+        double right = 0;    ///< g
+        double extra = 0;    ///< e
+        double rest = 0;     ///< g - J dv
+        double change = 0;   ///< dx
     };
     /// Of a block.
     struct Block {
@@ -74,12 +76,15 @@ class IslandSystem {
 
     /// v = M⁻¹ Jᵀ x.
     void update_velocities() noexcept;
-    /// r = b - J v - C x.
+    /// r = b - J v - C (x - x').
     void update_residuals() noexcept;
-    /// Rows give by their softness where that was left out; false where it was not. So is a chain
-    /// solved that is too long for its factors, whose step is then a small part of what is missing.
-    bool soften() noexcept;
-    /// K from the weights, and its factors. False where it is not positive definite.
+    /// Largest velocity by which a rigid row gives [m/s | rad/s].
+    [[nodiscard]] double given() const noexcept;
+    /// x' = x: rigid rows give nothing at their impulses of now.
+    void keep() noexcept;
+    void undo_keep() noexcept; ///< x' as before the last `keep`
+    /// K from the weights, and its factors, those of before where it is the same. False where it is
+    /// not positive definite.
     [[nodiscard]] bool factor() noexcept;
     /// dx from `right` and `extra`, with the last factors.
     void step() noexcept;
@@ -106,23 +111,22 @@ class IslandSystem {
 
         void add(double weight, const Vector6<double>& of_a, const Vector6<double>& of_b) noexcept;
     };
-    void update(Run& run) noexcept;
+    bool update(Run& run) noexcept;
     void make_isotropic(const IslandBlock& block) noexcept;
     void find_runs();
-    [[nodiscard]] bool is_forest();
     void find_pattern();
 
     Island* island_ = nullptr;
     std::vector<Row> rows_;
     std::vector<Block> blocks_;
     std::vector<int> block_of_;
-    std::vector<std::size_t> root_; ///< of bodies and the world, by joints
     std::vector<Run> runs_;
     std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
     numeric::BlockLdlt factors_;
     std::vector<Vector6<double>> change_; ///< dv
     double scale_ = 0;
     int factorisations_ = 0;
+    bool current_ = false; ///< the factors are those of the rows' weights alone
 };
 
 } // namespace ductile::solve

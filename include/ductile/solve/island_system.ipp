@@ -25,6 +25,7 @@ DUCTILE_INLINE double own_effect(Vector6<double>& on, const IslandBody& body) no
 DUCTILE_INLINE void IslandSystem::open(Island& island) {
     island_ = &island;
     factorisations_ = 0;
+    current_ = false;
     rows_.resize(island.rows.size());
     blocks_.resize(island.blocks.size());
     change_.resize(island.bodies.size());
@@ -36,7 +37,6 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         for (int i = 0; i < block.count; ++i) block_of_[std::size_t(block.first + i)] = int(k);
     }
     scale_ = 0;
-    const bool forest = is_forest();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
@@ -51,8 +51,7 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         row.compliance = given.compliance <= softness ? softness : given.compliance; // or NaN
         const bool contact = block_of_[i] >= 0 &&
                              island.blocks[std::size_t(block_of_[i])].kind == BlockKind::contact;
-        const bool soft = !forest || contact || given.softness > 0;
-        row.give = soft || row.compliance > softness ? row.compliance : given.compliance;
+        row.rigid = !contact && !(given.softness > 0) && given.compliance <= softness;
         row.metric = row.own + row.compliance;
         const double size =
             std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
@@ -63,43 +62,26 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
     }
 }
 
-/// Whether no row can repeat what others do: joints form no loop, and no body has a locked axis.
-DUCTILE_INLINE bool IslandSystem::is_forest() {
-    const std::vector<IslandBody>& bodies = island_->bodies;
-    if (std::any_of(bodies.begin(), bodies.end(), [](const IslandBody& body) {
-            return (body.inverse_mass.diagonal().array() == 0).any();
-        })) {
-        return false;
+DUCTILE_INLINE double IslandSystem::given() const noexcept {
+    double most = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Row& row = rows_[i];
+        if (!row.rigid || row.own == 0) continue;
+        most = std::max(most, row.compliance * std::abs(island_->rows[i].impulse - row.kept));
     }
-    const std::size_t world = bodies.size();
-    root_.resize(world + 1);
-    for (std::size_t i = 0; i <= world; ++i) root_[i] = i;
-    const auto find = [&](int body) {
-        std::size_t i = body < 0 ? world : std::size_t(body);
-        while (root_[i] != i) i = root_[i] = root_[root_[i]];
-        return i;
-    };
-    for (const Run& run : runs_) {
-        const int block = block_of_[run.first];
-        if (block >= 0 && island_->blocks[std::size_t(block)].kind == BlockKind::contact) continue;
-        const int joint = island_->rows[run.first].joint;
-        for (std::size_t i = run.first; i < run.end; ++i) {
-            if (joint < 0 || island_->rows[i].joint != joint) return false;
-        }
-        const std::size_t a = find(run.a), b = find(run.b);
-        if (a == b) return false;
-        root_[a] = b;
-    }
-    return true;
+    return most;
 }
 
-DUCTILE_INLINE bool IslandSystem::soften() noexcept {
-    bool softened = false;
-    for (Row& row : rows_) {
-        softened = softened || row.give < row.compliance;
-        row.give = row.compliance;
+DUCTILE_INLINE void IslandSystem::keep() noexcept {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (!rows_[i].rigid) continue;
+        rows_[i].kept_before = rows_[i].kept;
+        rows_[i].kept = island_->rows[i].impulse;
     }
-    return softened;
+}
+
+DUCTILE_INLINE void IslandSystem::undo_keep() noexcept {
+    for (Row& row : rows_) row.kept = row.kept_before;
 }
 
 /// The friction rows of a contact get one compliance and one metric, in shares of their
@@ -115,7 +97,7 @@ DUCTILE_INLINE void IslandSystem::make_isotropic(const IslandBlock& block) noexc
     for (int i = 1; i < block.count; ++i) {
         Row& row = rows_[std::size_t(block.first + i)];
         const double f = block.size[std::size_t(i)];
-        row.give = row.compliance = compliance / (f * f);
+        row.compliance = compliance / (f * f);
         row.metric = (own + compliance) / (f * f);
     }
 }
@@ -177,7 +159,8 @@ DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
     const std::vector<IslandBody>& bodies = island_->bodies;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const IslandRow& row = island_->rows[i];
-        double residual = row.target - rows_[i].shift - rows_[i].give * row.impulse;
+        double residual =
+            row.target - rows_[i].shift - rows_[i].compliance * (row.impulse - rows_[i].kept);
         if (row.a >= 0) residual -= row.on_a.dot(bodies[std::size_t(row.a)].velocity);
         if (row.b >= 0) residual -= row.on_b.dot(bodies[std::size_t(row.b)].velocity);
         rows_[i].residual = residual;
@@ -185,15 +168,15 @@ DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
 }
 
 /// J^T D J of the rows between two bodies, where D is another than the last time: most rows of a
-/// structure are as they were.
-DUCTILE_INLINE void IslandSystem::update(Run& run) noexcept {
+/// structure are as they were. False where it is the same.
+DUCTILE_INLINE bool IslandSystem::update(Run& run) noexcept {
     bool same = run.known;
     for (std::size_t i = run.first; i < run.end; ++i) {
         Row& row = rows_[i];
         same = same && row.weight == row.factored;
         row.factored = row.weight;
     }
-    if (same && !run.ranks) return;
+    if (same && !run.ranks) return false;
     run.known = true;
     run.on_a.setZero();
     run.on_b.setZero();
@@ -203,6 +186,7 @@ DUCTILE_INLINE void IslandSystem::update(Run& run) noexcept {
             run.add(rows_[i].weight, island_->rows[i].on_a, island_->rows[i].on_b);
         }
     }
+    return true;
 }
 
 DUCTILE_INLINE void IslandSystem::Run::add(double weight, const Vector6<double>& of_a,
@@ -215,12 +199,19 @@ DUCTILE_INLINE void IslandSystem::Run::add(double weight, const Vector6<double>&
 }
 
 DUCTILE_INLINE bool IslandSystem::factor() noexcept {
+    bool same = current_;
+    for (Run& run : runs_) {
+        if (update(run)) same = false;
+    }
+    const bool flat = std::all_of(blocks_.begin(), blocks_.end(), [](const Block& block) {
+        return block.terms[0].coefficient == 0 && block.terms[1].coefficient == 0;
+    });
+    if (same && flat) return true;
     ++factorisations_;
     factors_.clear();
     for (std::size_t i = 0; i < island_->bodies.size(); ++i) {
         factors_.diagonal(int(i)) = island_->bodies[i].mass;
     }
-    for (Run& run : runs_) update(run);
     for (Run& run : runs_) run.ranks = false;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
         const IslandBlock& given = island_->blocks[k];
@@ -242,7 +233,9 @@ DUCTILE_INLINE bool IslandSystem::factor() noexcept {
         if (run.b >= 0) factors_.diagonal(run.b) += run.on_b;
         if (run.a >= 0 && run.b >= 0) factors_.off_diagonal(run.place) += run.across;
     }
-    return factors_.factor();
+    const bool definite = factors_.factor();
+    current_ = definite && flat;
+    return definite;
 }
 
 DUCTILE_INLINE void IslandSystem::step() noexcept {

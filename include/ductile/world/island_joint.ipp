@@ -75,7 +75,6 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
             turns(axis)
                 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
                 : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
-        row.joint = first;
         row.compliance = limits.compliance;
         row.softness = section_softness / (stiffness[i] * dt * dt);
         row.lower = limits.lower * dt;

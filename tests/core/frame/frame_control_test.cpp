@@ -310,6 +310,18 @@ TEST_CASE("What a budget spent on gaps left is told", "[frame]") {
     CHECK(control.run().left.energy > 0.4 * frame);
 }
 
+TEST_CASE("A flow whose force was foretold counts what it is short of its strength", "[frame]") {
+    // 3 % short of the strength over a travel of 2 m/s times 0.01 s
+    for (const bool elastic : {false, true}) {
+        ductile::PartRow row{.start = 2, .end = 2, .share = 0.97, .strength = 1};
+        row.elastic = elastic;
+        const ductile::PartBefore steady{.acceleration = 0, .length = 0.01};
+        CHECK(misplaced(row, 0.01, steady).travel == 0);
+        row.below = 0.03;
+        CHECK(misplaced(row, 0.01, steady).travel == Approx(0.03 * 2 * 0.01));
+    }
+}
+
 TEST_CASE("A frame and its tolerance are checked by name", "[frame]") {
     Engine engine = sliding_mass();
     FrameControl control;

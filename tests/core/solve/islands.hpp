@@ -54,7 +54,6 @@ inline int add_joint(Island& island, int a, int b, const Vector3<double>& arm_a,
         row.b = b;
         row.on_a = k < 3 ? push(arm_a, unit(k)) : turn(unit(k - 3));
         if (b >= 0) row.on_b = -(k < 3 ? push(arm_b, unit(k)) : turn(unit(k - 3)));
-        row.joint = first;
         island.rows.push_back(row);
     }
     return first;
