@@ -120,6 +120,36 @@ TEST_CASE("Frames: a mass dropped on a crushing head, by Bullet's own contact", 
     }
 }
 
+TEST_CASE("Frames: an edge strikes where it is, not where closest points round it", "[frame]") {
+    // a box on its edge, whose margin of 4 cm puts it 17 mm away while it touches
+    constexpr double mass = 500, head_mass = 50, height = 0.2, strength = 30e3, g = 9.81;
+    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
+    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.engine.setGravity({0, btScalar(-g), 0});
+        btRigidBody& head =
+            rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2);
+        constexpr double half = 0.4;
+        btRigidBody& falls =
+            rig.body(mass, {0, 0, 0}, {0, btScalar(0.1 + half * std::numbers::sqrt2 + height), 0},
+                     box(half, half, half), 2, 1);
+        for (btRigidBody* body : {&head, &falls}) {
+            body->getCollisionShape()->setMargin(CONVEX_DISTANCE_MARGIN);
+        }
+        falls.getWorldTransform().setRotation(
+            btQuaternion(btVector3(0, 0, 1), btScalar(std::numbers::pi / 4)));
+        Slider slider(head, along({0, 1, 0}), law(strength));
+        rig.world->add(slider);
+        rig.run(0.5, frame);
+        CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(rough ? 0.01 : 2e-3));
+        CHECK(rig.world->run().believed());
+        CHECK(rig.world->run().worst_frame <= 6);
+        rig.world->remove(slider);
+    }
+}
+
 TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests", "[frame]") {
     // a ball, whose contact Bullet knows 20 mm before it closes; falls from a low height, so that
     // in the part that ends there it still gains much of its speed

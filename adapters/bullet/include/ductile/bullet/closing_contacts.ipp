@@ -14,6 +14,7 @@
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet {
 
@@ -65,8 +66,8 @@ class ShapeReach {
     return body.getAngularVelocity().length() * reach.of(*body.getCollisionShape());
 }
 
-/// How far a body may get past something and still be found on this side of it: half of its smallest
-/// extent; infinite for what does not move [m].
+/// How far a body may get past something and still be found on this side of it: half of its
+/// smallest extent; infinite for what does not move [m].
 [[nodiscard]] DUCTILE_INLINE double half_thickness(const btCollisionObject& object) {
     if (pushed(object) == nullptr) return std::numeric_limits<double>::infinity();
     btVector3 low, high;
@@ -91,7 +92,8 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
           unseen(std::min(half_thickness(*a), half_thickness(*b))),
           fall(falls),
           first(a) {
-        m_closestDistanceThreshold = reach;
+        m_closestDistanceThreshold =
+            reach + rounding(*a->getCollisionShape()) + rounding(*b->getCollisionShape());
     }
     /// Towards the second body, of who begins to fall on it [m/s²].
     [[nodiscard]] double gain(const btCollisionObject& a, const btVector3& normal) const {
@@ -104,21 +106,21 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const btVector3& normal = point.m_normalWorldOnB;
         const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
-        const double faster = gain(of_a, normal), distance = double(point.getDistance());
-        if (faster > 0 && yields > 0 && distance > -closed_gap / 2) {
+        const double faster = gain(of_a, normal), away = distance(point, *a, *b);
+        if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
             if (!(end * end > 2 * yields * apart)) return 0;
-            const double way = std::max(distance, 0.0) + closed_gap / 2;
+            const double way = std::max(away, 0.0) + closed_gap / 2;
             const double at = std::sqrt(speed * speed + 2 * faster * way);
             found.time = std::min(found.time, 2 * way / (speed + at));
             return 0;
         }
         if (!(speed > 0) || !(yields > 0)) return 0;
         const double energy = speed * speed / (2 * yields);
-        if (distance < closed_gap) {
+        if (away < closed_gap) {
             found.strikes = found.strikes || energy > touching;
-        } else if (energy > apart || speed * h / 2 - distance > unseen) {
-            found.time = std::min(found.time, (distance + closed_gap / 2) / speed);
+        } else if (energy > apart || speed * h / 2 - away > unseen) {
+            found.time = std::min(found.time, (away + closed_gap / 2) / speed);
         }
         return 0;
     }
@@ -141,8 +143,8 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     list_pairs(world, btScalar(h), least, btScalar(fastest.speed));
     for (const Pair& pair : pairs_) {
         ClosingContacts of_pair;
-        detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a,
-                                     pair.b, falls(*pair.a) - falls(*pair.b));
+        detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a, pair.b,
+                                     falls(*pair.a) - falls(*pair.b));
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);

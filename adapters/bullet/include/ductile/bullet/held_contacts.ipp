@@ -11,6 +11,7 @@
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/held_contacts.hpp"
+#include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet {
 
@@ -52,10 +53,15 @@ namespace detail {
 /// Whether two bodies have a point nearer than the threshold.
 struct AnyContact final : btCollisionWorld::ContactResultCallback {
     bool found = false;
-    explicit AnyContact(btScalar reach) { m_closestDistanceThreshold = reach; }
-    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
-                             const btCollisionObjectWrapper*, int, int) override {
-        found = found || point.getDistance() <= m_closestDistanceThreshold;
+    double reach;
+    AnyContact(double within, const HeldContacts::Bodies& bodies) : reach(within) {
+        m_closestDistanceThreshold = btScalar(reach) +
+                                     rounding(*bodies.first->getCollisionShape()) +
+                                     rounding(*bodies.second->getCollisionShape());
+    }
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
+                             const btCollisionObjectWrapper* b, int, int) override {
+        found = found || distance(point, *a, *b) <= reach;
         return 0;
     }
 };
@@ -134,8 +140,8 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
     for (const Bodies& bodies : pushing) {
         const ContactBody a = detail::contact_body(*bodies.first),
                           b = detail::contact_body(*bodies.second);
-        detail::AnyContact contact(
-            btScalar(closed_gap + h * norm(difference(a.velocity, b.velocity))));
+        detail::AnyContact contact(closed_gap + h * norm(difference(a.velocity, b.velocity)),
+                                   bodies);
         world.contactPairTest(const_cast<btCollisionObject*>(bodies.first),
                               const_cast<btCollisionObject*>(bodies.second), contact);
         if (!contact.found) lost_.push_back(bodies);
