@@ -17,6 +17,7 @@
 //   hit 2: 3026 J absorbed, tip at -0.002 m, one body
 //   hit 3: 4544 J absorbed, tip at 0.162 m, one body
 #include <btBulletDynamicsCommon.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <cstdio>
@@ -24,12 +25,19 @@
 #include <ductile/material/named.hpp>
 #include <ductile/section/box.hpp>
 #include <fstream>
+#include <sstream>
+#include <string>
 
 static btTransform at(const btVector3& place) {
     return btTransform(btQuaternion::getIdentity(), place);
 }
 
 int main(int argc, char** argv) {
+    CLI::App app("A post is struck three times");
+    std::string path;
+    app.add_option("FILE.csv", path, "its history; none: none is written");
+    CLI11_PARSE(app, argc, argv);
+
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
     btDbvtBroadphase broadphase;
@@ -60,8 +68,8 @@ int main(int argc, char** argv) {
     ball.setFriction(0);
     ball.setActivationState(DISABLE_DEACTIVATION);
 
-    std::ofstream file(argc > 1 ? argv[1] : "");
-    file << "time_s,moment_N_m,open_sections,absorbed_J,tip_m\n";
+    std::ostringstream history;
+    history << "time_s,moment_N_m,open_sections,absorbed_J,tip_m\n";
     const auto tip = [&] { return post.pose(description.segments() - 1).getOrigin(); };
     for (int hit = 1; hit <= 3; ++hit) {
         const double side = hit == 2 ? -1 : 1;
@@ -75,11 +83,14 @@ int main(int argc, char** argv) {
             world.step(frame);
             const btVector3 force = (ball.getLinearVelocity() - before) * (-mass / frame);
             const double moment = arm.z() * force.y() - arm.y() * force.z();
-            file << world.time() << ',' << moment << ',' << post.open_sections() << ','
-                 << post.absorbed_energy() << ',' << tip().y() << '\n';
+            history << world.time() << ',' << moment << ',' << post.open_sections() << ','
+                    << post.absorbed_energy() << ',' << tip().y() << '\n';
         }
         dynamics.removeRigidBody(&ball);
         std::printf("hit %d: %.0f J absorbed, tip at %.3f m, %s\n", hit, post.absorbed_energy(),
                     tip().y(), post.whole() ? "one body" : "open");
     }
+    if (path.empty() || std::ofstream(path) << history.str() << std::flush) return 0;
+    std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+    return 2;
 }
