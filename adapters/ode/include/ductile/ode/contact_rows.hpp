@@ -19,6 +19,7 @@ namespace ductile::ode {
 struct NamedContact {
     dJointID joint;
     dContact contact;
+    Vector3<double> force = Vector3<double>::Zero(); ///< on A, to begin the solve with [N]
 
     /// Whether it is no more than a normal and sliding friction.
     [[nodiscard]] bool slides_only() const { return (contact.surface.mode & dContactRolling) == 0; }
@@ -38,6 +39,7 @@ class ContactRows {
 
     dJointID joint_;
     Vector3<double> arm_a_, arm_b_ = Vector3<double>::Zero(); ///< world [m]
+    Vector3<double> begins_;                                  ///< on A, the first guess [N]
     std::array<Vector3<double>, 3> along_;                    ///< of each row, force on A, world
     int first_ = 0, count_ = 0;
     double softness_ = 0; ///< of its own effect; 0: the least there is [-]

@@ -51,6 +51,7 @@ DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat
                                          double target, double cfm, double dt) {
     solve::IslandRow& row =
         ductile::add_row(island, a, b, arm_a_, arm_b_, along, Vector3<double>::Zero(), target);
+    row.impulse = dot(begins_, along) * dt;
     row.compliance = cfm / dt;
     row.softness = softness_ * own_effect(island, row);
     along_[std::size_t(count_++)] = along;
@@ -58,7 +59,7 @@ DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat
 
 DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island& island,
                                         const IslandSeat& a, const IslandSeat& b, double dt)
-    : joint_(named.joint), first_(int(island.rows.size())) {
+    : joint_(named.joint), begins_(named.force), first_(int(island.rows.size())) {
     constexpr double unlimited = std::numeric_limits<double>::infinity();
     const dContact& contact = named.contact;
     const dSurfaceParameters& surface = contact.surface;

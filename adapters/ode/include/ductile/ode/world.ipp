@@ -151,7 +151,7 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) 
         dJointDisable(joint);
         return;
     }
-    contacts_.push_back({joint, contact});
+    contacts_.push_back({.joint = joint, .contact = contact});
 }
 DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
                                        std::function<void()> make) {
@@ -172,7 +172,9 @@ DUCTILE_INLINE void World::do_step(double dt) {
         return;
     }
     if (meter_) {
-        for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
+        for (const NamedContact& named : contacts_) {
+            meter_->add_contact(named.joint, named.contact.geom);
+        }
         meter_->before_step();
     }
     solve(dt);
@@ -199,7 +201,9 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
         members_.apply_forces();
         if (meter_) {
             meter_->keep();
-            for (const auto& [joint, contact] : contacts_) meter_->add_contact(joint, contact.geom);
+            for (const NamedContact& named : contacts_) {
+                meter_->add_contact(named.joint, named.contact.geom);
+            }
             meter_->before_step();
         }
         solve(dt);

@@ -94,6 +94,10 @@ class WorldParts final : public PartEngine {
         DrivenCourse course;
     };
 
+    struct Push {
+        Vector3<double> point, force; ///< world [m], on the first body [N]
+    };
+
     /// What a frame set is as it was.
     void leave();
     /// What it set of the bodies alone, and that it sets it.
@@ -117,6 +121,9 @@ class WorldParts final : public PartEngine {
     void rule_contacts(double h, bool blow);
     /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
     [[nodiscard]] double turned(const NamedContact& named, double h) const;
+    /// Contacts begin with what the nearest one of their bodies bore in the last part.
+    void begin_pushes();
+    void remember_pushes();
     void open_others();
     const PartMotion& tell();
     [[nodiscard]] double next_gap(double h, double apart);
@@ -133,6 +140,7 @@ class WorldParts final : public PartEngine {
     WorldSnapshot snapshot_, looked_from_;
     ClosingContactsFinder closing_;
     std::vector<std::pair<AttachedBodies, SeenContact>> seen_, kept_seen_; ///< as a part starts
+    std::vector<std::pair<AttachedBodies, Push>> pushes_, kept_pushes_;    ///< of the last part
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]

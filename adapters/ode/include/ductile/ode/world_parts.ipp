@@ -160,6 +160,7 @@ DUCTILE_INLINE void WorldParts::save() {
     of_.meter.keep();
     closing_.save();
     kept_seen_ = seen_;
+    kept_pushes_ = pushes_;
     snapshot_.take(of_.bodies, of_.joints);
 }
 
@@ -168,6 +169,7 @@ DUCTILE_INLINE void WorldParts::put_back() {
     of_.meter.put_back();
     closing_.put_back();
     seen_ = kept_seen_;
+    pushes_ = kept_pushes_;
     time_ = kept_time_;
     looked_ = false;
 }
@@ -193,7 +195,10 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     rule_contacts(h, blow);
     if (blow) open_others();
     of_.members.before_solve(of_.contacts);
-    for (const auto& [joint, contact] : of_.contacts) of_.meter.add_contact(joint, contact.geom);
+    for (const NamedContact& named : of_.contacts) {
+        of_.meter.add_contact(named.joint, named.contact.geom);
+    }
+    if (!blow) begin_pushes();
     of_.meter.look_at_contacts();
     damp(blow ? 0 : h / length_);
     {
@@ -202,6 +207,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     }
     if (!blow) {
         closing_.see_forces(of_.contacts);
+        remember_pushes();
         closed_ = closing_.closed(half, half, apart_);
         closing_.remember();
     }

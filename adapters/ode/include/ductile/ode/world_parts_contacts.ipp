@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of world_parts.hpp: contacts, who makes them, what they are asked and which close. A part of
-// world_parts.ipp.
+// Bodies of world_parts.hpp: contacts, who makes them, what they are asked and which close. A part
+// of world_parts.ipp.
 #pragma once
 
 #include <algorithm>
@@ -29,6 +29,29 @@ namespace detail {
 [[nodiscard]] DUCTILE_INLINE bool before(const AttachedBodies& x, const AttachedBodies& y) {
     const std::less<dBodyID> less;
     return x.a != y.a ? less(x.a, y.a) : less(x.b, y.b);
+}
+/// In the order that `nearest` needs.
+template <class Entry>
+void sort_by_bodies(std::vector<std::pair<AttachedBodies, Entry>>& entries) {
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const auto& x, const auto& y) { return before(x.first, y.first); });
+}
+/// Of the same bodies, the one whose point is nearest; null: there is none.
+template <class Entry>
+[[nodiscard]] const Entry* nearest(const std::vector<std::pair<AttachedBodies, Entry>>& entries,
+                                   const AttachedBodies& bodies, const Vector3<double>& point) {
+    const Entry* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    auto entry = std::lower_bound(
+        entries.begin(), entries.end(), bodies,
+        [](const auto& one, const AttachedBodies& key) { return before(one.first, key); });
+    for (; entry != entries.end() && entry->first == bodies; ++entry) {
+        const double distance = norm(difference(entry->second.point, point));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &entry->second;
+    }
+    return nearest;
 }
 
 } // namespace detail
@@ -72,24 +95,31 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
 
 DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
     const auto [bodies, now] = detail::seen_contact(named);
-    const auto first = std::lower_bound(seen_.begin(), seen_.end(), bodies,
-                                        [](const auto& seen, const AttachedBodies& key) {
-                                            return detail::before(seen.first, key);
-                                        });
-    const SeenContact* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (auto seen = first; seen != seen_.end() && seen->first == bodies; ++seen) {
-        const double distance = norm(difference(seen->second.point, now.point));
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = &seen->second;
-    }
+    const SeenContact* nearest = detail::nearest(seen_, bodies, now.point);
     if (nearest == nullptr) return 0;
     const auto motion = [](dBodyID body) {
         return body == nullptr ? ContactBody{}
                                : ContactBody{linear_velocity(body), angular_velocity(body)};
     };
     return turned_contact(now, *nearest, motion(bodies.a), motion(bodies.b), h / 2, h / 2);
+}
+
+DUCTILE_INLINE void WorldParts::begin_pushes() {
+    for (NamedContact& named : of_.contacts) {
+        const Push* last =
+            detail::nearest(pushes_, attached_bodies(named.joint), to_core(named.contact.geom.pos));
+        if (last != nullptr) named.force = last->force;
+    }
+}
+DUCTILE_INLINE void WorldParts::remember_pushes() {
+    pushes_.clear();
+    for (const NamedContact& named : of_.contacts) {
+        const dJointFeedback* feedback = dJointGetFeedback(named.joint);
+        if (feedback == nullptr) continue;
+        pushes_.emplace_back(attached_bodies(named.joint),
+                             Push{to_core(named.contact.geom.pos), to_core(feedback->f1)});
+    }
+    detail::sort_by_bodies(pushes_);
 }
 
 DUCTILE_INLINE void WorldParts::open_others() {
@@ -107,8 +137,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     seen_.clear();
     if (!closing_.any_plastic()) return found;
     for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
-    std::stable_sort(seen_.begin(), seen_.end(),
-                     [](const auto& x, const auto& y) { return detail::before(x.first, y.first); });
+    detail::sort_by_bodies(seen_);
     closing_.remember();
     found.strikes = closing_.strikes(touching);
     if (found.strikes) return found;
