@@ -175,7 +175,10 @@ export class Scene {
         this.view = view;
         this.sharpness = 1;
         this.recording = recording;
-        this.renderer = new three.WebGLRenderer({ antialias: false });
+        // opaque, which three does not ask for: else the browser blends it with what is below
+        const canvas = document.createElement("canvas");
+        const context = canvas.getContext("webgl2", { alpha: false, antialias: false });
+        this.renderer = new three.WebGLRenderer({ canvas, context });
         view.prepend(this.renderer.domElement);
         this.scene = new three.Scene();
         this.camera = new three.PerspectiveCamera(45, 1, 0.01, 1e4);
