@@ -39,6 +39,7 @@
 #include <ode/ode.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -152,6 +153,9 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     Vector3<double> arm_b_ = Vector3<double>::Zero();
     JointWrench<double> centre_; ///< c of all rows; of an island that is solved all there is
     int first_row_ = 0;          ///< in that island
+    /// What that island's rows bore [N | N m]: told by forces and torques in the world, a weak row
+    /// would be lost in the round-off of strong ones.
+    std::optional<Vector6<double>> solved_rows_;
     bool motor_on_ = true;
     DrivenPair driven_;
     OutsideForce outside_;

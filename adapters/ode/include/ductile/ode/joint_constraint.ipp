@@ -161,6 +161,7 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
     arm_a_ = difference(link_.point(), a.position);
     arm_b_ = difference(link_.point(), b.position);
     centre_ = {};
+    solved_rows_.reset();
     moments_ = {}; // ODE leaves it alone where the motor has no row
 }
 
@@ -179,6 +180,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
     const Vector6<double> forces = forces_of(island, first_row_, dt);
+    solved_rows_ = forces;
     const LinkPose<double>& pose = link_.pose();
     centre_ = {.force = times(pose.axes(), linear(forces)),
                .moment = times(pose.moment_axes(), angular(forces))};
@@ -233,10 +235,14 @@ DUCTILE_INLINE void JointConstraint::commit(double dt) {
     outside_.force = sum(outside_.force, centre_.force);
     outside_.torque_a = sum(outside_.torque_a, about_centre(arm_a_));
     outside_.torque_b = difference(outside_.torque_b, about_centre(arm_b_));
-    const Vector3<double> torque = sum(outside_.torque_a, to_core(moments_.t1));
-    const Vector3<double> moment = difference(torque, cross(arm_a_, outside_.force));
-    link_.commit(body_motion(a_), body_motion(b_),
-                 JointWrench<double>{.force = outside_.force, .moment = moment}, dt);
+    if (solved_rows_) {
+        link_.commit_rows(body_motion(a_), body_motion(b_), *solved_rows_, dt);
+    } else {
+        const Vector3<double> torque = sum(outside_.torque_a, to_core(moments_.t1));
+        const Vector3<double> moment = difference(torque, cross(arm_a_, outside_.force));
+        link_.commit(body_motion(a_), body_motion(b_),
+                     JointWrench<double>{.force = outside_.force, .moment = moment}, dt);
+    }
     booked_ = true;
 }
 
