@@ -99,11 +99,12 @@ DUCTILE_INLINE void IslandSolver::harden(IslandReport& report) {
     }
 }
 
-/// Without friction the interior point, polished by the active set, twice. With it, from there
-/// contacts one after the other (contact_sweep.hpp), and the active set again; each pass goes on
-/// from the best so far. In every second pass joints that the active set leaves between the sweeps
-/// are the interior point's: that alone finds the one half of what is hard, and loses the other.
+/// The interior point, polished by the active set. From there contacts one after the other
+/// (contact_sweep.hpp), and the active set again; each pass goes on from the best so far. In every
+/// second pass joints that the active set leaves between the sweeps are the interior point's: that
+/// alone finds the one half of what is hard, and loses the other.
 DUCTILE_INLINE double IslandSolver::fall_back(IslandReport& report) {
+    constexpr int most = 4;
     double effort = 2e7; // some 20 ms
     double least = std::numeric_limits<double>::infinity();
     const auto keep = [&] {
@@ -118,14 +119,10 @@ DUCTILE_INLINE double IslandSolver::fall_back(IslandReport& report) {
         }
         return least / report.scale;
     };
-    const std::vector<IslandBlock>& blocks = system_.island().blocks;
-    const bool rubs = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
-        return block.kind == BlockKind::contact;
-    });
     constexpr double solved = solved_residual / 2, well = solved_residual / 10;
     for (IslandSystem::Row& row : system_.rows()) row.shift = 0;
     put(start_);
-    for (int pass = 0; pass < (rubs ? 4 : 2); ++pass) {
+    for (int pass = 0; pass < most; ++pass) {
         interior_point_.solve(system_);
         ++report.interior_points;
         static_cast<void>(keep());
