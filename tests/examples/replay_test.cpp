@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -129,6 +130,32 @@ TEST_CASE("replay: two runs have the same hashes, another has not", "[replay]") 
     CHECK(a.hashes == b.hashes);
     CHECK(a.hashes != c.hashes);
     CHECK(replay::pack(a) == replay::pack(b));
+}
+
+TEST_CASE("replay: a minute of 200 bodies takes less than half a megabyte", "[replay]") {
+    // thrown, they bounce, roll, and rest after 10 to 20 s: z = h |cos ωt| exp(-t/τ)
+    constexpr std::size_t bodies = 200, rate = 30, seconds = 60;
+    replay::Recording thrown;
+    for (std::size_t k = 0; k < rate * seconds; ++k) thrown.times.push_back(double(k) / rate);
+    thrown.hashes.resize(thrown.times.size());
+    for (std::size_t i = 0; i < bodies; ++i) {
+        const double decay = 2 + 0.01 * double(i), height = 1 + 0.05 * double(i);
+        thrown.bodies.emplace_back().name = "box " + std::to_string(i);
+        std::vector<replay::Pose>& poses = thrown.poses.emplace_back();
+        for (std::size_t k = 0; k < thrown.times.size(); ++k) {
+            const double time = thrown.times[k], left = std::exp(-time / decay);
+            const double turn = 3 * (1 - left), lively = left > 1e-4 ? left : 0;
+            poses.push_back(
+                {.position = {double(i) + 5 * turn, turn,
+                              height * std::abs(std::cos(5 * time)) * lively},
+                 .turn = {std::cos(turn), 0.6 * std::sin(turn), 0, 0.8 * std::sin(turn)}});
+            thrown.hashes[k] = std::uint32_t(k * 2654435761u);
+        }
+    }
+    const std::size_t size = replay::pack(thrown).size();
+    CAPTURE(size);
+    CHECK(size < 500'000);
+    CHECK(size > 50'000); // they move
 }
 
 TEST_CASE("replay: bodies and joints that come late or go are kept", "[replay]") {
