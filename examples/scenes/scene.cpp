@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "write_glb.hpp"
 #include "write_html.hpp"
 
 namespace ductile::scenes {
@@ -85,7 +86,12 @@ void Take::cut() {
         if (c == ' ') c = '-';
     }
     std::filesystem::create_directories(run_.options().out);
-    replay::write_html(recorder_->finish(), run_.options().out / file);
+    const replay::Recording recording = recorder_->finish();
+    const std::filesystem::path path = run_.options().out / file;
+    replay::write_html(recording, path);
+    if (run_.options().glb) {
+        replay::write_glb(recording, std::filesystem::path(path).replace_extension("glb"));
+    }
     run_.replays_.push_back(file);
 }
 

@@ -30,6 +30,7 @@ struct RunOptions {
     double frame = 1.0 / 60;   ///< [s]
     double tolerance = 0.01;   ///< of frames, where the engine's World takes one
     std::filesystem::path out; ///< folder of the replays; empty: none are written
+    bool glb = false;          ///< each of them as glTF too
 };
 
 class Run;

@@ -9,20 +9,44 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "files.hpp"
 #include "scene.hpp"
 #include "write_index.hpp"
 
 using namespace ductile::scenes;
 
 namespace {
+
+/// What a run cost, as a line of measured.csv.
+std::string measured(const Run& run) {
+    std::vector<double> times = run.times();
+    std::sort(times.begin(), times.end());
+    const auto largest = [&run](const char* kind) {
+        std::uintmax_t most = 0;
+        for (const std::string& replay : run.replays()) {
+            std::error_code none; // is not there
+            const auto file = (run.options().out / replay).replace_extension(kind);
+            const std::uintmax_t size = std::filesystem::file_size(file, none);
+            if (!none) most = std::max(most, size);
+        }
+        return most;
+    };
+    return fmt::format("{},{},{:.6g},{},{:.3f},{:.2f},{},{},{}\n", run.scene(),
+                       run.options().engine, run.options().frame, times.size(),
+                       1e3 * times[times.size() / 2], 1e3 * times.back(), run.replays().size(),
+                       largest("html"), largest("glb"));
+}
 
 void print(const Run& run) {
     for (const Finding& f : run.findings()) {
@@ -83,6 +107,7 @@ int main(int argc, char** argv) try {
         ->check(within(0, 0.5))
         ->capture_default_str();
     app.add_option("--out", options.out, "folder of the replays and index.html; none: no replays");
+    app.add_flag("--glb", options.glb, "replays as glTF too");
     app.require_subcommand(0, int(scenes.size()));
     app.fallthrough();
     for (const auto& scene : scenes) {
@@ -92,10 +117,14 @@ int main(int argc, char** argv) try {
             if (option != command.get_help_ptr()) option->check(within(1e-9, 1e9));
         }
     }
+    app.failure_message(
+        [](const CLI::App*, const CLI::Error& error) { return std::string(error.what()) + '\n'; });
     CLI11_PARSE(app, argc, argv);
 
     if (!options.out.empty()) write_index({}, options.out); // sooner than after all of them
     bool right = true;
+    std::string costs =
+        "scene,engine,frame_s,frames,median_ms,dearest_ms,replays,largest_html_B,largest_glb_B\n";
     std::vector<Shown> shown;
     const bool all = app.get_subcommands().empty();
     for (const auto& scene : scenes) {
@@ -110,10 +139,12 @@ int main(int argc, char** argv) try {
             print(run);
             std::fflush(stdout);
             right = right && run.right();
+            costs += measured(run);
             shown.push_back({scene->about(), of, std::move(run)});
         }
     }
     if (!options.out.empty()) {
+        ductile::replay::write_file(options.out / "measured.csv", costs);
         write_index(shown, options.out);
         fmt::print("open {}\n", (options.out / "index.html").string());
     }

@@ -3,9 +3,9 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
-#include <stdexcept>
 #include <system_error>
+
+#include "files.hpp"
 
 namespace ductile::scenes {
 
@@ -60,10 +60,7 @@ void write_index(const std::vector<Shown>& all, const std::filesystem::path& fol
     page += "</body></html>\n";
     std::error_code none; // the file says whether it is there
     std::filesystem::create_directories(folder, none);
-    std::ofstream file(folder / "index.html");
-    if (!(file << page).flush()) {
-        throw std::runtime_error((folder / "index.html").string() + ": cannot be written");
-    }
+    replay::write_file(folder / "index.html", page);
 }
 
 } // namespace ductile::scenes
