@@ -63,6 +63,20 @@ def charpy_frames(path):
                          *[cell(found[engine, method, step]) for step in steps]] for engine, method in cases])
 
 
+def scene_costs(path):
+    """Of each scene the dearest frame of each engine [ms], and its largest replay as page and as glTF [MB]."""
+    rows = rows_of(path)
+    found = {(row["scene"], row["engine"]): row for row in rows}
+    scenes, engines = ([key for (key,) in each(rows, column)] for column in ("scene", "engine"))
+
+    def size(scene, kind):
+        return f"{max(float(found[scene, engine][f'largest_{kind}_B']) for engine in engines) / 1e6:.2f}"
+
+    return table(["scene", *[f"{engine} [ms]" for engine in engines], "page [MB]", "glTF [MB]"],
+                 [[scene, *[f"{float(found[scene, engine]['dearest_ms']):.1f}" for engine in engines],
+                   size(scene, "html"), size(scene, "glb")] for scene in scenes])
+
+
 def misses(path):
     """Of the Charpy test's runs with our joints: how many are off by more than 1 %, and how many there are."""
     ours = [row for row in rows_of(path) if is_ours(row)]

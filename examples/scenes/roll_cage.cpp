@@ -216,7 +216,7 @@ class RollCage final : public Scene {
         return model;
     }
     static void roll_over(Run& run) {
-        Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 48});
+        Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 128});
         Stage& stage = take.stage();
         BuiltStructure& built = stage.build(cage());
         take.action(60);
