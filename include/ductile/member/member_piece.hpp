@@ -117,6 +117,37 @@ struct MemberPiece {
     return nearest;
 }
 
+/// Segments in a row without a bend, as one length. Plain value.
+struct StraightStretch {
+    MemberRun run;
+    JointFrame<double> middle; ///< in the frame of the piece
+    double length = 0;         ///< [m], > 0
+};
+
+/// Of a piece from its start, a held segment left out. A solid for each of them has no inner faces
+/// but where it is bent: two solids in a row, one body, would push aside whatever has its edge
+/// where they meet.
+[[nodiscard]] inline std::vector<StraightStretch> straight_stretches(const Member& member,
+                                                                     const MemberPiece& piece) {
+    constexpr double straight_enough = 1e-6; // [rad]
+    std::vector<StraightStretch> result;
+    for (int k = piece.run.first; k <= piece.run.last; ++k) {
+        if (member.segment(k).held) continue;
+        const JointFrame<double>& segment = piece.segment(k);
+        const bool goes_on =
+            !result.empty() && std::abs(dot(column(result.back().middle.axes, 1),
+                                            column(segment.axes, 2))) < straight_enough;
+        if (!goes_on) result.push_back({{k, k}, segment, 0});
+        StraightStretch& stretch = result.back();
+        stretch.run.last = k;
+        stretch.length += member.segment(k).length;
+        const JointFrame<double> start = piece.section(member, stretch.run.first, false);
+        stretch.middle.origin =
+            sum(start.origin, scaled(stretch.length / 2, column(stretch.middle.axes, 2)));
+    }
+    return result;
+}
+
 /// `state` says how far the sections within the run are bent.
 [[nodiscard]] inline MemberPiece make_piece(const Member& member, const MemberState& state,
                                             const MemberRun& run) {

@@ -128,6 +128,28 @@ TEST_CASE("a bent piece has the inertia of its segments about its own axes", "[m
     CHECK(piece.mass == 2);
 }
 
+TEST_CASE("a piece is straight from bend to bend", "[member]") {
+    const Member member = strip(8);
+    MemberState state = straight(member);
+    state[0].bend = 0.1; // of the root: nothing is before it
+    state[4].bend = 0.2;
+    state[6].bend = 1e-7;
+    const MemberPiece piece = make_piece(member, state, {0, 8});
+    const auto stretches = straight_stretches(member, piece);
+    REQUIRE(stretches.size() == 2);
+    CHECK(stretches[0].run == MemberRun{1, 4});
+    CHECK(stretches[1].run == MemberRun{5, 8});
+    for (const StraightStretch& stretch : stretches) {
+        CHECK(stretch.length == Approx(0.5));
+        const Vector3<double> half = scaled(0.25, column(stretch.middle.axes, 2));
+        const auto end_of = [&](int k, bool end) { return piece.section(member, k, end).origin; };
+        CHECK(norm(difference(sum(stretch.middle.origin, half), end_of(stretch.run.last, true))) <
+              1e-6);
+        CHECK(norm(difference(difference(stretch.middle.origin, half),
+                              end_of(stretch.run.first, false))) < 1e-12);
+    }
+}
+
 TEST_CASE("a cantilever yields where a blow takes more than its strain energy at yield",
           "[member]") {
     const Rectangle<double> section({.width = 0.064, .height = 0.004});

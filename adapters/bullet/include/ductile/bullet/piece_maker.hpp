@@ -24,6 +24,18 @@ using ductile::MemberBox;
 void copy_manners(const btRigidBody& from, btRigidBody& body);
 void set_motion(btRigidBody& body, const BodyMotion& motion);
 
+/// Of boxes that are its own.
+class ShapeOfBoxes final : public btCompoundShape {
+  public:
+    void add(const btTransform& middle, const btVector3& half_lengths) {
+        boxes_.push_back(std::make_unique<btBoxShape>(half_lengths));
+        addChildShape(middle, boxes_.back().get());
+    }
+
+  private:
+    std::vector<std::unique_ptr<btBoxShape>> boxes_;
+};
+
 struct PieceBody {
     btRigidBody* body = nullptr;
     std::unique_ptr<btCompoundShape> shape; ///< ends after the body
@@ -80,9 +92,8 @@ class PieceMaker {
     btDiscreteDynamicsWorld* world_ = nullptr;
     int group_ = 0, mask_ = 0; ///< of the user's body
     btVector3 gravity_{0, 0, 0};
-    std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by segment
-    btCollisionShape* straight_;                     ///< the user's
-    btScalar mass_;                                  ///< as the user made it
+    btCollisionShape* straight_; ///< the user's
+    btScalar mass_;              ///< as the user made it
     btVector3 inertia_{0, 0, 0};
     std::unique_ptr<btCompoundShape> bent_; ///< of the user's body, once it is bent
 };

@@ -13,17 +13,13 @@
 namespace ductile::bullet {
 
 DUCTILE_INLINE std::unique_ptr<btCompoundShape> PieceMaker::make_shape(const MemberPiece& piece) {
-    auto shape = std::make_unique<btCompoundShape>();
-    boxes_.resize(std::size_t(member_.segments()));
-    for (int k = piece.run.first; k <= piece.run.last; ++k) {
-        if (member_.segment(k).held || !(box_.half_width > 0)) continue;
-        std::unique_ptr<btBoxShape>& box = boxes_[std::size_t(k)];
-        if (box == nullptr) {
-            box = std::make_unique<btBoxShape>(btVector3(btScalar(box_.half_width),
-                                                         btScalar(box_.half_height),
-                                                         btScalar(member_.segment(k).length / 2)));
+    auto shape = std::make_unique<ShapeOfBoxes>();
+    if (box_.is_there()) {
+        for (const StraightStretch& stretch : straight_stretches(member_, piece)) {
+            shape->add(to_bullet(stretch.middle),
+                       {btScalar(box_.half_width), btScalar(box_.half_height),
+                        btScalar(stretch.length / 2)});
         }
-        shape->addChildShape(to_bullet(piece.segment(k)), box.get());
     }
     if (shape->getNumChildShapes() == 0) shape->recalculateLocalAabb();
     return shape;
@@ -65,7 +61,7 @@ DUCTILE_INLINE void copy_manners(const btRigidBody& from, btRigidBody& body) {
     body.setUserIndex(from.getUserIndex());
     body.setUserIndex2(from.getUserIndex2());
     const int manners = from.getCollisionFlags() & ~(btCollisionObject::CF_STATIC_OBJECT |
-                                                      btCollisionObject::CF_KINEMATIC_OBJECT);
+                                                     btCollisionObject::CF_KINEMATIC_OBJECT);
     body.setCollisionFlags(body.getCollisionFlags() | manners);
     if (from.getActivationState() == DISABLE_DEACTIVATION) {
         body.setActivationState(DISABLE_DEACTIVATION);
@@ -73,7 +69,7 @@ DUCTILE_INLINE void copy_manners(const btRigidBody& from, btRigidBody& body) {
 }
 
 DUCTILE_INLINE void PieceMaker::enter_world(btRigidBody& body) const {
-    const bool collides = box_.half_width > 0 || &body == &user_;
+    const bool collides = box_.is_there() || &body == &user_;
     world_->addRigidBody(&body, collides ? group_ : 0, collides ? mask_ : 0);
     if (!body.isStaticObject()) body.setGravity(gravity_);
 }
@@ -100,7 +96,8 @@ DUCTILE_INLINE void PieceMaker::put_whole(const PlacedPiece& placed, bool straig
         // the moment of momentum is that of the pieces
         const btVector3 about =
             to_bullet(times(whole.inertia_in_world(placed.pose.axes), placed.motion.spin));
-        set_motion(user_, {placed.motion.velocity, to_core(user_.getInvInertiaTensorWorld() * about)});
+        set_motion(user_,
+                   {placed.motion.velocity, to_core(user_.getInvInertiaTensorWorld() * about)});
         user_.clearForces();
         user_.activate(true);
     }

@@ -117,7 +117,8 @@ DUCTILE_INLINE void EnergyMeter::end_watch() {
 
 DUCTILE_INLINE void EnergyMeter::take_feedback_back() {
     for (const auto& [id, bodies, feedback, lent] : watched_) {
-        if (lent) dJointSetFeedback(id, nullptr);
+        // a contact that was made since may have the place of one that is gone, and another's
+        if (lent && dJointGetFeedback(id) == feedback) dJointSetFeedback(id, nullptr);
     }
     watched_.clear();
 }

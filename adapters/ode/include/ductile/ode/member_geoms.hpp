@@ -5,8 +5,9 @@
 //
 //   no box   each geom of the body belongs to the segment nearest to its middle, and goes with it
 //   a box    they are the member's while it is whole and straight, and disabled while it is open or
-//            bent; then each segment has a box of its own, made in the space of the first of them,
-//            with its data and bits. For one long geom in place of one per segment.
+//            bent; then each stretch without a bend has a box, that of its first segment, made in
+//            the space of the first of them, with its data and bits. For one long geom in place of
+//            one per segment.
 //
 // Not thread-safe.
 #pragma once
@@ -50,7 +51,7 @@ class MemberGeoms {
     const ductile::Member& member_;
     MemberBox box_;
     std::vector<Geom> users_;
-    std::vector<dGeomID> boxes_; ///< by segment; null: none
+    std::vector<dGeomID> boxes_; ///< by segment; null: none; disabled: another's is as long
 };
 
 } // namespace ductile::ode

@@ -49,18 +49,27 @@ DUCTILE_INLINE void MemberGeoms::put_straight() {
 
 DUCTILE_INLINE void MemberGeoms::put(const MemberPiece& piece, dBodyID body,
                                      const JointFrame<double>& in_body) {
-    const auto put_on = [&](dGeomID geom, int segment, const JointFrame<double>& in_segment) {
-        place(geom, body, placed(placed(in_body, piece.segment(segment)), in_segment));
-    };
     if (box_.is_there()) {
         make_boxes();
         for (int k = piece.run.first; k <= piece.run.last; ++k) {
-            if (boxes_[std::size_t(k)] != nullptr) put_on(boxes_[std::size_t(k)], k, {});
+            if (boxes_[std::size_t(k)] == nullptr) continue;
+            dGeomDisable(boxes_[std::size_t(k)]);
+            dGeomSetBody(boxes_[std::size_t(k)], nullptr);
+        }
+        for (const StraightStretch& stretch : straight_stretches(member_, piece)) {
+            const dGeomID of_it = boxes_[std::size_t(stretch.run.first)];
+            if (of_it == nullptr) continue;
+            dGeomBoxSetLengths(of_it, dReal(2 * box_.half_width), dReal(2 * box_.half_height),
+                               dReal(stretch.length));
+            dGeomEnable(of_it);
+            place(of_it, body, placed(in_body, stretch.middle));
         }
         return;
     }
     for (const Geom& entry : users_) {
-        if (piece.run.holds(entry.segment)) put_on(entry.geom, entry.segment, entry.in_segment);
+        if (!piece.run.holds(entry.segment)) continue;
+        place(entry.geom, body,
+              placed(placed(in_body, piece.segment(entry.segment)), entry.in_segment));
     }
 }
 
