@@ -4,6 +4,7 @@
 // does, and what is done to it is what was asked. Compiled for every engine and precision
 // (RIG_HEADER).
 #include RIG_HEADER
+#include "adapters/portal.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -136,41 +137,12 @@ TEST_CASE("A simple beam carries and sags under its weight as the elastic beam d
 
 TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says", "[structure]") {
     if (single) return; // a digit of a place strains bars so stiff beyond their strength
-    // A rectangle so thin that its shear and axial strength do not count, of M_p = 100 kN m; hinges
-    // a hundred times stiffer than the problem's, so that rotations are small.
-    constexpr double k = 5e8, thin = 0.01;
-    const Rectangle<double> strip({.width = 1, .height = thin});
-    const Material<double> strong({.density = 200 / thin,
-                                   .youngs_modulus = k / strip.second_moment(),
-                                   .poisson_ratio = 0.3,
-                                   .yield_stress = 100e3 / strip.plastic_modulus()});
-    NodeId b, c;
-    const auto portal_of = [&](bool elastic) {
-        StructureModel model({.elastic = elastic});
-        const NodeId a = model.node({0, 0, 0}), d = model.node({8, 0, 4}),
-                     e = model.node({8, 0, 0});
-        b = model.node({0, 0, 4});
-        c = model.node({4, 0, 4});
-        const MemberOptions as_told{.joint_length = 1.0, .up = V3(1, 0, 1), .collides = false};
-        model.member("AB", a, b, strip, strong, as_told);
-        model.member("ED", e, d, strip, strong, as_told);
-        model.member("BC", b, c, strip, strong, as_told);
-        model.member("CD", c, d, strip, strong, as_told);
-        model.support(a);
-        model.support(e);
-        return model;
-    };
-    const auto push = [&](StructureRig& rig, engine::Structure& portal, double factor, int steps,
-                          double h = dt) {
-        for (int i = 0; i < steps; ++i) {
-            portal.apply(b, {40e3 * factor, 0, 0});
-            portal.apply(c, {0, 0, -60e3 * factor});
-            rig.step(h);
-        }
-    };
+    const auto push = [](StructureRig& rig, engine::Structure& portal, double factor, int steps,
+                         double h = dt) { Portal(true).push(rig, portal, factor, steps, h); };
+    const NodeId b = Portal(true).b, c = Portal(true).c;
     { // the first hinges form at 1.25
         StructureRig rig(0);
-        const auto portal = rig.build(portal_of(true));
+        const auto portal = rig.build(Portal(true).model);
         rig.keep_awake();
         rig.damp(20);
         for (int i = 1; i <= 300; ++i) push(rig, *portal, 1.2 * i / 300, 1);
@@ -190,7 +162,7 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
                                        Steps{1.0 / 3840, 0}, Steps{1.0 / 240, 0.01}}) {
         INFO("steps of 1/" << 1 / h << ", tolerance " << tolerance);
         StructureRig rig(0, {.tolerance = tolerance});
-        const auto portal = rig.build(portal_of(true));
+        const auto portal = rig.build(Portal(true).model);
         rig.keep_awake();
         rig.damp(20);
         const int ramp = int(10 / h + 0.5);
@@ -219,7 +191,7 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
     }
     for (const double factor : {1.4985, 1.5015}) {
         StructureRig rig(0);
-        const auto portal = rig.build(portal_of(false));
+        const auto portal = rig.build(Portal(false).model);
         rig.keep_awake();
         push(rig, *portal, factor, 30);
         const double sway = portal->displacement(b).x();

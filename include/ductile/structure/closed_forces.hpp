@@ -7,15 +7,18 @@
 //
 // Forces. Those that were proved last, and what is new on top of it so that
 //
-//   Σ_j |f_j - f_j0|² (by capacities) is least,   Σ ± G_j f_j + w = 0 of every body
-//   ⇔  K u = -(w + G f0),  K = G W Gᵀ,  f = f0 + W Gᵀ u,   W = diag(capacity²)
+//   Σ_j |f_j - f_j0|² (by W) is least,   Σ ± G_j f_j + w = 0 of every body
+//   ⇔  K u = -(w + G f0),  K = G W Gᵀ,  f = f0 + W Gᵀ u
+//   W = diag(k) of an elastic joint, diag(capacity²) of a rigid one
 //
 // K has 6 rows a body and is factored once per cluster (numeric/block_ldlt.hpp), in its own frame.
-// Where these are too much in some joint of a redundant cluster, the weights of joints are divided
-// by how much they are used, and again: f then comes near to where the most used one is used the
-// least. That is a proof that the cluster stays, where it finds one, and none that it does not:
-// whoever then opens joints that would have held has an answer that costs more, and the forces of
-// that answer are the next proof.
+// In an elastic cluster it is the stiffness of the frame, and these are the forces that it comes to
+// under the loads, small rotations: where they are beyond the first joint yields on the way there.
+// Where these are too much in some joint of a redundant rigid cluster, the weights of joints are
+// divided by how much they are used, and again: f then comes near to where the most used one is
+// used the least. That is a proof that the cluster stays, where it finds one, and none that it does
+// not: whoever then opens joints that would have held has an answer that costs more, and the forces
+// of that answer are the next proof.
 //
 // Symbols
 //   f_j  force and moment of joint j on its body A, along its axes  [N], [N m]
@@ -29,6 +32,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,10 +42,15 @@
 
 namespace ductile {
 
+/// Below yield, along all its axes.
+[[nodiscard]] inline bool is_elastic(const SectionJoint<double>& joint) {
+    return joint.parameters().stiffness.maxCoeff() < std::numeric_limits<double>::infinity();
+}
+
 /// A closed joint within a cluster.
 struct ClosedJoint {
-    std::size_t joint = 0;    ///< of the plan
-    int a = 0, b = 0;         ///< bodies, by their place in the cluster; b = -1: the ground
+    std::size_t joint = 0;      ///< of the plan
+    int a = 0, b = 0;           ///< bodies, by their place in the cluster; b = -1: the ground
     Matrix6<double> on_a, on_b; ///< G, frame of the cluster
 };
 
@@ -77,7 +86,13 @@ class ClosedForces {
             one.on_b = one.b >= 0 ? about(frame, cluster.places[std::size_t(one.b)].origin)
                                   : Matrix6<double>::Zero();
             joints_.push_back(one);
-            weights_.push_back(plan.joints[j].joint.surface().semi_axes().cwiseAbs2());
+            const SectionJoint<double>& of = joint.joint;
+            if (is_elastic(of)) {
+                rigid_ = false;
+                weights_.push_back(of.parameters().stiffness);
+            } else {
+                weights_.push_back(of.surface().semi_axes().cwiseAbs2());
+            }
             if (row(one.a) >= 0 && row(one.b) >= 0) edges.emplace_back(row(one.a), row(one.b));
         }
         used_ = weights_;
@@ -93,7 +108,8 @@ class ClosedForces {
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
 
     /// The most used joint of `forces`, by plan, which become what carries the loads; no_joint:
-    /// none is used beyond 1 + `beyond`. `use(joint, force)`: share of its strength.
+    /// none is used beyond 1 + `beyond`; else they stay what they are, those of an elastic cluster
+    /// become what they are where it yields. `use(joint, force)`: share of its strength.
     static constexpr std::size_t no_joint = std::size_t(-1);
     template <class Use>
     std::size_t find(std::vector<Wrench>& forces, const Use& use, double beyond) {
@@ -124,7 +140,7 @@ class ClosedForces {
             factored_ = false;
         }
         if (worst == no_joint) return no_joint;
-        for (std::size_t i = 0; i < joints_.size(); ++i) forces[joints_[i].joint] = first_[i];
+        go_back(forces, rigid_ ? 0 : borne(forces, use));
         return worst;
     }
 
@@ -138,7 +154,34 @@ class ClosedForces {
     }
     /// Of a free cluster the first body is where all is counted from.
     [[nodiscard]] int row(int body) const noexcept { return free_ ? body - 1 : body; }
-    [[nodiscard]] bool redundant() const noexcept { return joints_.size() > rows_.size(); }
+    /// Forces are not determined by equilibrium, nor by stiffness.
+    [[nodiscard]] bool redundant() const noexcept {
+        return rigid_ && joints_.size() > rows_.size();
+    }
+
+    /// Of the way from `first_` to `forces`, as far as all joints bear it.
+    template <class Use>
+    [[nodiscard]] double borne(const std::vector<Wrench>& forces, const Use& use) const {
+        const auto bear = [&](double share) {
+            for (std::size_t i = 0; i < joints_.size(); ++i) {
+                const std::size_t j = joints_[i].joint;
+                const Wrench there = first_[i] + share * (forces[j] - first_[i]);
+                if (use(j, there) > 1) return false;
+            }
+            return true;
+        };
+        double share = 0;
+        for (double more = 0.5; more > 1e-12; more /= 2) {
+            if (bear(share + more)) share += more;
+        }
+        return share;
+    }
+    void go_back(std::vector<Wrench>& forces, double share) const {
+        for (std::size_t i = 0; i < joints_.size(); ++i) {
+            Wrench& f = forces[joints_[i].joint];
+            f = first_[i] + share * (f - first_[i]);
+        }
+    }
 
     void factor() {
         solver_.clear();
@@ -215,10 +258,10 @@ class ClosedForces {
         return worst;
     }
 
-    bool free_ = false, factored_ = false;
+    bool free_ = false, factored_ = false, rigid_ = true;
     std::vector<ClosedJoint> joints_;
     std::vector<Wrench> weights_, used_; ///< W as it is, and of this round
-    std::vector<double> penalties_; ///< by joint of this, of a round
+    std::vector<double> penalties_;      ///< by joint of this, of a round
     std::vector<Wrench> loads_, rest_, first_, rows_;
     numeric::BlockLdlt solver_;
     double left_over_ = 0;

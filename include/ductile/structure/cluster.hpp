@@ -44,9 +44,9 @@ struct PlacedBody {
 
 /// Plain value.
 struct Cluster {
-    std::vector<std::size_t> bodies; ///< of the plan, rising
-    bool held = false;               ///< to the ground
-    double mass = 0;                 ///< [kg]
+    std::vector<std::size_t> bodies;                   ///< of the plan, rising
+    bool held = false;                                 ///< to the ground
+    double mass = 0;                                   ///< [kg]
     Vector3<double> inertia = Vector3<double>::Zero(); ///< along its frame [kg m²]
     std::vector<JointFrame<double>> places;            ///< of its bodies, in its frame
 

@@ -18,7 +18,11 @@
 // Blow. An elastic structure takes up the energy E that a rigid contact annihilates as strain
 // energy of the very profile of forces that the blow has, as a member does (member/blow.hpp).
 //
-// Joints are rigid below yield: one that closes would lose what it stores.
+// Elastic joints. A closed one carries what the frame's stiffness gives it (closed_forces.hpp), and
+// has that when it opens: from the first yield on the frame is the elastic-plastic one. It is one
+// body again when it rests (joint/swing.hpp), with what its joints store then. What a closed frame
+// bends is not seen, and it does not swing: a load that comes at once yields it as one that comes
+// slowly.
 //
 // Not thread-safe.
 #pragma once
@@ -71,8 +75,8 @@ class StructureCourse {
         std::vector<Vector6<double>> forces; ///< by joint, on A along its axes [N | N m]
     };
 
-    /// @throws std::invalid_argument where a joint is elastic below yield, or one hangs on a body
-    /// of the user's.
+    /// @throws std::invalid_argument where a rigid joint passes nothing on along some axis, or one
+    /// hangs on a body of the user's.
     explicit StructureCourse(const StructurePlan& plan);
     StructureCourse(const StructureCourse&) = delete;
     StructureCourse& operator=(const StructureCourse&) = delete;
@@ -105,6 +109,8 @@ class StructureCourse {
     [[nodiscard]] int open_joints() const noexcept;
     /// Bodies that move, and those that are held as one.
     [[nodiscard]] bool whole() const noexcept { return open_joints() == 0; }
+    /// By a closed joint, of its elastic energy [J].
+    [[nodiscard]] double stored_by(std::size_t joint) const noexcept;
     /// Of closed joints: energy that they absorbed [J].
     [[nodiscard]] double closed_work() const noexcept;
     /// Strength x travel that nobody misses, the least of closed joints [J].
@@ -144,6 +150,7 @@ class StructureCourse {
     void gather(std::size_t cluster, const ClusterStep& step, std::span<const BodyLoad> loads,
                 double dt);
     void open_with(std::size_t joint);
+    void strain(std::size_t joint);
     [[nodiscard]] bool closed(std::size_t joint) const noexcept {
         return state_.joints[joint].there && !state_.joints[joint].open;
     }

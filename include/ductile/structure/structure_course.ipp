@@ -14,6 +14,16 @@
 
 namespace ductile {
 
+namespace detail {
+
+/// By an elastic joint that carries `force` [J].
+[[nodiscard]] inline double stored(const SectionJoint<double>& joint,
+                                   const Vector6<double>& force) noexcept {
+    return force.cwiseAbs2().cwiseQuotient(joint.parameters().stiffness).sum() / 2;
+}
+
+} // namespace detail
+
 DUCTILE_INLINE StructureCourse::StructureCourse(const StructurePlan& plan)
     : plan_(plan), body_there_(plan.bodies.size(), true) {
     unmissed_work_ = std::numeric_limits<double>::infinity();
@@ -23,10 +33,11 @@ DUCTILE_INLINE StructureCourse::StructureCourse(const StructurePlan& plan)
                            "no body of the user's where members are one body until they yield");
         }
         const auto& rows = joint.joint.parameters();
-        if (!(rows.stiffness.minCoeff() == std::numeric_limits<double>::infinity())) {
-            detail::refuse("StructureModel.elastic", "true",
-                           "false where members are one body until they yield: a joint that "
-                           "closes would lose what it stores");
+        constexpr double rigid = std::numeric_limits<double>::infinity();
+        if (!is_elastic(joint.joint) && rows.stiffness.minCoeff() < rigid) {
+            detail::refuse("MemberOptions.free_at", joint.name,
+                           "empty in a rigid structure that is one body until it yields: a row "
+                           "that passes nothing on is an elastic one");
         }
         const JointFrame<double>& a = plan.bodies[joint.a].pose;
         const auto in = [&joint](const JointFrame<double>& body) {
@@ -71,6 +82,10 @@ DUCTILE_INLINE std::size_t StructureCourse::nearest(std::size_t c, const JointFr
         result = cluster.bodies[i];
     }
     return result;
+}
+
+DUCTILE_INLINE double StructureCourse::stored_by(std::size_t which) const noexcept {
+    return detail::stored(plan_.joints[which].joint, force(which));
 }
 
 DUCTILE_INLINE double StructureCourse::closed_work() const noexcept {
@@ -186,11 +201,27 @@ DUCTILE_INLINE StructureCourse::Change StructureCourse::rearrange(
     return change;
 }
 
-DUCTILE_INLINE StructureCourse::Change StructureCourse::open(
-    std::span<const int> joints, std::span<const PlacedBody> clusters) {
+/// Where its bodies are an elastic joint that opens has what it carried while it was closed.
+DUCTILE_INLINE void StructureCourse::strain(std::size_t which) {
+    const Joint& of = plan_.joints[which].joint;
+    const Vector6<double>& stiffness = of.parameters().stiffness;
+    std::optional<LinkState>& state = joint(which).state;
+    if (!state) state = LinkState{.joint = of.state()};
+    auto& went = state->joint;
+    const Vector6<double> more = (force(which) - went.force).cwiseQuotient(stiffness);
+    went.plastic_offset.head<3>() += more.head<3>();
+    state->rest = turned_by<double>(angular(more), state->rest);
+    went.stored += detail::stored(of, force(which)) - detail::stored(of, went.force);
+    went.force = force(which);
+    state->swing.stir();
+}
+
+DUCTILE_INLINE StructureCourse::Change StructureCourse::open(std::span<const int> joints,
+                                                             std::span<const PlacedBody> clusters) {
     for (const int j : joints) {
         joint(std::size_t(j)).open = true;
         joint(std::size_t(j)).held = 0;
+        if (is_elastic(plan_.joints[std::size_t(j)].joint)) strain(std::size_t(j));
     }
     return rearrange(clusters);
 }
@@ -242,8 +273,8 @@ DUCTILE_INLINE void StructureCourse::gather(std::size_t c, const ClusterStep& st
         for (const BodyLoad& load : loads) {
             if (load.body != b) continue;
             force = sum(force, load.impulse);
-            moment = sum(moment, sum(load.moment,
-                                     cross(difference(load.point, at.origin), load.impulse)));
+            moment = sum(moment,
+                         sum(load.moment, cross(difference(load.point, at.origin), load.impulse)));
         }
         all[i] = twist_of(scaled(1 / dt, transposed_times(axes, force)),
                           scaled(1 / dt, transposed_times(axes, moment)));
@@ -293,7 +324,7 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::beyond(std::span<const C
         left_over_ = std::max(left_over_, closed_forces_[c].left_over());
         if (worst != ClosedForces::no_joint) open_with(worst);
     }
-    if (found_.empty()) state_.forces = trial_;
+    state_.forces = trial_;
     return found_;
 }
 
@@ -338,13 +369,17 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::struck(std::span<const C
 DUCTILE_INLINE const std::vector<int>& StructureCourse::held() {
     found_.clear();
     const int hold = ActiveSections{}.hold;
+    bool swings = false;
     for (std::size_t j = 0; j < state_.joints.size(); ++j) {
         JointCourse& one = state_.joints[j];
         if (!one.there || !one.open || !one.state) continue;
         const auto& went = one.state->joint;
         one.held = went.flowing || went.broken ? 0 : one.held + 1;
         if (one.held >= hold) found_.push_back(int(j));
+        swings = swings ||
+                 (is_elastic(plan_.joints[j].joint) && !went.broken && !one.state->swing.rests());
     }
+    if (swings) found_.clear();
     return found_;
 }
 

@@ -17,7 +17,8 @@
 // bodies, which come and go: keep none. Events name the joint, as in Structure, with split and
 // fused beside yielded and broke.
 //
-// Joints have to be rigid below yield. Bodies of the user's are not joined to it.
+// An elastic one opens where the elastic frame yields, and then swings as that does until it rests;
+// as one body it has the shape without load. Bodies of the user's are not joined to it.
 //
 // Not thread-safe. World and Bullet's world must outlive this.
 #pragma once
@@ -43,8 +44,8 @@ namespace ductile::bullet {
 
 class StructureInTime final : public BuiltStructure, private Divisible {
   public:
-    /// @throws std::invalid_argument as make_plan, where the model is elastic, and where the world
-    /// is a btMultiBodyDynamicsWorld.
+    /// @throws std::invalid_argument as make_plan and StructureCourse, and where the world is a
+    /// btMultiBodyDynamicsWorld.
     StructureInTime(World& world, const StructureModel& model);
     DUCTILE_INLINE ~StructureInTime() override;
 
@@ -111,7 +112,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
         return report(joint).absorbed_energy;
     }
     [[nodiscard]] double stored_by(std::size_t joint) const override {
-        return open_joint(joint) != nullptr ? queries(joint).stored_energy() : 0;
+        return open_joint(joint) != nullptr ? queries(joint).stored_energy()
+                                            : course_.stored_by(joint);
     }
     DUCTILE_INLINE void push(const PlanSeat& seat, const Vector3<double>& force,
                              const Vector3<double>& at) override;

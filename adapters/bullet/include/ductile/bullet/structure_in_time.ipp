@@ -217,6 +217,7 @@ DUCTILE_INLINE void StructureInTime::make_joints(bool ahead) {
         open.constraint->set_ahead(ahead);
         open.constraint->add_to(world_.engine(), !ground);
         if (ahead) open.constraint->begin_part();
+        world_.look_after_rest(*open.constraint);
         joints_.push_back(std::move(open));
     }
 }

@@ -101,6 +101,10 @@ class World final : public SteppedWorld {
     void remove(Divisible& structure, const std::vector<DivisionReport>& reports);
     /// Its bodies are others than they were, and not by a step.
     void rearranged(const Divisible& structure) { members_.rearranged(structure); }
+    /// A joint of it that is open swings until it rests, as those that were added do.
+    void look_after_rest(PlasticConstraint& joint) {
+        keep(joint, [] {});
+    }
     /// Takes a joint out of Bullet's world too. What is not here is left alone.
     void remove(PlasticConstraint& joint);
     void remove(MultiBodyPlasticConstraint& joint);
