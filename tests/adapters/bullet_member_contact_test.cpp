@@ -17,17 +17,6 @@ using bullet::World;
 
 namespace {
 
-/// 2 m, 24 kg in ten segments; its fifth section breaks at 0.05 rad, all others are strong.
-Member post_that_breaks() {
-    MemberParameters p;
-    p.segments = lumped_segments(2, 24, 10, {1e-2, 1e-2, 2e-2});
-    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
-    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 5e4})));
-    p.sections[4] =
-        UsualAxisJoint(Perfect<double>({.strength = 500}), TravelLimit<double>({.limit = 0.05}));
-    return Member(p);
-}
-
 /// Whether any two pieces would meet, were they near.
 bool pieces_meet(Rig& rig, const bullet::Member& member) {
     const auto pieces = member.pieces();

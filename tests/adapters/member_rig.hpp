@@ -18,6 +18,7 @@
 namespace ductile::test {
 
 constexpr bool rough = sizeof(btScalar) == sizeof(float);
+constexpr int most_segments = 20;
 inline const btTransform here = btTransform::getIdentity();
 
 /// Outlives its joints and members.

@@ -17,6 +17,8 @@
 namespace ductile::test::in_ode {
 
 using V3 = Vector3<double>;
+constexpr bool rough = false;     ///< in double
+constexpr int most_segments = 10; ///< always jointed: with 20 ODE's own LCP fails
 inline const JointFrame<double> here{};
 
 /// Outlives its Worlds and members.

@@ -41,4 +41,15 @@ inline Member heavy_post(int segments = 10, double strength = 500) {
     return Member(p);
 }
 
+/// 2 m, 24 kg in ten segments; its fifth section breaks at 0.05 rad, all others are strong.
+inline Member post_that_breaks() {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-2, 1e-2, 2e-2});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 5e4})));
+    p.sections[4] =
+        UsualAxisJoint(Perfect<double>({.strength = 500}), TravelLimit<double>({.limit = 0.05}));
+    return Member(p);
+}
+
 } // namespace ductile::test

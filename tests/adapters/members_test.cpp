@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// Members in an engine: one body until a section yields, against the same segments with a hinge
+// between each and the next, and against energies that do not depend on the step. Compiled for
+// every engine and precision (RIG_HEADER, whose scenes are in the namespace RIG).
+#include RIG_HEADER
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+using namespace ductile;
+using namespace ductile::test;
+using namespace RIG;
+
+TEST_CASE("just in time a struck cantilever moves as one whose sections are always open",
+          "[member]") {
+    for (const int segments : {5, most_segments}) {
+        const Lumping lumping = segments == 5 ? Lumping::rods : Lumping::ends;
+        for (const double dt : {1e-3, 1e-4}) {
+            const Member of = strip(segments, true, lumping);
+            Struck always(of, false), in_time(of, true);
+            double open = 0, steps = 0;
+            for (Struck* scene : {&always, &in_time}) scene->strike(4);
+            for (int i = 0; i < int(0.06 / dt); ++i, ++steps) {
+                always.world.step(dt);
+                in_time.world.step(dt);
+                open += in_time.member->open_sections();
+            }
+            double worst = 0;
+            for (int i = 0; i < segments; ++i) {
+                worst = std::max(worst, std::abs(always.bend(i) - in_time.bend(i)));
+            }
+            CAPTURE(segments, dt, worst, open / steps);
+            CHECK(in_time.absorbed_energy() ==
+                  Approx(always.absorbed_energy()).epsilon(rough ? 2e-3 : 1e-5));
+            CHECK(worst < (rough ? 1e-3 : 1e-6));
+            CHECK(open / steps < 2);
+            CHECK(in_time.member->whole());
+            CHECK(in_time.member->left_over() < (rough ? 1e-4 : 1e-9));
+            const auto& ledger = in_time.world.ledger();
+            CHECK(std::abs(ledger.unexplained()) < (rough ? 1e-3 : 1e-9));
+            CHECK(ledger.supplied() == Approx(8).epsilon(rough ? 1e-5 : 1e-12)); // the strike alone
+            // what closing takes, and the drift of its joints
+            CHECK(std::abs(ledger.booked(Account::members)) < (rough ? 1e-2 : 3e-5));
+        }
+    }
+}
+
+TEST_CASE("a second and a third hit go on where the first one left it", "[member]") {
+    const Member of = strip(10);
+    Struck always(of, false), in_time(of, true);
+    for (const double speed : {4.0, -4.0, 4.0}) {
+        for (Struck* scene : {&always, &in_time}) {
+            scene->strike(speed);
+            for (int i = 0; i < 600; ++i) scene->world.step(1e-4);
+        }
+        CHECK(in_time.member->whole());
+        CHECK(in_time.member->plastic_rotation(0) > 1e-3);
+    }
+    CHECK(in_time.absorbed_energy() ==
+          Approx(always.absorbed_energy()).epsilon(rough ? 2e-3 : 1e-5));
+    for (int i = 0; i < 10; ++i) {
+        CHECK(std::abs(always.bend(i) - in_time.bend(i)) < (rough ? 1e-3 : 1e-6));
+    }
+}
+
+TEST_CASE("what a blow leaves in a post does not depend on the frame", "[member]") {
+    std::vector<double> absorbed;
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
+        BallOnPost scene(heavy_post(), 100, 1);
+        scene.go(2, frame);
+        absorbed.push_back(scene.post->absorbed_energy());
+        CAPTURE(frame, absorbed.back());
+        CHECK(scene.post->whole());
+        CHECK(scene.world.run().believed());
+        CHECK(std::abs(scene.world.ledger().unexplained()) < (rough ? 1e-2 : 1e-9));
+    }
+    // what the first segment takes of the blow, x = μ s/(2 G), and what the ball keeps
+    CHECK(absorbed[0] == Approx(50 / (1 + 24.0 / 20 / 100)).epsilon(0.01));
+    for (const double energy : absorbed) {
+        CHECK(energy == Approx(absorbed[0]).epsilon(rough ? 1e-2 : 0.002));
+    }
+}
+
+TEST_CASE("events say which section split and fused, and with what energy", "[member]") {
+    BallOnPost scene(heavy_post(), 100, 1);
+    std::vector<JointEvent<double>> events;
+    scene.world.on_event([&](const JointEvent<double>& event) { events.push_back(event); });
+    scene.go(1, 1.0 / 60);
+    int open = 0;
+    bool yielded = false;
+    for (const auto& event : events) {
+        CHECK(event.name == "post");
+        if (event.kind == EventKind::split) ++open;
+        if (event.kind == EventKind::fused) --open;
+        if (event.kind == EventKind::split || event.kind == EventKind::fused) {
+            CHECK(event.section >= 0);
+            CHECK(event.section < 10);
+        }
+        yielded = yielded || event.kind == EventKind::yielded;
+    }
+    CHECK(open == 0);
+    CHECK(yielded);
+    REQUIRE_FALSE(events.empty());
+    CHECK(events.front().kind == EventKind::split);
+    CHECK(events.front().section == 9); // next to where it was struck
+    CHECK(events.back().report.absorbed_energy == Approx(scene.post->absorbed_energy()));
+}
+
+TEST_CASE("a section breaks with the same energy whether it closed in between or not", "[member]") {
+    MemberParameters p;
+    p.segments = lumped_segments(1, 2, 5, {1e-6, 1e-6, 2e-6});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(
+        5, UsualAxisJoint(Perfect<double>({.strength = 100}), TravelLimit<double>({.limit = 0.1})));
+    const Member of(p);
+    std::vector<double> absorbed;
+    for (const bool just_in_time : {false, true}) {
+        Struck scene(of, just_in_time);
+        bool broke = false;
+        for (int hit = 0; hit < 8 && !broke; ++hit) {
+            scene.strike(4);
+            for (int i = 0; i < 600 && !broke; ++i) {
+                scene.world.step(1e-4);
+                for (const auto& event : scene.world.events()) {
+                    broke = broke || event.kind == EventKind::broke;
+                }
+            }
+        }
+        CHECK(broke);
+        for (int i = 0; i < 100; ++i) scene.world.step(1e-4); // it goes on in two
+        if (just_in_time) CHECK_FALSE(scene.member->whole());
+        absorbed.push_back(scene.absorbed_energy());
+    }
+    CHECK(absorbed[1] == Approx(absorbed[0]).epsilon(rough ? 5e-3 : 1e-4));
+}
