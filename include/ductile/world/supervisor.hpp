@@ -76,6 +76,7 @@ class Supervisor {
         const auto found = find(joint);
         if (found == joints_.end()) return;
         found->joint = nullptr;
+        removed_ = true;
         if (!looking_) forget_removed();
     }
     /// Of a joint in the watch; Watch::nobody where it is not here.
@@ -156,6 +157,7 @@ class Supervisor {
     };
 
     void forget_removed() noexcept {
+        if (!std::exchange(removed_, false)) return;
         std::erase_if(joints_, [](const Entry& entry) { return entry.joint == nullptr; });
     }
 
@@ -172,7 +174,7 @@ class Supervisor {
     Listener listener_;
     double time_ = 0;
     std::size_t added_ = 0;
-    bool looking_ = false;
+    bool looking_ = false, removed_ = false;
 };
 
 } // namespace ductile

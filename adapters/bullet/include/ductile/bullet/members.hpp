@@ -102,6 +102,7 @@ class Members {
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
         int direct = 0;       ///< ticks for which it is still solved at once
+        bool asked = true;    ///< for its report
         bool watched = false; ///< in every tick
         bool here = false;    ///< in this one
     };

@@ -19,8 +19,6 @@ namespace ductile::bullet {
 DUCTILE_INLINE void Members::add(Course course) {
     members_.push_back(std::move(course));
     look_at_all_ = true;
-    const Course& added = members_.back();
-    if (added.member != nullptr && added.of->idle()) idle_changes_.emplace_back(added.member, true);
     note_bodies(members_.size() - 1);
 }
 DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
@@ -92,10 +90,12 @@ DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
         course.bodies.push_back(piece.body);
         owners_[piece.body] = i;
     }
+    const bool whole = course.of->whole(); // what it reports stays
+    if (course.member != nullptr && std::exchange(course.asked, !whole) == whole) {
+        idle_changes_.emplace_back(course.member, whole);
+    }
     const bool watched = !course.of->idle() || course.direct > 0;
-    if (watched == course.watched) return;
-    course.watched = watched;
-    if (course.member != nullptr) idle_changes_.emplace_back(course.member, !watched);
+    if (std::exchange(course.watched, watched) == watched) return;
     if (watched) {
         watched_.push_back(i);
     } else {
@@ -131,15 +131,15 @@ DUCTILE_INLINE double Members::unmissed_work() const {
 }
 
 DUCTILE_INLINE void Members::apply_forces() {
-    for (Course& course : members_) {
-        if (course.member == nullptr) course.of->apply_forces();
+    for (const std::size_t i : watched_) { // structures are
+        if (members_[i].member == nullptr) members_[i].of->apply_forces();
     }
     for (Member* member : pushed_)
         members_[owners_[member->pieces_.back().body]].of->apply_forces();
 }
 DUCTILE_INLINE void Members::drop_forces() {
-    for (Course& course : members_) {
-        if (course.member == nullptr) course.of->drop_forces();
+    for (const std::size_t i : watched_) {
+        if (members_[i].member == nullptr) members_[i].of->drop_forces();
     }
     for (Member* member : pushed_) members_[owners_[member->pieces_.back().body]].of->drop_forces();
     pushed_.clear();
