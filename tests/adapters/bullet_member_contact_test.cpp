@@ -418,3 +418,43 @@ TEST_CASE("what is done to bodies of a member in a step is said in the next one"
     scene.go(1, 1.0 / 240);
     CHECK(scene.post->whole());
 }
+
+TEST_CASE("what sleeps on a clamped member loads it still", "[bullet][member]") {
+    // crates of 50 kg are put down on a cantilever one after the other, each when those before
+    // sleep; it bears two and a half of them
+    const double crate_mass = 50, arm = 1.5;
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-2, 1e-2, 2e-2});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(
+        10,
+        UsualAxisJoint(Perfect<double>({.strength = 9.81 * (24 * 1 + 2.5 * crate_mass * arm)})));
+    for (const double tolerance : {0.0, 0.01}) {
+        Rig rig({0, 0, btScalar(-9.81)});
+        World world(rig.engine, {.tolerance = tolerance, .warn = {}});
+        auto around = std::make_unique<btCompoundShape>();
+        around->addChildShape(
+            btTransform(btQuaternion::getIdentity(), {1, 0, 0}),
+            rig.shape(std::make_unique<btBoxShape>(btVector3(1, btScalar(0.05), btScalar(0.05)))));
+        btRigidBody& body =
+            rig.body(0, {0, 0, 0}, {0, 0, 1}, rig.shape(std::move(around)), usual, everything);
+        const btMatrix3x3 along_x(0, 0, 1, 1, 0, 0, 0, 1, 0);
+        bullet::Member beam(body, Member(p), btTransform(along_x, {0, 0, 0}), {0.05, 0.05});
+        world.add(beam);
+        auto* shape = rig.shape(
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.04), btScalar(0.04), btScalar(0.1))));
+        btVector3 inertia;
+        shape->calculateLocalInertia(btScalar(crate_mass), inertia);
+        for (const int crates : {1, 2, 3}) {
+            CAPTURE(tolerance, crates);
+            CHECK(beam.absorbed_energy() == 0);
+            btRigidBody& crate = rig.body(crate_mass, inertia,
+                                          {btScalar(arm + 0.25 * (crates - 2)), 0, btScalar(1.15)},
+                                          shape, usual, everything);
+            crate.forceActivationState(ACTIVE_TAG);
+            for (int i = 0; i < 300 && beam.absorbed_energy() < 100; ++i) world.step(1.0 / 60);
+            if (crates < 3) CHECK_FALSE(crate.isActive());
+        }
+        CHECK(beam.absorbed_energy() >= 100);
+    }
+}

@@ -146,6 +146,10 @@ TEST_CASE("a frame that is struck opens, absorbs what the jointed one does, and 
         if (speed < 1) { // an elastic frame bears it
             CHECK(scene.most_bodies == 1);
             CHECK(scene.frame->absorbed_energy() == 0);
+            const double used = scene.frame->utilisation();
+            scene.run(4);
+            CHECK_FALSE(box->isActive());
+            CHECK(scene.frame->utilisation() == Approx(used).epsilon(single ? 1e-3 : 1e-6));
         } else {
             CHECK(scene.most_bodies > 1);
             CHECK(scene.frame->absorbed_energy() ==

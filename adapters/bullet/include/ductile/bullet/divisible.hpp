@@ -37,6 +37,14 @@ struct DivisionReport {
     std::function<JointReport<double>()> ask;
 };
 
+/// Contacts that act on it, as body A or B of these.
+struct ContactTouch {
+    const btPersistentManifold* manifold;
+    bool of_a;
+    bool asleep = false; ///< what lies there was not solved in this tick
+    double share = 1;    ///< of their impulses that act in it
+};
+
 /// Not thread-safe.
 class Divisible {
   public:
@@ -68,8 +76,8 @@ class Divisible {
     virtual void drop_forces() = 0;
     /// Nothing is known of the tick yet.
     virtual void begin() = 0;
-    /// Contacts with impulses that add up to `sum` [N s] acted on it, as body A or B of these.
-    virtual void touch(const btPersistentManifold& manifold, bool of_a, double sum) = 0;
+    /// Contacts acted on it with impulses that add up to `sum` [N s].
+    virtual void touch(const ContactTouch& touch, double sum) = 0;
     /// Contacts are known: adds up the rest.
     virtual void sum_up(double dt) = 0;
     [[nodiscard]] virtual bool touched() const = 0;

@@ -35,8 +35,8 @@ class MemberTick final : public Divisible {
     DUCTILE_INLINE void apply_forces() override;
     DUCTILE_INLINE void drop_forces() override;
     DUCTILE_INLINE void begin() override;
-    void touch(const btPersistentManifold& manifold, bool of_a, double sum) override {
-        touches_.push_back({&manifold, of_a});
+    void touch(const ContactTouch& touch, double sum) override {
+        touches_.push_back(touch);
         sum_ += sum;
     }
     void sum_up(double dt) override {
@@ -57,13 +57,7 @@ class MemberTick final : public Divisible {
     DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
 
   private:
-    struct Touch {
-        const btPersistentManifold* manifold;
-        bool of_a;
-    };
-
-    void read_contact(const btPersistentManifold& manifold, bool of_a,
-                      std::span<const BodyBefore> before);
+    void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
     /// Sums what acted, and lists it where `lists`.
     void read_constraints(double dt, bool lists);
     void read_forces(double dt, bool lists);
@@ -75,7 +69,7 @@ class MemberTick final : public Divisible {
     void finish_steps(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
     Member& member_;
     std::vector<PieceStep> steps_;
-    std::vector<Touch> touches_;
+    std::vector<ContactTouch> touches_;
     std::vector<MemberLoad> loads_;
     MemberStrike strike_;
     double sum_ = 0;                           ///< of impulses [N s]

@@ -105,7 +105,7 @@ DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> befo
         steps_[i].pose =
             &body == &member_.user_ ? placed(pose, member_.maker_->whole_in_body()) : pose;
     }
-    for (const Touch& touch : touches_) read_contact(*touch.manifold, touch.of_a, before);
+    for (const ContactTouch& touch : touches_) read_contact(touch, before);
     read_constraints(dt, true);
     read_forces(dt, true);
     finish_steps(dt, before, gravity);
@@ -175,13 +175,13 @@ DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const Body
         sum += half_arm * (across + length / 2 * around + dt * fastest * fastest * length) +
                own_about_x_ * around + own_inertia_ * dt * fastest * fastest;
     }
-    for (const Touch& touch : touches_) {
+    for (const ContactTouch& touch : touches_) {
         for (int k = 0; k < touch.manifold->getNumContacts(); ++k) {
             const btManifoldPoint& point = touch.manifold->getContactPoint(k);
-            const Vector3<double> impulse =
-                to_core(point.m_appliedImpulse * point.m_normalWorldOnB +
-                        point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
-                        point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2);
+            const Vector3<double> impulse = scaled(
+                touch.share, to_core(point.m_appliedImpulse * point.m_normalWorldOnB +
+                                     point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
+                                     point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2));
             const Vector3<double> arm = difference(
                 to_core(touch.of_a ? point.getPositionWorldOnA() : point.getPositionWorldOnB()),
                 start);
@@ -195,23 +195,25 @@ DUCTILE_INLINE double MemberTick::largest_moment(double dt, std::span<const Body
     return sum * (1 + hair);
 }
 
-DUCTILE_INLINE void MemberTick::read_contact(const btPersistentManifold& manifold, bool of_a,
+DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
                                              std::span<const BodyBefore> before) {
+    const btPersistentManifold& manifold = *touch.manifold;
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
     const Member& member = member_;
     std::size_t piece = 0;
-    while (piece + 1 < member.pieces_.size() && member.pieces_[piece].body != (of_a ? &a : &b)) {
+    while (piece + 1 < member.pieces_.size() &&
+           member.pieces_[piece].body != (touch.of_a ? &a : &b)) {
         ++piece;
     }
     for (int k = 0; k < manifold.getNumContacts(); ++k) {
         const ContactLoad contact =
-            contact_load(manifold, manifold.getContactPoint(k), of_a, before);
+            contact_load(manifold, manifold.getContactPoint(k), touch.of_a, before);
         if (contact.impulse.isZero()) continue;
         MemberLoad& load = loads_.emplace_back();
         load.point = to_core(contact.at);
         load.segment = nearest_segment(member.description(), member.course_.pieces()[piece],
                                        steps_[piece].pose, load.point);
-        load.impulse = to_core(contact.impulse);
+        load.impulse = scaled(touch.share, to_core(contact.impulse));
         strike_.energy += contact.energy;
         if (contact.closing > strike_.speed) {
             strike_.speed = contact.closing;

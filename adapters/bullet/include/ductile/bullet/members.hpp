@@ -14,7 +14,8 @@
 // open nothing.
 //
 // Read are the impulses of contact points, the joint feedback of what holds on to a member, its own
-// forces and gravity. A member that these could not load beyond its strength with the largest arms
+// forces and gravity. What sleeps on a clamped member presses on it as it did when it was last
+// solved. A member that these could not load beyond its strength with the largest arms
 // that they can have is not looked at more closely. A clamped one that is whole is not looked at at
 // all where nothing touched it, once gravity alone did not yield it.
 //
@@ -119,7 +120,7 @@ class Members {
     void note_bodies(std::size_t course);
     /// It is looked at in this tick.
     void list(Course& course);
-    void read_sums(double dt);
+    void read_sums(double dt, bool blow);
     /// False where it has to be solved for at once first.
     [[nodiscard]] bool is_decided(Course& course);
 
@@ -136,6 +137,14 @@ class Members {
     std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world
     DirectBodies direct_;
+    struct Asleep {
+        Course* course;
+        ContactTouch touch;
+        double sum; ///< of impulses, of the tick in which they acted [N s]
+    };
+    std::vector<Asleep> asleep_; ///< on clamped members
+    /// Length of the last tick in which contacts acted on a clamped member [s].
+    std::unordered_map<const btPersistentManifold*, double> acted_;
     std::vector<Happened> happened_;
     std::vector<DivisionChange> changes_;
 };

@@ -196,7 +196,7 @@ DUCTILE_INLINE void Members::before_solve() {
 
 // ---- after it
 
-DUCTILE_INLINE void Members::read_sums(double dt) {
+DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
         const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
@@ -207,7 +207,7 @@ DUCTILE_INLINE void Members::read_sums(double dt) {
         // what sleeps was not solved
         const bool solved = (a.isActive() && !a.isStaticOrKinematicObject()) ||
                             (b.isActive() && !b.isStaticOrKinematicObject());
-        if (!solved) continue;
+        if (!solved && blow) continue;
         double sum = 0;
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
             const btManifoldPoint& point = manifold.getContactPoint(k);
@@ -219,10 +219,23 @@ DUCTILE_INLINE void Members::read_sums(double dt) {
         for (const bool side_a : {true, false}) {
             Course* course = side_a ? of_a : of_b;
             if (course == nullptr) continue;
+            const bool clamped = (side_a ? a : b).isStaticObject();
+            if (!solved) {
+                if (clamped) asleep_.push_back({course, {&manifold, side_a, true, 0}, sum});
+                continue;
+            }
             list(*course);
-            course->of->touch(manifold, side_a, sum);
+            course->of->touch({&manifold, side_a}, sum);
+            if (clamped && !blow) acted_[&manifold] = dt;
         }
     }
+    for (auto& [course, touch, sum] : asleep_) { // carries on as when it was solved
+        const auto acted = acted_.find(touch.manifold);
+        if (!course->here || acted == acted_.end()) continue;
+        touch.share = dt / acted->second;
+        course->of->touch(touch, touch.share * sum);
+    }
+    asleep_.clear();
     for (Course* course : here_) course->of->sum_up(dt);
 }
 
@@ -235,7 +248,7 @@ DUCTILE_INLINE bool Members::is_decided(Course& course) {
 
 DUCTILE_INLINE bool Members::look(double dt) {
     if (members_.empty()) return false;
-    read_sums(dt);
+    read_sums(dt, false);
     const btVector3 gravity = world_.getGravity();
     bool any = false;
     for (Course* course : here_) {
@@ -262,7 +275,7 @@ DUCTILE_INLINE void Members::begin_blow() {
 
 DUCTILE_INLINE bool Members::look_blow(double dt) {
     if (members_.empty()) return false;
-    read_sums(dt);
+    read_sums(dt, true);
     const btVector3 gravity = world_.getGravity();
     bool any = false;
     for (Course* course : here_) {

@@ -87,10 +87,6 @@ class StructureInTime final : public BuiltStructure, private Divisible {
         std::size_t body;
         Vector3<double> force, in_body;
     };
-    struct Touch {
-        const btPersistentManifold* manifold;
-        bool of_a;
-    };
 
     [[nodiscard]] std::vector<PlacedBody> placed_clusters() const;
     [[nodiscard]] const OpenJoint* open_joint(std::size_t joint) const;
@@ -100,7 +96,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     void make_joints(bool ahead);
     void let_neighbours_pass();
     [[nodiscard]] JointReport<double> report(std::size_t joint) const;
-    void read_contact(const Touch& touch, std::span<const BodyBefore> before);
+    [[nodiscard]] bool rests() const;
+    void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
 
     // ---- what BuiltStructure asks
     [[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(const PlanSeat& seat) const override;
@@ -140,9 +137,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     DUCTILE_INLINE void apply_forces() override;
     DUCTILE_INLINE void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void begin() override;
-    DUCTILE_INLINE void touch(const btPersistentManifold& manifold, bool of_a,
-                              double /*sum*/) override {
-        touches_.push_back({&manifold, of_a});
+    DUCTILE_INLINE void touch(const ContactTouch& touch, double /*sum*/) override {
+        touches_.push_back(touch);
     }
     DUCTILE_INLINE void sum_up(double /*dt*/) override {}
     [[nodiscard]] DUCTILE_INLINE bool touched() const override { return !touches_.empty(); }
@@ -170,10 +166,11 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     std::vector<Force> forces_;
     // a tick
     std::vector<ClusterStep> steps_; ///< by cluster
-    std::vector<Touch> touches_;
+    std::vector<ContactTouch> touches_;
     std::vector<BodyLoad> loads_;
     double struck_ = 0; ///< energy that contacts took [J]
-    /// The gravity alone for which it is proved that it stays as it is.
+    /// What sleeps on it, beside the gravity for which it is proved that it stays as it is.
+    std::size_t proved_touches_ = 0;
     std::optional<btVector3> proved_;
 };
 

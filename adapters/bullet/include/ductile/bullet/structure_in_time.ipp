@@ -280,16 +280,24 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
 
 DUCTILE_INLINE void StructureInTime::begin() { touches_.clear(); }
 
+/// Nothing acts on it but what it carried before.
+DUCTILE_INLINE bool StructureInTime::rests() const {
+    return forces_.empty() && std::all_of(touches_.begin(), touches_.end(),
+                                          [](const ContactTouch& touch) { return touch.asleep; });
+}
+
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(double /*dt*/,
                                                    std::span<const BodyBefore> /*before*/,
                                                    const btVector3& gravity) const {
-    if (!proved_ || *proved_ != gravity || !touches_.empty() || !forces_.empty()) return true;
+    if (!proved_ || *proved_ != gravity || !rests() || proved_touches_ != touches_.size()) {
+        return true;
+    }
     return std::any_of(pieces_.begin(), pieces_.end(), [](const PieceBody& piece) {
         return !piece.body->isStaticObject() && piece.body->isActive();
     });
 }
 
-DUCTILE_INLINE void StructureInTime::read_contact(const Touch& touch,
+DUCTILE_INLINE void StructureInTime::read_contact(const ContactTouch& touch,
                                                   std::span<const BodyBefore> before) {
     const btCollisionObject* body =
         touch.of_a ? touch.manifold->getBody0() : touch.manifold->getBody1();
@@ -302,7 +310,7 @@ DUCTILE_INLINE void StructureInTime::read_contact(const Touch& touch,
         BodyLoad& load = loads_.emplace_back();
         load.point = to_core(contact.at);
         load.body = course_.nearest(c, steps_[c].pose, load.point);
-        load.impulse = to_core(contact.impulse);
+        load.impulse = scaled(touch.share, to_core(contact.impulse));
         struck_ += contact.energy;
     }
 }
@@ -317,7 +325,7 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         const int place = pieces_[c].body->getWorldArrayIndex();
         steps_[c].pose = to_core(before[std::size_t(place)].pose);
     }
-    for (const Touch& touch : touches_) read_contact(touch, before);
+    for (const ContactTouch& touch : touches_) read_contact(touch, before);
     const auto add = [&](const btVector3& force, const btVector3& torque, std::size_t body) {
         // about the centre of its cluster's body
         loads_.push_back({body, steps_[course_.cluster_of(body)].pose.origin,
@@ -355,8 +363,8 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         if (went.turns) step.dt = dt;
     }
     proved_.reset();
-    const bool alone = touches_.empty() && forces_.empty() && joints_.empty();
-    if (alone) proved_ = gravity;
+    proved_touches_ = touches_.size();
+    if (rests() && joints_.empty()) proved_ = gravity;
 }
 
 DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::vector<int>& sections) {
