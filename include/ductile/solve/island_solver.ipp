@@ -74,10 +74,16 @@ DUCTILE_INLINE bool IslandSolver::settle(IslandReport& report) {
 
 /// Takes out again what rigid rows give: solved anew, with their softness around the impulses of
 /// before. Rows that repeat each other keep their shares by it. Where they contradict each other,
-/// or nothing settles, what they give does not fade, and the answer stays as it was.
+/// or nothing settles, what they give does not fade, and the answer stays as it was. So it does
+/// beside friction, whose answer is another from another start.
 DUCTILE_INLINE void IslandSolver::harden(IslandReport& report) {
     constexpr int most = 30, asked = 3;
     constexpr double fades = 0.9, faded = 0.1;
+    const std::vector<IslandBlock>& blocks = system_.island().blocks;
+    if (std::any_of(blocks.begin(), blocks.end(),
+                    [](const IslandBlock& block) { return block.kind == BlockKind::contact; })) {
+        return;
+    }
     const double enough = detail::exactness * report.scale, first = system_.given();
     const int before = report.interior_points;
     double given = first;

@@ -51,7 +51,14 @@ namespace ductile::bullet {
         b.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE) {
         return rounded;
     }
-    return std::min(rounded, double(farthest(a, -1) - farthest(b, 1)));
+    // the digits of places in the world are no edge
+    const auto size = [](const btCollisionObjectWrapper& of) {
+        return of.getWorldTransform().getOrigin().length() +
+               of.getCollisionShape()->getAngularMotionDisc();
+    };
+    const double sharp = farthest(a, -1) - farthest(b, 1);
+    const double digits = 16 * double(SIMD_EPSILON) * double(size(a) + size(b));
+    return rounded - sharp > digits ? sharp : rounded;
 }
 
 } // namespace ductile::bullet
