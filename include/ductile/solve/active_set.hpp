@@ -73,6 +73,7 @@ class ActiveSet {
     std::vector<double> shifts_, slips_; ///< of contacts, in order
     int rounds_ = 0;
     bool contacts_held_ = false;
+    bool hardens_ = false;  ///< rigid rows are to give nothing before contacts are looked at
     bool cautious_ = false; ///< rows that are most wrong go first
 };
 

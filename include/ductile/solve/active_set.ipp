@@ -79,6 +79,9 @@ DUCTILE_INLINE void ActiveSet::begin() {
                (block.state == BlockState::surface && block.multiplier == 0);
     };
     shifts_.clear();
+    hardens_ =
+        std::any_of(island.blocks.begin(), island.blocks.end(),
+                    [](const IslandBlock& block) { return block.kind == BlockKind::contact; });
     if (std::any_of(island.blocks.begin(), island.blocks.end(), unknown)) {
         system_->update_velocities();
         system_->update_residuals();
@@ -183,12 +186,24 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     const double enough = detail::exactness * system_->scale();
     if (!factored) set_tangents();
     bool stays = true;
-    double worst = 0, before = std::numeric_limits<double>::infinity();
+    double worst = 0, before = std::numeric_limits<double>::infinity(), last = before;
     for (int step = 0;; ++step) {
         system_->update_velocities();
         system_->update_residuals();
         worst = set_right_sides();
-        if (worst <= enough) return true;
+        if (worst <= enough) {
+            const double given = hardens_ ? system_->given() : 0;
+            if (given <= enough || step >= steps) return true;
+            if (given < last / 2) {
+                system_->keep();
+            } else { // rows contradict each other
+                system_->undo_keep();
+                hardens_ = false;
+            }
+            last = given;
+            before = std::numeric_limits<double>::infinity();
+            continue;
+        }
         if (!stays || std::isnan(worst) || step >= steps) break;
         if (step > 1 && !curved && worst > stalled * before) break;
         if (!factored || (curved && !(worst < slow * before))) {

@@ -74,8 +74,9 @@ DUCTILE_INLINE bool IslandSolver::settle(IslandReport& report) {
 
 /// Takes out again what rigid rows give: solved anew, with their softness around the impulses of
 /// before. Rows that repeat each other keep their shares by it. Where they contradict each other,
-/// or nothing settles, what they give does not fade, and the answer stays as it was. So it does
-/// beside friction, whose answer is another from another start.
+/// or nothing settles, what they give does not fade, and the answer stays as it was. Beside
+/// friction, whose answer is another from another start, the active set did so before it looked at
+/// contacts.
 DUCTILE_INLINE void IslandSolver::harden(IslandReport& report) {
     constexpr int most = 30, asked = 3;
     constexpr double fades = 0.9, faded = 0.1;
