@@ -95,18 +95,33 @@ struct Rig : test::BulletEngine {
     return shape;
 }
 
+/// A head that gives way downwards under what falls on it.
+struct CrushingHead {
+    static constexpr double mass = 500, head_mass = 50, strength = 30e3, g = 9.81;
+
+    /// After a fall from `height` [m].
+    [[nodiscard]] static double crush(double height) {
+        const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
+        return common * common / (2 * (strength / (mass + head_mass) - g));
+    }
+
+    explicit CrushingHead(Rig& rig)
+        : body(rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2)) {
+        rig.engine.setGravity({0, btScalar(-g), 0});
+    }
+
+    btRigidBody& body;
+};
+
 } // namespace
 
 TEST_CASE("Frames: a mass dropped on a crushing head, by Bullet's own contact", "[frame]") {
-    constexpr double mass = 500, head_mass = 50, height = 2, strength = 30e3, g = 9.81;
-    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
-    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    constexpr double height = 2, mass = CrushingHead::mass, strength = CrushingHead::strength;
+    const double crush = CrushingHead::crush(height);
     for (const double frame : all_frames) {
         CAPTURE(frame);
         Rig rig;
-        rig.engine.setGravity({0, btScalar(-g), 0});
-        btRigidBody& head =
-            rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2);
+        btRigidBody& head = CrushingHead(rig).body;
         rig.body(mass, btVector3(50, 50, 50), {0, btScalar(0.2 + height), 0}, box(0.4, 0.1, 0.4), 2,
                  1);
         Slider slider(head, along({0, 1, 0}), law(strength));
@@ -122,15 +137,12 @@ TEST_CASE("Frames: a mass dropped on a crushing head, by Bullet's own contact", 
 
 TEST_CASE("Frames: an edge strikes where it is, not where closest points round it", "[frame]") {
     // a box on its edge, whose margin of 4 cm puts it 17 mm away while it touches
-    constexpr double mass = 500, head_mass = 50, height = 0.2, strength = 30e3, g = 9.81;
-    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
-    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    constexpr double height = 0.2, mass = CrushingHead::mass, strength = CrushingHead::strength;
+    const double crush = CrushingHead::crush(height);
     for (const double frame : all_frames) {
         CAPTURE(frame);
         Rig rig;
-        rig.engine.setGravity({0, btScalar(-g), 0});
-        btRigidBody& head =
-            rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2);
+        btRigidBody& head = CrushingHead(rig).body;
         constexpr double half = 0.4;
         btRigidBody& falls =
             rig.body(mass, {0, 0, 0}, {0, btScalar(0.1 + half * std::numbers::sqrt2 + height), 0},

@@ -12,9 +12,8 @@
 //                         force was that of its flow back
 //   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
 //                         three times that where the flow began within the part
-//   one that flows with a force that was foretold, and is d R short of its strength:  + d |u + u'|
-//   h/2 an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of
-//   its
+//                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
+//   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
 //                         strength that makes it matter; nothing below 5 % of R
 //
 // Symbols

@@ -79,9 +79,7 @@ DUCTILE_INLINE void ActiveSet::begin() {
                (block.state == BlockState::surface && block.multiplier == 0);
     };
     shifts_.clear();
-    hardens_ =
-        std::any_of(island.blocks.begin(), island.blocks.end(),
-                    [](const IslandBlock& block) { return block.kind == BlockKind::contact; });
+    hardens_ = island.has_contacts();
     if (std::any_of(island.blocks.begin(), island.blocks.end(), unknown)) {
         system_->update_velocities();
         system_->update_residuals();

@@ -34,6 +34,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -105,6 +106,11 @@ struct Island {
     std::vector<IslandRow> rows;
     std::vector<IslandBlock> blocks; ///< no row in two of them
 
+    [[nodiscard]] bool has_contacts() const noexcept {
+        return std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
+            return block.kind == BlockKind::contact;
+        });
+    }
     void clear() noexcept {
         bodies.clear();
         rows.clear();

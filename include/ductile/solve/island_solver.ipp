@@ -80,11 +80,7 @@ DUCTILE_INLINE bool IslandSolver::settle(IslandReport& report) {
 DUCTILE_INLINE void IslandSolver::harden(IslandReport& report) {
     constexpr int most = 30, asked = 3;
     constexpr double fades = 0.9, faded = 0.1;
-    const std::vector<IslandBlock>& blocks = system_.island().blocks;
-    if (std::any_of(blocks.begin(), blocks.end(),
-                    [](const IslandBlock& block) { return block.kind == BlockKind::contact; })) {
-        return;
-    }
+    if (system_.island().has_contacts()) return;
     const double enough = detail::exactness * report.scale, first = system_.given();
     const int before = report.interior_points;
     double given = first;
