@@ -56,6 +56,10 @@ class ActiveSet {
     }
     void place();
     [[nodiscard]] bool solve_free_rows(bool factored);
+    [[nodiscard]] bool harden();
+    void end_hardening();
+    [[nodiscard]] double exact() const noexcept;
+    [[nodiscard]] double accepted() const noexcept;
     [[nodiscard]] double set_right_sides();
     void set_tangents();
     [[nodiscard]] bool take_step();
@@ -69,12 +73,15 @@ class ActiveSet {
     void shift_contacts();
 
     IslandSystem* system_ = nullptr;
-    numeric::Anderson slip_;
-    std::vector<double> shifts_, slips_; ///< of contacts, in order
+    numeric::Anderson slip_, kept_;
+    std::vector<double> shifts_, slips_;              ///< of contacts, in order
+    std::vector<double> keep_, best_kept_, impulses_; ///< of rigid rows
     int rounds_ = 0;
     bool contacts_held_ = false;
-    bool hardens_ = false;  ///< rigid rows are to give nothing before contacts are looked at
-    bool cautious_ = false; ///< rows that are most wrong go first
+    double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
+    int slow_ = 0;                            ///< steps since
+    bool hardens_ = false;                    ///< rigid rows are to give nothing
+    bool cautious_ = false;                   ///< rows that are most wrong go first
 };
 
 } // namespace ductile::solve

@@ -14,10 +14,10 @@ namespace ductile::solve {
 
 namespace detail {
 
-inline constexpr double exactness = 1e-12; ///< of the largest velocity: a row is solved
-inline constexpr double sufficient = 1e-7; ///< the same where round-off allows no more
-inline constexpr double acceptance = 1e-9; ///< of the largest velocity: a row is on the right side
-inline constexpr double settled = 1e-7;    ///< of the largest velocity: a slip has settled
+inline constexpr double exactness = 1e-12;  ///< of the largest velocity: a row is solved
+inline constexpr double sufficient = 1e-7;  ///< the same where round-off allows no more
+inline constexpr double acceptance = 1e-11; ///< of the largest velocity: a row is on the right side
+inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip has settled
 
 } // namespace detail
 
@@ -79,7 +79,7 @@ DUCTILE_INLINE void ActiveSet::begin() {
                (block.state == BlockState::surface && block.multiplier == 0);
     };
     shifts_.clear();
-    hardens_ = island.has_contacts();
+    hardens_ = true;
     if (std::any_of(island.blocks.begin(), island.blocks.end(), unknown)) {
         system_->update_velocities();
         system_->update_residuals();
@@ -171,6 +171,16 @@ DUCTILE_INLINE bool ActiveSet::take_step() {
     return stays;
 }
 
+/// Where a row is solved, and where it is on the right side [m/s | rad/s].
+DUCTILE_INLINE double ActiveSet::exact() const noexcept {
+    return std::clamp(4 * system_->noise(), detail::exactness * system_->scale(),
+                      10 * detail::sufficient * system_->scale());
+}
+DUCTILE_INLINE double ActiveSet::accepted() const noexcept {
+    return std::clamp(40 * system_->noise(), detail::acceptance * system_->scale(),
+                      10 * detail::sufficient * system_->scale());
+}
+
 /// To round-off, with the sides as they are; `factored`: by factors that were made for these sides.
 /// What the factors were not made for, a surface that a block moved along, calls for others;
 /// round-off does not.
@@ -181,29 +191,31 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
         return block.state == BlockState::surface;
     });
-    const double enough = detail::exactness * system_->scale();
     if (!factored) set_tangents();
     bool stays = true;
-    double worst = 0, before = std::numeric_limits<double>::infinity(), last = before;
+    double worst = 0, before = std::numeric_limits<double>::infinity();
+    kept_.restart();
+    least_given_ = last_given_ = before;
+    slow_ = 0;
     for (int step = 0;; ++step) {
         system_->update_velocities();
         system_->update_residuals();
         worst = set_right_sides();
-        if (worst <= enough) {
-            const double given = hardens_ ? system_->given() : 0;
-            if (given <= enough || step >= steps) return true;
-            if (given < last / 2) {
-                system_->keep();
-            } else { // rows contradict each other
-                system_->undo_keep();
-                hardens_ = false;
-            }
-            last = given;
+        bool again = false;
+        if (worst <= exact()) {
+            if (!harden()) return true;
+            again = true;
+        } else if (!stays || std::isnan(worst) || step >= steps ||
+                   (step > 1 && !curved && worst > stalled * before)) {
+            if (!stays || !(least_given_ < std::numeric_limits<double>::infinity())) break;
+            end_hardening(); // round-off allows no more
+            again = true;
+        }
+        if (again) {
             before = std::numeric_limits<double>::infinity();
+            step = 0;
             continue;
         }
-        if (!stays || std::isnan(worst) || step >= steps) break;
-        if (step > 1 && !curved && worst > stalled * before) break;
         if (!factored || (curved && !(worst < slow * before))) {
             set_tangents();
             static_cast<void>(set_right_sides());
@@ -217,12 +229,43 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     return stays && worst <= detail::sufficient * system_->scale();
 }
 
+/// Takes out what rigid rows give: they give nothing at the impulses that are kept, and are kept at
+/// those of the last answer, accelerated. False where nothing is left to do. Where rows contradict
+/// each other what they give does not fade, and the best so far stays.
+DUCTILE_INLINE bool ActiveSet::harden() {
+    constexpr int most_slow = 6;
+    constexpr double stands = 0.999; // what hardly changes is not to be extrapolated
+    if (!hardens_) return false;
+    const double given = system_->given();
+    if (given <= exact()) return false;
+    system_->read_rigid(keep_, impulses_);
+    if (given < least_given_ / 2) {
+        least_given_ = given;
+        best_kept_ = keep_;
+        slow_ = 0;
+    } else if (++slow_ > most_slow || std::abs(given - last_given_) < (1 - stands) * given) {
+        end_hardening();
+        return true;
+    }
+    last_given_ = given;
+    kept_.advance(keep_, impulses_);
+    system_->keep(keep_);
+    return true;
+}
+
+/// Back to the best so far.
+DUCTILE_INLINE void ActiveSet::end_hardening() {
+    system_->keep(best_kept_);
+    hardens_ = false;
+    least_given_ = std::numeric_limits<double>::infinity();
+}
+
 /// Where a row belongs, and by how much it is wrong where it is [m/s | rad/s].
 DUCTILE_INLINE ActiveSet::Place ActiveSet::where(std::size_t i) const {
     const IslandRow& row = system_->island().rows[i];
     const IslandSystem::Row& work = system_->rows()[i];
     if (work.own == 0 || !(row.lower < row.upper)) return {row.side, 0};
-    const double least = detail::acceptance * system_->scale();
+    const double least = accepted();
     if (row.side != Side::free) {
         const double off = row.side == Side::lower ? work.residual : -work.residual;
         return {off > least ? Side::free : row.side, off};
@@ -253,7 +296,7 @@ DUCTILE_INLINE int ActiveSet::change_over() {
         wrong += place.side != island.rows[i].side;
         if (place.off >= worst / 2) island.rows[i].side = place.side;
     }
-    const double least = detail::acceptance * system_->scale();
+    const double least = accepted();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
         if (held(view.block)) continue;

@@ -10,10 +10,8 @@
 //
 //   minimise 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x,   v = M⁻¹ Jᵀ x,   x within bounds and blocks
 //
-// Rows without a softness of their own are rigid: what the least softness gives is taken out by
-// solving anew around the impulses of before, with the same factors, until nothing is left of it
-// (proximal point; Rockafellar 1976, doi:10.1137/0314056). Among rows that repeat each other the
-// shares stay those of the softness.
+// Rows without a softness of their own are rigid: the active set takes out what the least softness
+// gives. Among rows that repeat each other the shares stay those of the softness.
 //
 // Friction is more: its slips shift what the normals are asked for (contact_form.hpp). Warm active
 // set first (active_set.hpp); where that does not settle the interior point
@@ -48,9 +46,7 @@ class IslandSolver {
 
   private:
     bool polished(IslandReport& report);
-    bool settle(IslandReport& report);
-    double fall_back(IslandReport& report);
-    void harden(IslandReport& report);
+    void fall_back(IslandReport& report);
     void finish(IslandReport& report);
     void give_up();
     void put(const std::vector<double>& impulses);
@@ -61,7 +57,6 @@ class IslandSolver {
     InteriorPoint interior_point_;
     ContactSweep contact_sweep_;
     std::vector<double> start_, best_;
-    Island soft_;
 };
 
 } // namespace ductile::solve

@@ -57,7 +57,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         return report;
     }
     take(start_);
-    if (settle(report)) harden(report);
+    if (!polished(report)) fall_back(report);
     finish(report);
     return report;
 }
@@ -68,45 +68,11 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
     return settled;
 }
 
-DUCTILE_INLINE bool IslandSolver::settle(IslandReport& report) {
-    return polished(report) || fall_back(report) <= solved_residual / 10;
-}
-
-/// Takes out again what rigid rows give: solved anew, with their softness around the impulses of
-/// before. Rows that repeat each other keep their shares by it. Where they contradict each other,
-/// or nothing settles, what they give does not fade, and the answer stays as it was. Beside
-/// friction, whose answer is another from another start, the active set did so before it looked at
-/// contacts.
-DUCTILE_INLINE void IslandSolver::harden(IslandReport& report) {
-    constexpr int most = 30, asked = 3;
-    constexpr double fades = 0.9, faded = 0.1;
-    if (system_.island().has_contacts()) return;
-    const double enough = detail::exactness * report.scale, first = system_.given();
-    const int before = report.interior_points;
-    double given = first;
-    for (int step = 0; step < most && given > enough; ++step) {
-        const double last = given;
-        soft_.rows = system_.island().rows;
-        soft_.blocks = system_.island().blocks;
-        take(start_);
-        system_.keep();
-        const bool settled =
-            report.interior_points - before < asked ? settle(report) : polished(report);
-        given = system_.given();
-        if (settled && given < fades * last) continue;
-        if (settled && given < faded * first) return;
-        system_.island().rows = soft_.rows;
-        system_.island().blocks = soft_.blocks;
-        system_.undo_keep();
-        return;
-    }
-}
-
 /// The interior point, polished by the active set. From there contacts one after the other
 /// (contact_sweep.hpp), and the active set again; each pass goes on from the best so far. In every
 /// second pass joints that the active set leaves between the sweeps are the interior point's: that
 /// alone finds the one half of what is hard, and loses the other.
-DUCTILE_INLINE double IslandSolver::fall_back(IslandReport& report) {
+DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     constexpr int most = 4;
     double effort = 2e7; // some 20 ms
     double least = std::numeric_limits<double>::infinity();
@@ -123,22 +89,21 @@ DUCTILE_INLINE double IslandSolver::fall_back(IslandReport& report) {
         return least / report.scale;
     };
     constexpr double solved = solved_residual / 2, well = solved_residual / 10;
-    for (IslandSystem::Row& row : system_.rows()) row.shift = 0;
+    for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
     put(start_);
     for (int pass = 0; pass < most; ++pass) {
         interior_point_.solve(system_);
         ++report.interior_points;
         static_cast<void>(keep());
-        if (polished(report)) return 0;
-        if (keep() <= well) return least / report.scale;
+        if (polished(report)) return;
+        if (keep() <= well) return;
         contact_sweep_.solve(system_, active_set_, pass % 2 == 1 ? &interior_point_ : nullptr,
                              effort);
         report.sweeps += contact_sweep_.sweeps();
         if (keep() <= well) break;
-        if (polished(report)) return 0;
+        if (polished(report)) return;
         if (keep() <= solved || !(effort > 0)) break;
     }
-    return least / report.scale;
 }
 
 DUCTILE_INLINE void IslandSolver::finish(IslandReport& report) {

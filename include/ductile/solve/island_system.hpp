@@ -40,16 +40,15 @@ class IslandSystem {
         double compliance = 0; ///< C with softness
         bool rigid = false;    ///< C is least_softness, for the factors' sake
         double kept = 0;       ///< x' of a rigid row: impulse at which it gives nothing
-        double kept_before = 0;
-        double metric = 0;   ///< own + C
-        double shift = 0;    ///< taken from b: the slip of a contact, see friction_cone.hpp
-        double residual = 0; ///< b - shift - J v - C (x - x')
-        double weight = 0;   ///< W
-        double factored = 0; ///< that of the last factors
-        double right = 0;    ///< g
-        double extra = 0;    ///< e
-        double rest = 0;     ///< g - J dv
-        double change = 0;   ///< dx
+        double metric = 0;     ///< own + C
+        double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
+        double residual = 0;   ///< b - shift - J v - C (x - x')
+        double weight = 0;     ///< W
+        double factored = 0;   ///< that of the last factors
+        double right = 0;      ///< g
+        double extra = 0;      ///< e
+        double rest = 0;       ///< g - J dv
+        double change = 0;     ///< dx
     };
     /// Of a block.
     struct Block {
@@ -72,6 +71,9 @@ class IslandSystem {
     [[nodiscard]] bool alone(std::size_t row) const noexcept { return block_of_[row] < 0; }
     /// Largest velocity that a row asks for [m/s | rad/s]; NaN where the input is not finite.
     [[nodiscard]] double scale() const noexcept { return scale_; }
+    /// Round-off of the last residuals: what the largest impulse makes of its bodies, in the digits
+    /// of a double [m/s | rad/s].
+    [[nodiscard]] double noise() const noexcept { return noise_; }
     [[nodiscard]] int factorisations() const noexcept { return factorisations_; }
 
     /// v = M⁻¹ Jᵀ x.
@@ -80,9 +82,10 @@ class IslandSystem {
     void update_residuals() noexcept;
     /// Largest velocity by which a rigid row gives [m/s | rad/s].
     [[nodiscard]] double given() const noexcept;
-    /// x' = x: rigid rows give nothing at their impulses of now.
-    void keep() noexcept;
-    void undo_keep() noexcept; ///< x' as before the last `keep`
+    /// x' and x of the rigid rows, times the root of their compliance [√J].
+    void read_rigid(std::vector<double>& kept, std::vector<double>& impulses) const;
+    /// Sets x' of the rigid rows, as long and scaled as `read_rigid` has it.
+    void keep(const std::vector<double>& kept) noexcept;
     /// K from the weights, and its factors, those of before where it is the same. False where it is
     /// not positive definite.
     [[nodiscard]] bool factor() noexcept;
@@ -124,7 +127,7 @@ class IslandSystem {
     std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
     numeric::BlockLdlt factors_;
     std::vector<Vector6<double>> change_; ///< dv
-    double scale_ = 0;
+    double scale_ = 0, noise_ = 0;
     int factorisations_ = 0;
     bool current_ = false; ///< the factors are those of the rows' weights alone
 };

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ductile/solve/island_system.hpp"
 
@@ -72,16 +73,25 @@ DUCTILE_INLINE double IslandSystem::given() const noexcept {
     return most;
 }
 
-DUCTILE_INLINE void IslandSystem::keep() noexcept {
+DUCTILE_INLINE void IslandSystem::read_rigid(std::vector<double>& kept,
+                                             std::vector<double>& impulses) const {
+    kept.clear();
+    impulses.clear();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         if (!rows_[i].rigid) continue;
-        rows_[i].kept_before = rows_[i].kept;
-        rows_[i].kept = island_->rows[i].impulse;
+        const double scale = std::sqrt(rows_[i].compliance);
+        kept.push_back(scale * rows_[i].kept);
+        impulses.push_back(scale * island_->rows[i].impulse);
     }
 }
 
-DUCTILE_INLINE void IslandSystem::undo_keep() noexcept {
-    for (Row& row : rows_) row.kept = row.kept_before;
+DUCTILE_INLINE void IslandSystem::keep(const std::vector<double>& kept) noexcept {
+    std::size_t next = 0;
+    for (Row& row : rows_) {
+        if (!row.rigid) continue;
+        const double scaled = kept[next++];
+        row.kept = row.compliance > 0 ? scaled / std::sqrt(row.compliance) : 0;
+    }
 }
 
 /// The friction rows of a contact get one compliance and one metric, in shares of their
@@ -157,14 +167,17 @@ DUCTILE_INLINE void IslandSystem::update_velocities() noexcept {
 
 DUCTILE_INLINE void IslandSystem::update_residuals() noexcept {
     const std::vector<IslandBody>& bodies = island_->bodies;
+    double most = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const IslandRow& row = island_->rows[i];
+        most = std::max(most, rows_[i].own * std::abs(row.impulse));
         double residual =
             row.target - rows_[i].shift - rows_[i].compliance * (row.impulse - rows_[i].kept);
         if (row.a >= 0) residual -= row.on_a.dot(bodies[std::size_t(row.a)].velocity);
         if (row.b >= 0) residual -= row.on_b.dot(bodies[std::size_t(row.b)].velocity);
         rows_[i].residual = residual;
     }
+    noise_ = std::numeric_limits<double>::epsilon() * most;
 }
 
 /// J^T D J of the rows between two bodies, where D is another than the last time: most rows of a
