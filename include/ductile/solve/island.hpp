@@ -18,8 +18,7 @@
 // compliance of a row; for a joint of known section take some 1e-6 of its elastic compliance 1/(k
 // dt²): forces in a redundant structure are then those of the elastic structure, and unique.
 // Without one a row is rigid: it gets `least_softness` of its own effect, by which shares are the
-// same each time, and what it gives by it is taken out again (island_solver.hpp). What is left adds
-// up in long chains, whose rods are light.
+// same each time, and what it gives by it is taken out again (active_set.hpp), to round-off.
 //
 // Symbols
 //   v      change of the bodies' velocities by the rows' impulses, world axes  [m/s | rad/s]
@@ -34,7 +33,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -106,11 +104,6 @@ struct Island {
     std::vector<IslandRow> rows;
     std::vector<IslandBlock> blocks; ///< no row in two of them
 
-    [[nodiscard]] bool has_contacts() const noexcept {
-        return std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
-            return block.kind == BlockKind::contact;
-        });
-    }
     void clear() noexcept {
         bodies.clear();
         rows.clear();
