@@ -201,6 +201,22 @@ TEST_CASE("Frames: what the budget does not allow is said", "[frame]") {
     CHECK(rig.world().time() == Approx(1.0 / 30));
 }
 
+TEST_CASE("Frames: of rows that contradict each other no run is believed", "[frame]") {
+    Rig rig(false, 0.01, 256);
+    const WorldRig::Body bar = rig.body(1, V3::Constant(0.1), V3(0, 0, 0));
+    const WorldRig::Body crank = rig.body(1, V3::Constant(0.1), V3(2, 0, 0));
+    WorldRig::prescribe(crank);
+    rig.hinge(bar, nullptr, V3(-1, 0, 0), law(100), "fixed");
+    rig.hinge(bar, crank, V3(1, 0, 0), law(100), "driven"); // whose circle leaves the bar's
+    constexpr double turn = 0.03;
+    for (int i = 1; i <= 10; ++i) {
+        WorldRig::drive(crank, turn * i, turn * 60);
+        rig.world().step(1.0 / 60);
+    }
+    CHECK(rig.world().frame().unreliable > 0);
+    CHECK_FALSE(rig.world().run().believed());
+}
+
 TEST_CASE("Frames: parameters and frames are checked by name", "[frame]") {
     using Catch::Matchers::Contains;
     WorldRig plain(false);

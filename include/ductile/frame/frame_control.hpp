@@ -35,6 +35,7 @@
 // in README.md.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <vector>
 
@@ -66,6 +67,13 @@ class FrameControl {
     [[nodiscard]] const FrameParameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const FrameReport& last() const noexcept { return report_; }
     [[nodiscard]] const RunReport& run() const noexcept { return run_; }
+
+    /// Of the last frame: in so many parts that stand was a joint unreliable, each counted by
+    /// itself.
+    void count_unreliable(std::size_t joints) noexcept {
+        report_.unreliable += joints;
+        run_.unreliable += joints;
+    }
 
     /// Somebody changed the bodies: what the last parts say of the next one is forgotten.
     void forget() noexcept;

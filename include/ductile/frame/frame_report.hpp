@@ -37,6 +37,7 @@ struct FrameReport {
     int rejected = 0;                    ///< that were put back
     int blows = 0;                       ///< without length
     int jumps = 0;                       ///< parts whose error does not come from their length
+    std::size_t unreliable = 0;          ///< joints whose rows were not solved, of every part
     double error = 0;                    ///< estimate, all parts that stand [J]
     Unresolved left;                     ///< travel: of all joints together
     std::vector<UnresolvedJoint> joints; ///< of which something is left, in order of number
@@ -47,7 +48,7 @@ struct FrameReport {
 
 /// Of all frames so far.
 struct RunReport {
-    std::size_t frames = 0, parts = 0, rejected = 0, blows = 0, jumps = 0;
+    std::size_t frames = 0, parts = 0, rejected = 0, blows = 0, jumps = 0, unreliable = 0;
     int worst_frame = 0;     ///< solves of the dearest frame
     double error = 0;        ///< estimate [J]
     double plastic_work = 0; ///< of all joints [J]
@@ -55,10 +56,10 @@ struct RunReport {
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
 
-    /// Whether what the parts could not resolve is within the tolerance of the plastic work. False
-    /// too where an estimate is no number.
+    /// Whether what the parts could not resolve is within the tolerance of the plastic work, and no
+    /// joint was unreliable. False too where an estimate is no number.
     [[nodiscard]] bool believed() const noexcept {
-        return left.energy <= tolerance * plastic_work && error < unlimited;
+        return left.energy <= tolerance * plastic_work && error < unlimited && unreliable == 0;
     }
     void add(const FrameReport& frame, double work);
 

@@ -19,6 +19,12 @@ inline constexpr double sufficient = 1e-7;  ///< the same where round-off allows
 inline constexpr double acceptance = 1e-11; ///< of the largest velocity: a row is on the right side
 inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip has settled
 
+/// What rows give adds up along a chain, as round-off does not [-].
+[[nodiscard]] DUCTILE_INLINE double adds_up(const Island& island) noexcept {
+    constexpr double few = 10; // bodies
+    return std::max(1.0, double(island.bodies.size()) / few);
+}
+
 } // namespace detail
 
 DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits) {
@@ -237,7 +243,7 @@ DUCTILE_INLINE bool ActiveSet::harden() {
     constexpr double stands = 0.999; // what hardly changes is not to be extrapolated
     if (!hardens_) return false;
     const double given = system_->given();
-    if (given <= exact()) return false;
+    if (given <= exact() / detail::adds_up(system_->island())) return false;
     system_->read_rigid(keep_, impulses_);
     if (given < least_given_ / 2) {
         least_given_ = given;

@@ -148,6 +148,7 @@ class SteppedWorld : private JointKeeper {
             frames_->frame(begin_frame(length), length);
             end_frame();
         }
+        frames_->count_unreliable(supervisor_.watch().unreliable());
         supervisor_.set_time(end);
         supervisor_.close();
         tell_of_forgotten();
