@@ -66,8 +66,10 @@ class Field {
         for (int i = 0; i < settings.count; ++i) add_joint(i);
         heap_ = heap_in_use() - before;
     }
-    /// The world goes first: Bullet looks for all that is taken out of it one by one.
+    /// Joints go before their world, and that before its bodies: Bullet looks for all that is taken
+    /// out of it one by one.
     ~Field() {
+        constraints_.clear();
         solves_.reset();
         world_.reset();
     }
