@@ -15,13 +15,13 @@
 // take energy that is real and does not shrink with the part, hence 0.3.
 //
 // Shorter: (1) to where a gap closed unforeseen; (2) to equal parts where a body that is pushed
-// turned by more than 0.1 rad, or a joint farther than it can follow; (3) to where the row stopped
-// that misplaced most, once only: where that did not do, the instant depends on more than this row;
-// (4) by 0.85 √(allowed/error).
+// turned by more than 0.05 rad, or a joint farther than it can follow; (3) to where the row stopped
+// that misplaced most, until one such part did not do: what stops there depends on others, so that
+// the frame tries it no more; (4) by 0.85 √(allowed/error).
 // Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
 // its length comes first, where more than what is allowed is at stake.
 // Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most three
-// times as long, not past the first stop that is predicted, u = -a t, nor past 0.09 rad of what is
+// times as long, not past the first stop that is predicted, u = -a t, nor past 0.045 rad of what is
 // pushed; the last two parts of a frame share what is left of it.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
@@ -103,32 +103,34 @@ class FrameControl {
     [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
     [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
-    [[nodiscard]] double first_length(double left) const noexcept;
+    [[nodiscard]] double first_length(double left) noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;
     [[nodiscard]] double followed(double h) const noexcept;
     [[nodiscard]] bool at_stake(double h) const noexcept;
     [[nodiscard]] Judgement judge(const PartMotion& motion, double h, double shortest) const;
     [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
-                                         double h, bool stopped);
+                                         double h, bool may_stop);
     [[nodiscard]] double strike(PartEngine& engine, double h);
     void remember(const PartMotion& motion, double h);
     void forget_accelerations() noexcept;
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
-               bool at_event, bool jump, bool rings);
+               bool at_event, bool jump);
     void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);
 
     FrameParameters parameters_;
     FrameReport report_;
     RunReport run_;
     std::vector<Past> past_;
-    double before_ = 0;  ///< h₋ [s]
-    bool fresh_ = false; ///< accelerations of the last part say nothing of the next
-    double next_ = 0;    ///< length of the next part [s]; 0: as long as may be
-    double spin_ = 0;    ///< of what was pushed in the last part [rad/s]
-    double allowed_ = 0; ///< of the last part [J]
-    double work_ = 0;    ///< plastic, of all joints [J]
-    int solves_ = 0;     ///< of this frame
+    double before_ = 0;        ///< h₋ [s]
+    bool starts_ = false;      ///< the part is a first short one
+    bool stop_failed_ = false; ///< in this frame
+    bool fresh_ = false;       ///< accelerations of the last part say nothing of the next
+    double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
+    double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
+    double allowed_ = 0;       ///< of the last part [J]
+    double work_ = 0;          ///< plastic, of all joints [J]
+    int solves_ = 0;           ///< of this frame
 };
 
 } // namespace ductile

@@ -24,8 +24,8 @@ inline constexpr int most_tries = 12;         ///< of one part
 inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap
 inline constexpr double nothing_left = 1e-12; ///< of a frame
 /// Turn of a body up to which a contact that was asked for where it will be tells its way: what is
-/// left, of third order, is some 1e-4 of its arms [rad].
-inline constexpr double followed_turn = 0.1;
+/// left, of third order, is some 1e-5 of its arms [rad].
+inline constexpr double followed_turn = 0.05;
 inline constexpr double of_turns = 0.9; ///< that may be a part's: a body may still become faster
 
 /// What a part's length is multiplied by where its error goes with it as h^order; `least` where the
@@ -62,6 +62,7 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
     check::positive("FrameControl.frame.length", length, "s");
     report_ = {};
     solves_ = 0;
+    stop_failed_ = false;
     double left = length;
     while (left > detail::nothing_left * length) {
         const double gap = strike(engine, first_length(left));
@@ -72,12 +73,14 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
 }
 
 /// As long as the last part suggests, not past the first stop of a row.
-DUCTILE_INLINE double FrameControl::first_length(double left) const noexcept {
+DUCTILE_INLINE double FrameControl::first_length(double left) noexcept {
+    starts_ = false;
     if (spent()) return left;
     double h = followed(left);
     if (next_ > 0 && next_ < left) h = std::min({h, next_, left / 2});
     if (!fresh_) return first_stop(h);
-    return at_stake(h) ? detail::start_share * h : h;
+    starts_ = at_stake(h);
+    return starts_ ? detail::start_share * h : h;
 }
 
 /// Whether the rows could misplace more than what is allowed.
@@ -153,7 +156,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     if (saved) engine.save();
     double first_error = std::numeric_limits<double>::infinity();
     const double first = h;
-    bool jump = false, at_event = at_gap, rings = false, stopped = false;
+    bool jump = false, at_event = at_gap, at_stop = false;
     for (int tries = 0;; ++tries) {
         const PartMotion& motion = engine.part(h);
         ++solves_;
@@ -174,12 +177,12 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             if (motion.turned > detail::followed_turn) {
                 judged.error += judged.power * h * motion.turned / 2;
             }
-            stand(engine, motion, judged, h, at_event, jump, rings);
+            stand(engine, motion, judged, h, at_event, jump);
             return h;
         }
         engine.put_back();
         ++report_.rejected;
-        rings = rings || judged.given > judged.allowed;
+        stop_failed_ = stop_failed_ || at_stop;
         constexpr double of_length = 0.1, of_error = 0.7;
         if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
             jump = true;
@@ -189,10 +192,11 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             // nothing is known of what was before: a short part first
             const bool start = tries == 0 && past_.empty() && judged.closed == 0;
             const Shorter next = start ? Shorter{detail::start_share * h, false}
-                                       : shorter(judged, motion, h, stopped);
+                                       : shorter(judged, motion, h, !stop_failed_);
             fresh_ = fresh_ || start;
+            starts_ = starts_ || start;
             at_event = next.at_event;
-            stopped = stopped || (at_event && judged.closed == 0);
+            at_stop = at_event && judged.closed == 0;
             h = std::max(next.length, (judged.closed > 0 ? detail::hair : 1) * shortest);
         }
     }
@@ -252,37 +256,35 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     return judged;
 }
 
-/// `stopped`: it was tried before to end it where a flow stops.
+/// `may_stop`: it may be ended where a flow stops.
 DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMotion& motion,
-                                          double h, bool stopped) -> Shorter {
+                                          double h, bool may_stop) -> Shorter {
     constexpr double past_it = 1 + 1e-9;
     if (judged.closed > 0) return {judged.closed, true};
     // equal parts, as those of other lengths turn otherwise
     if (judged.turned > 0) return {h / std::max(std::ceil(judged.turned), 2.0), false};
-    if (judged.stop > 0 && !motion.contact_lost && !stopped) {
+    if (judged.stop > 0 && !motion.contact_lost && may_stop) {
         return {judged.stop * past_it, true};
     }
     return {h * detail::growth(judged.allowed, judged.error, 2, 0.1, 0.7), false};
 }
 
-/// The part stands; `at_event`: it ends where a flow stopped or a gap closed; `rings`: it is as
-/// short as it is for a wave, which the next part has too.
+/// The part stands; `at_event`: it ends where a flow stopped or a gap closed.
 DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& motion,
-                                        const Judgement& judged, double h, bool at_event, bool jump,
-                                        bool rings) {
+                                        const Judgement& judged, double h, bool at_event,
+                                        bool jump) {
     ++report_.parts;
     report_.jumps += jump;
     report_.error += judged.error;
     work_ = motion.plastic_work;
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, judged, h);
-    const bool began = fresh_; // a first short part, which says nothing of the next one's length
     remember(motion, h);
     // a kick from elsewhere: what it accelerated by says nothing of the forces that follow
     if (h <= engine.shortest_part() && judged.of_rows > judged.allowed) forget_accelerations();
     fresh_ = judged.ended || at_event;
-    next_ = (judged.moves || rings) && !began && !jump
-                ? h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3)
-                : 0;
+    // a first short part says nothing of the next one's length
+    const bool says = !starts_ && !jump;
+    next_ = says ? h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3) : 0;
     spin_ = motion.turned / h;
     engine.accept(h);
 }
