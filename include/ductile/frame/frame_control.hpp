@@ -14,12 +14,15 @@
 // Where nothing moves the scale is 0 and the part stands, whatever its length. Contacts that begin
 // take energy that is real and does not shrink with the part, hence 0.3.
 //
-// Shorter: (1) to where a gap closed unforeseen; (2) to where the row stopped that misplaced most,
-// at most three times; (3) by 0.85 √(allowed/error).
+// Shorter: (1) to where a gap closed unforeseen; (2) to equal parts where a body that is pushed
+// turned by more than 0.05 rad, or a joint farther than it can follow; (3) to where the row stopped
+// that misplaced most, until one such part did not do: what stops there depends on others, so that
+// the frame tries it no more; (4) by 0.85 √(allowed/error).
 // Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
 // its length comes first, where more than what is allowed is at stake.
-// Next: longer by the same rule, at most three times as long, not past the first stop that is
-// predicted, u = -a t; the last two parts of a frame share what is left of it.
+// Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most three
+// times as long, not past the first stop that is predicted, u = -a t, nor past 0.045 rad of what is
+// pushed; the last two parts of a frame share what is left of it.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
 // Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
@@ -88,10 +91,10 @@ class FrameControl {
         double tolerated = 0; ///< that does not
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
-        double too_far = 0;   ///< largest PartRow::too_far [rad]
-        double power = 0;     ///< of all rows at their strength [W]
-        bool ended = false;   ///< a flow ended in it
-        bool moves = false;   ///< something was to be judged
+        double turned = 0;  ///< of turns that were too far, in those that a part may have; 0: none
+        double power = 0;   ///< of all rows at their strength [W]
+        bool ended = false; ///< a flow ended in it
+        bool moves = false; ///< something was to be judged
     };
     /// What is known of a row from the part before.
     struct Past {
@@ -108,30 +111,34 @@ class FrameControl {
     [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
     [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
-    [[nodiscard]] double first_length(double left) const noexcept;
+    [[nodiscard]] double first_length(double left) noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;
+    [[nodiscard]] double followed(double h) const noexcept;
     [[nodiscard]] bool at_stake(double h) const noexcept;
     [[nodiscard]] Judgement judge(const PartMotion& motion, double h, double shortest) const;
     [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
-                                         double h, int tries);
+                                         double h, bool may_stop);
     [[nodiscard]] double strike(PartEngine& engine, double h);
     void remember(const PartMotion& motion, double h);
     void forget_accelerations() noexcept;
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
-               bool at_event, bool jump, bool rings);
+               bool at_event, bool jump);
     void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);
 
     FrameParameters parameters_;
     FrameReport report_;
     RunReport run_;
     std::vector<Past> past_;
-    double before_ = 0;  ///< h₋ [s]
-    bool fresh_ = false; ///< accelerations of the last part say nothing of the next
-    double next_ = 0;    ///< length of the next part [s]; 0: as long as may be
-    double allowed_ = 0; ///< of the last part [J]
-    double work_ = 0;    ///< plastic, of all joints [J]
-    int solves_ = 0;     ///< of this frame
+    double before_ = 0;        ///< h₋ [s]
+    bool starts_ = false;      ///< the part is a first short one
+    bool stop_failed_ = false; ///< in this frame
+    bool fresh_ = false;       ///< accelerations of the last part say nothing of the next
+    double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
+    double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
+    double allowed_ = 0;       ///< of the last part [J]
+    double work_ = 0;          ///< plastic, of all joints [J]
+    int solves_ = 0;           ///< of this frame
 };
 
 } // namespace ductile

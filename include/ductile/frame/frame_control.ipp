@@ -23,13 +23,18 @@ inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is k
 inline constexpr int most_tries = 12;         ///< of one part
 inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap
 inline constexpr double nothing_left = 1e-12; ///< of a frame
+/// Turn of a body up to which a contact that was asked for where it will be tells its way: what is
+/// left, of third order, is some 1e-5 of its arms [rad].
+inline constexpr double followed_turn = 0.05;
+inline constexpr double of_turns = 0.9; ///< that may be a part's: a body may still become faster
 
-/// What a part's length is multiplied by; `least` where the error is no number.
-[[nodiscard]] DUCTILE_INLINE double growth(double allowed, double error, double least,
+/// What a part's length is multiplied by where its error goes with it as h^order; `least` where the
+/// error is no number.
+[[nodiscard]] DUCTILE_INLINE double growth(double allowed, double error, int order, double least,
                                            double most) {
     constexpr double margin = 0.85;
     if (error == 0) return most;
-    const double ratio = margin * std::sqrt(allowed / error);
+    const double ratio = margin * std::pow(allowed / error, 1.0 / order);
     return ratio >= least ? std::min(ratio, most) : least;
 }
 
@@ -50,13 +55,14 @@ DUCTILE_INLINE FrameControl::FrameControl(const FrameParameters& parameters)
 DUCTILE_INLINE void FrameControl::forget() noexcept {
     past_.clear();
     fresh_ = false;
-    next_ = 0;
+    next_ = spin_ = 0;
 }
 
 DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double length) {
     check::positive("FrameControl.frame.length", length, "s");
     report_ = {};
     solves_ = 0;
+    stop_failed_ = false;
     double left = length;
     while (left > detail::nothing_left * length) {
         const double gap = strike(engine, first_length(left));
@@ -67,12 +73,14 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
 }
 
 /// As long as the last part suggests, not past the first stop of a row.
-DUCTILE_INLINE double FrameControl::first_length(double left) const noexcept {
+DUCTILE_INLINE double FrameControl::first_length(double left) noexcept {
+    starts_ = false;
     if (spent()) return left;
-    double h = left;
-    if (next_ > 0 && next_ < left) h = std::min(next_, left / 2);
+    double h = followed(left);
+    if (next_ > 0 && next_ < left) h = std::min({h, next_, left / 2});
     if (!fresh_) return first_stop(h);
-    return at_stake(h) ? detail::start_share * h : h;
+    starts_ = at_stake(h);
+    return starts_ ? detail::start_share * h : h;
 }
 
 /// Whether the rows could misplace more than what is allowed.
@@ -80,6 +88,13 @@ DUCTILE_INLINE bool FrameControl::at_stake(double h) const noexcept {
     double work = 0;
     for (const Past& past : past_) work += past.row.strength * std::abs(past.row.end) * h;
     return !(work <= allowed_);
+}
+
+/// The longest of equal parts of `h` in which what is pushed turns no farther than it may.
+DUCTILE_INLINE double FrameControl::followed(double h) const noexcept {
+    constexpr double most = detail::of_turns * detail::followed_turn;
+    const double turn = spin_ * h;
+    return turn > most ? h / std::ceil(turn / most) : h;
 }
 
 /// When the first row stops that would then misplace more than what is allowed; else `h`.
@@ -111,7 +126,7 @@ DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
         ++solves_;
         ++report_.blows;
         fresh_ = true;
-        next_ = 0;
+        next_ = spin_ = 0;
     }
     return std::numeric_limits<double>::infinity();
 }
@@ -141,7 +156,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     if (saved) engine.save();
     double first_error = std::numeric_limits<double>::infinity();
     const double first = h;
-    bool jump = false, at_event = at_gap, rings = false;
+    bool jump = false, at_event = at_gap, at_stop = false;
     for (int tries = 0;; ++tries) {
         const PartMotion& motion = engine.part(h);
         ++solves_;
@@ -150,20 +165,24 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries >= tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         // of one that turned too far it says nothing, and such a part is no way out
-        if (tries == 0 && !(judged.too_far > 0)) first_error = judged.error;
+        if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
         const bool good =
-            judged.error <= judged.allowed && judged.closed == 0 && judged.too_far == 0;
+            judged.error <= judged.allowed && judged.closed == 0 && judged.turned == 0;
         const bool done = jump || !saved || spent() || tries > detail::most_tries ||
                           (h <= shortest && judged.closed == 0);
         if (good || done) {
             // what a contact pushed before it touched moved rows for as long
             if (spent()) judged.error += judged.power * early;
-            stand(engine, motion, judged, h, at_event, jump, rings);
+            // so does one whose way was not followed
+            if (motion.turned > detail::followed_turn) {
+                judged.error += judged.power * h * motion.turned / 2;
+            }
+            stand(engine, motion, judged, h, at_event, jump);
             return h;
         }
         engine.put_back();
         ++report_.rejected;
-        rings = rings || judged.given > judged.allowed;
+        stop_failed_ = stop_failed_ || at_stop;
         constexpr double of_length = 0.1, of_error = 0.7;
         if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
             jump = true;
@@ -172,10 +191,12 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         } else {
             // nothing is known of what was before: a short part first
             const bool start = tries == 0 && past_.empty() && judged.closed == 0;
-            const Shorter next =
-                start ? Shorter{detail::start_share * h, false} : shorter(judged, motion, h, tries);
+            const Shorter next = start ? Shorter{detail::start_share * h, false}
+                                       : shorter(judged, motion, h, !stop_failed_);
             fresh_ = fresh_ || start;
+            starts_ = starts_ || start;
             at_event = next.at_event;
+            at_stop = at_event && judged.closed == 0;
             h = std::max(next.length, (judged.closed > 0 ? detail::hair : 1) * shortest);
         }
     }
@@ -197,7 +218,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         unmissed += row.strength * row.least * detail::unmissed;
-        judged.too_far = std::max(judged.too_far, row.too_far);
+        judged.turned =
+            std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
@@ -211,6 +233,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         ahead += work_ahead(row, h);
         judged.of_rows = judged.error;
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
+    }
+    if (motion.turned > detail::followed_turn) {
+        judged.turned =
+            std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given;
     judged.moves = !(ahead <= 0); // also where it is no number
@@ -230,40 +256,36 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     return judged;
 }
 
+/// `may_stop`: it may be ended where a flow stops.
 DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMotion& motion,
-                                          double h, int tries) -> Shorter {
-    constexpr int tries_at_stops = 3;
+                                          double h, bool may_stop) -> Shorter {
     constexpr double past_it = 1 + 1e-9;
     if (judged.closed > 0) return {judged.closed, true};
-    if (judged.too_far > 0) {
-        // equal parts, as those of other lengths turn otherwise; a body may still become faster
-        constexpr double most = 0.9 * small_turn<double>;
-        return {h / std::max(std::ceil(judged.too_far / most), 2.0), false};
-    }
-    if (judged.stop > 0 && !motion.contact_lost && tries < tries_at_stops) {
+    // equal parts, as those of other lengths turn otherwise
+    if (judged.turned > 0) return {h / std::max(std::ceil(judged.turned), 2.0), false};
+    if (judged.stop > 0 && !motion.contact_lost && may_stop) {
         return {judged.stop * past_it, true};
     }
-    return {h * detail::growth(judged.allowed, judged.error, 0.1, 0.7), false};
+    return {h * detail::growth(judged.allowed, judged.error, 2, 0.1, 0.7), false};
 }
 
-/// The part stands; `at_event`: it ends where a flow stopped or a gap closed; `rings`: it is as
-/// short as it is for a wave, which the next part has too.
+/// The part stands; `at_event`: it ends where a flow stopped or a gap closed.
 DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& motion,
-                                        const Judgement& judged, double h, bool at_event, bool jump,
-                                        bool rings) {
+                                        const Judgement& judged, double h, bool at_event,
+                                        bool jump) {
     ++report_.parts;
     report_.jumps += jump;
     report_.error += judged.error;
     work_ = motion.plastic_work;
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, judged, h);
-    const bool began = fresh_; // a first short part, which says nothing of the next one's length
     remember(motion, h);
     // a kick from elsewhere: what it accelerated by says nothing of the forces that follow
     if (h <= engine.shortest_part() && judged.of_rows > judged.allowed) forget_accelerations();
     fresh_ = judged.ended || at_event;
-    next_ = (judged.moves || rings) && !began && !jump
-                ? h * detail::growth(judged.allowed, judged.error, 0.2, 3)
-                : 0;
+    // a first short part says nothing of the next one's length
+    const bool says = !starts_ && !jump;
+    next_ = says ? h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3) : 0;
+    spin_ = motion.turned / h;
     engine.accept(h);
 }
 

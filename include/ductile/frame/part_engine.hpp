@@ -28,6 +28,9 @@ struct PartMotion {
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
     double contact_work = 0;   ///< that contacts took, either sign [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
+    /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing
+    /// that matters [rad].
+    double turned = 0;
     /// When a gap closed that was not foreseen, so that the contact pushed before it touched [s];
     /// 0: none that matters.
     double closed = 0;

@@ -59,21 +59,6 @@ struct ContactBody {
     return (closing(now) - closing(then)) * half / time;
 }
 
-/// Turn of a body in a part up to which w tells where its contacts will be: what is left, of third
-/// order, is some 1e-4 of its arms [rad].
-inline constexpr double followed_turn = 0.1;
-
-/// A part in which a body that something pushes turned by `turn` [rad] is cut into equal ones where
-/// that was too far: said by a row that moves, as if its joint could not follow.
-inline void say_turned(PartMotion& motion, double turn) {
-    if (!(turn > followed_turn)) return;
-    for (PartRow& row : motion.rows) {
-        if (!row.moves()) continue;
-        row.too_far = std::max(row.too_far, turn);
-        return;
-    }
-}
-
 /// Whether what a contact does to the flows of a part of `h` [s] could matter beside `least` [J].
 [[nodiscard]] inline bool may_misplace(const PartMotion& motion, double h, double least) {
     constexpr double noticed = 0.1;

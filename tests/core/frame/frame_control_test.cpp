@@ -5,9 +5,11 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "core/frame/masses_on_a_line.hpp"
 #include "support/throws.hpp"
@@ -35,6 +37,29 @@ Engine sliding_mass() {
     engine.rows = {{ground, 0, 100}};
     return engine;
 }
+
+/// Parts that tell what a test makes up.
+struct Told final : ductile::PartEngine {
+    ductile::PartMotion motion;
+    std::function<void(double h, ductile::PartMotion&)> tell;
+    double gap = std::numeric_limits<double>::infinity(); ///< that closes first, and once [s]
+    std::vector<double> tried, accepted;
+
+    void save() override {}
+    void put_back() override {}
+    const ductile::PartMotion& part(double h) override {
+        tried.push_back(h);
+        tell(h, motion);
+        return motion;
+    }
+    const ductile::PartMotion& blow() override { return motion; }
+    void accept(double h) override {
+        accepted.push_back(h);
+        gap = std::numeric_limits<double>::infinity();
+    }
+    ductile::ClosingContacts closing(double, double, double) override { return {.time = gap}; }
+    double kinetic_energy() const override { return 1; }
+};
 
 } // namespace
 
@@ -283,6 +308,76 @@ TEST_CASE("A part that turned too far is no way out of a force that does not com
     FrameControl control;
     control.frame(engine, frame);
     CHECK(engine.longest < frame / 2);
+}
+
+TEST_CASE("A frame in which a part that ended at a stop did not do tries that no more", "[frame]") {
+    Told engine;
+    engine.tell = [](double h, ductile::PartMotion& motion) {
+        // stops half way, and again half way when it is cut there; short parts do not move
+        constexpr double shortest = 2e-5 * frame;
+        motion.rows = {
+            ductile::PartRow{.start = h > shortest ? 1.0 : 0.0, .share = 0.5, .strength = 1}};
+    };
+    FrameControl control;
+    for (int i = 0; i < 2; ++i) {
+        engine.tried.clear();
+        control.frame(engine, frame);
+        int at_stops = 0;
+        for (std::size_t k = 1; k < engine.tried.size(); ++k) {
+            at_stops += engine.tried[k] == Approx(engine.tried[k - 1] / 2).epsilon(1e-6);
+        }
+        CAPTURE(i);
+        CHECK(at_stops == 1);
+    }
+}
+
+TEST_CASE("The next part is longer by the cube root of what is left of what is allowed",
+          "[frame]") {
+    // ended by a gap; of 1 mJ that are allowed a part misplaces an eighth, or nothing
+    for (const double given : {1e-3 / 8, 0.0}) {
+        CAPTURE(given);
+        Told engine;
+        engine.gap = frame / 50;
+        engine.tell = [given](double, ductile::PartMotion& motion) {
+            motion.plastic_work = 1;
+            motion.rows = {ductile::PartRow{.strength = 1, .given = given}};
+        };
+        FrameControl control({.tolerance = 0.01});
+        control.frame(engine, frame);
+        REQUIRE(engine.accepted.size() > 2);
+        CHECK(engine.accepted[0] == Approx(frame / 50));
+        const double longer = given > 0 ? 0.85 * 2 : 3;
+        CHECK(engine.accepted[1] == Approx(longer * engine.accepted[0]));
+        CHECK(engine.accepted[2] == Approx(longer * engine.accepted[1]));
+    }
+}
+
+TEST_CASE("What is pushed turns a twentieth of a radian in a part", "[frame]") {
+    constexpr double spin = 30; // half a radian in a frame
+    Told engine;
+    engine.tell = [](double h, ductile::PartMotion& motion) {
+        motion.plastic_work = 1;
+        motion.turned = spin * h;
+        motion.rows = {ductile::PartRow{.start = 1, .end = 1, .share = 1, .strength = 1e-3}};
+    };
+    FrameControl control;
+    control.frame(engine, frame);
+    CHECK(control.last().rejected == 1);
+    for (const double h : engine.accepted) CHECK(spin * h <= 0.05);
+
+    engine.accepted.clear();
+    control.frame(engine, frame); // that is known now
+    CHECK(control.last().rejected == 0);
+    CHECK(engine.accepted.size() == 12); // 0.5/0.045
+    for (const double h : engine.accepted) CHECK(h == Approx(frame / 12));
+    CHECK(control.run().believed());
+
+    SECTION("and where the budget does not allow it, that is said") {
+        FrameControl poor({.tolerance = 0.01, .budget = 4});
+        poor.frame(engine, 1000 * frame);
+        CHECK_FALSE(poor.run().believed());
+        CHECK(poor.run().left.energy > 1e-3 * 1000 * frame); // strength x travel, and more
+    }
 }
 
 TEST_CASE("What a budget spent on gaps left is told", "[frame]") {

@@ -203,6 +203,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     if (local_ && scope_.bodies().empty()) { // all stands
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
         motion_.contact_lost = false;
+        motion_.turned = 0;
         return motion_;
     }
     // so short a part closes what is left of a gap: its impulses are a blow's
@@ -235,12 +236,13 @@ DUCTILE_INLINE bool WorldParts::concerns(const btCollisionObject& object) {
            closing_.touches_plastic(world_, *body);
 }
 
-/// Where what flows could be off by them: contacts that are gone, or turned too far to be followed.
+/// Where what flows could be off by them: contacts that are gone, and how far they turned.
 DUCTILE_INLINE void WorldParts::look_at_pushes(double h) {
     motion_.contact_lost = false;
+    motion_.turned = 0;
     if (!at_risk_ || !may_misplace(motion_, h, apart_)) return;
     const auto concerned = [this](const auto& body) { return concerns(body); };
-    say_turned(motion_, held_.turn(manifolds(), h, concerned));
+    motion_.turned = held_.turn(manifolds(), h, concerned);
     motion_.contact_lost = held_.lost(world_, manifolds(), h, concerned);
 }
 

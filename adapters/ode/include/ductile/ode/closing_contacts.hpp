@@ -67,6 +67,8 @@ class ClosingContactsFinder {
     /// Whether bodies that pushed each other, in the last part or when it began, have no contact
     /// among those looked at: one slid off the other, or was pushed off.
     [[nodiscard]] bool lost();
+    /// The farthest that a body turned in a part of `h` [s] that something pushed in it [rad].
+    [[nodiscard]] double turn(double h) const;
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
     /// When the first gap among those looked at closes with more energy than `apart` [J] [s].

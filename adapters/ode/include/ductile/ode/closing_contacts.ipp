@@ -206,6 +206,17 @@ DUCTILE_INLINE bool ClosingContactsFinder::lost() {
     return std::erase_if(pushing_, is_lost) > 0 || gone;
 }
 
+DUCTILE_INLINE double ClosingContactsFinder::turn(double h) const {
+    double spin = 0;
+    for (const auto& [mates, force] : pushing_) {
+        if (!(force > 0)) continue;
+        for (dBodyID body : {mates.first.first, mates.first.second}) {
+            if (is_plastic(body)) spin = std::max(spin, norm(angular_velocity(body)));
+        }
+    }
+    return spin * h;
+}
+
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
     return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
         return touch.gap < closed_depth / 2 && touch.energy > touching;

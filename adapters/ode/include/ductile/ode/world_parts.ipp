@@ -235,19 +235,13 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
     motion_.contact_work = of_.meter.step_of_contacts();
     motion_.contact_lost = false;
+    motion_.turned = 0;
     if (closing_.any_plastic() && of_.maker) {
         look();
         looked_ = true;
         closed_ = std::min(closed_, closing_.closed(h, h / 2, apart_));
+        if (may_misplace(motion_, h, apart_)) motion_.turned = closing_.turn(h);
         motion_.contact_lost = closing_.lost();
-        double spin = 0;
-        for (const NamedContact& named : of_.contacts) {
-            const AttachedBodies bodies = attached_bodies(named.joint);
-            for (dBodyID body : {bodies.a, bodies.b}) {
-                if (closing_.is_plastic(body)) spin = std::max(spin, norm(angular_velocity(body)));
-            }
-        }
-        if (may_misplace(motion_, h, apart_)) say_turned(motion_, spin * h);
     }
     motion_.closed = closed_ < h ? closed_ : 0;
     return motion_;
