@@ -23,7 +23,10 @@
 
 namespace ductile::replay {
 
-/// @throws Error where the recording does not hold together (`check`).
+/// What is above, not yet zipped. @throws Error where the recording does not hold together
+/// (`check`).
+[[nodiscard]] std::string laid_down(const Recording& recording);
+/// Zipped; throws likewise.
 [[nodiscard]] std::string pack(const Recording& recording);
 
 } // namespace ductile::replay

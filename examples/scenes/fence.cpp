@@ -7,6 +7,7 @@
 // half, 16 J a beam that bends everywhere.
 #include <array>
 #include <string>
+#include <vector>
 
 #include "scene.hpp"
 
@@ -20,10 +21,13 @@ class Fence final : public Scene {
     [[nodiscard]] std::string about() const override {
         return "a free beam is struck in the middle: momentum stays, the hinges take what P40 says";
     }
-    void play(Run& run) override {
-        for (const auto& [rods, work] : {std::pair{1, 9.6}, {2, 12.0}, {4, 13.8461538}}) {
-            strike(run, rods, work);
+    [[nodiscard]] std::vector<Part> parts() override {
+        std::vector<Part> parts;
+        for (const auto& [rods, work] : {std::pair{4, 13.8461538}, {2, 12.0}, {1, 9.6}}) {
+            parts.push_back({std::to_string(rods) + " rods a half",
+                             [rods = rods, work = work](Run& run) { strike(run, rods, work); }});
         }
+        return parts;
     }
 
   private:

@@ -8,6 +8,7 @@
 // 36 km/h, 2.5 MJ: the ledger says where they went.
 #include <array>
 #include <string>
+#include <vector>
 
 #include "ductile/material.hpp"
 #include "ductile/member/section_joint.hpp"
@@ -24,11 +25,16 @@ class Gate final : public Scene {
     [[nodiscard]] std::string about() const override {
         return "a cantilever of five parts under its own weight, then a vehicle of 50 t at 36 km/h";
     }
-    void add_options(CLI::App& app) override {
-        app.add_option("--mass", mass_, "of the vehicle [kg]")->capture_default_str();
-        app.add_option("--speed", speed_, "of the vehicle [m/s]")->capture_default_str();
+    [[nodiscard]] std::vector<Option> options() override {
+        return {{"mass", "of the vehicle", "kg", &mass_, 1e3, 1e5, ""},
+                {"speed", "of the vehicle", "m/s", &speed_, 1, 30, ""}};
     }
-    void play(Run& run) override {
+    [[nodiscard]] std::vector<Part> parts() override {
+        return {{"hit", [this](Run& run) { hit(run); }}};
+    }
+
+  private:
+    void hit(Run& run) const {
         const Rectangle<double> section({.width = 0.4, .height = 0.6});
         const Material<double> concrete({.density = 2290,
                                          .youngs_modulus = 0.05 * 200e9,
@@ -89,8 +95,6 @@ class Gate final : public Scene {
         run.tell("speed of the vehicle", stage.velocity(vehicle).y(), "m/s");
         take.cut();
     }
-
-  private:
     /// Height of the free end.
     static double tip(const Stage& stage, Stage::BodyNumber part) {
         return stage.place(part).z() + stage.axes(part)(2, 0);

@@ -65,12 +65,16 @@ class Columns {
  * @throws {RecordingError} where they are anything else
  */
 export async function decode(bytes) {
-    const all = await unzipped(bytes);
+    return decodeLaidDown(await unzipped(bytes));
+}
+
+/** Likewise, of bytes that are not zipped. */
+export function decodeLaidDown(all) {
     const letters = new TextDecoder();
     if (letters.decode(all.subarray(0, 8)) !== magic) {
         throw new RecordingError("this is not a recording, or one of another version");
     }
-    const length = new DataView(all.buffer).getUint32(8, true);
+    const length = new DataView(all.buffer, all.byteOffset).getUint32(8, true);
     const text = JSON.parse(letters.decode(all.subarray(12, 12 + length)));
     const frames = text.times.length;
     const samples = text.columns.low.length * frames;
