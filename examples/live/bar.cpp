@@ -25,6 +25,7 @@
 #include "ductile/material.hpp"
 #include "ductile/section/box.hpp"
 #include "ductile/section/capacity.hpp"
+#include "joint_facts.hpp"
 #include "of_bullet.hpp"
 #include "scene.hpp"
 
@@ -188,13 +189,19 @@ class Bar {
             const btRigidBody& of = *bodies_[i];
             recorder.add(&of, std::move(body), [&of, shown] { return shown(of); });
         }
+        const std::string side = replay::quantity(wish.side / 1e3, "m");
+        const std::vector<replay::Fact> words{
+            {"section",
+             "box " + side + " x " + side + ", wall " + replay::quantity(wish.wall, "mm")},
+            {"material", "steel, " + replay::quantity(wish.yield * 1e6, "Pa")}};
         for (std::size_t i = 0; i < hinges_.size(); ++i) {
             const btVector3 in_a = along(starts_[i]);
             recorder.add({.name = "hinge " + std::to_string(i),
                           .a = recorder.number(bodies_[i].get()),
                           .b = i == 0 ? -1 : recorder.number(bodies_[i - 1].get()),
-                          .in_a = {in_a.x(), in_a.y(), in_a.z()}},
-                         hinges_[i]->queries());
+                          .in_a = {in_a.x(), in_a.y(), in_a.z()},
+                          .facts = replay::facts_of(hinges_[i]->joint(), true, words)},
+                         hinges_[i]->queries(), replay::life_used(*hinges_[i]));
         }
     }
 
@@ -376,8 +383,7 @@ class BarScene final : public Scene {
             if (!loaded) run.expect(of + "joints took", bar.taken(), taken, 0.02, "J");
             run.tell(of + "dearest frame", bar.cost(), "ms");
         }
-        run.expect("this library believes in itself (1)", bars[0]->world().run().believed() ? 1 : 0,
-                   1, 0);
+        if (!bars[0]->world().run().believed()) run.doubt(names[0]);
         run.keep(loaded ? "loaded" : thrown, recorder);
     }
 

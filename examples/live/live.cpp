@@ -111,6 +111,7 @@ Json play(const Json& wish) {
             dearest = std::max(dearest, each);
         }
         return {{"findings", std::move(findings)},
+                {"doubted", run.doubted()},
                 {"frames", run.times().size()},
                 {"spent", spent},
                 {"dearest", dearest}};

@@ -32,12 +32,13 @@
         start(wish) {
             this.worker?.terminate();
             this.worker = new Worker(this.script);
-            this.worker.onerror = (event) => this.fail(event.message);
+            this.piece = undefined;
             return new Promise((resolve) => {
+                this.worker.onerror = (event) => resolve({ fault: event.message });
                 this.worker.onmessage = ({ data }) => {
-                    if (data.bytes) return this.show(data.bytes);
-                    if (data.fault) return this.fail(data.fault), resolve({ fault: data.fault });
-                    resolve(data.answer);
+                    if (data.bytes) return this.take(data);
+                    this.draw(); // the last piece, before what it comes to
+                    resolve(data.answer ?? { fault: data.fault });
                 };
                 this.worker.postMessage({ module: this.module, wish });
             });
@@ -45,7 +46,7 @@
 
         async open() {
             this.scenes = await this.start();
-            if (this.scenes.fault) return;
+            if (this.scenes.fault) return this.fail(this.scenes.fault);
             for (const { name } of this.scenes) $("scene").append(made("option", { value: name, textContent: name }));
             $("scene").addEventListener("change", () => this.choose($("scene").value));
             $("part").addEventListener("change", () => this.choose(this.scene.name, $("part").value));
@@ -106,6 +107,7 @@
             $("running").className = "";
             $("running").textContent = "running";
             $("findings").replaceChildren();
+            $("doubts").textContent = "";
             this.shown = 0;
             const number = (this.number = (this.number ?? 0) + 1);
             const answer = await this.start({ scene: this.scene.name, part: this.part, frame: 1 / rate, tolerance: tolerance / 100, options });
@@ -119,6 +121,7 @@
         stop() {
             this.halt();
             this.worker.terminate();
+            this.piece = undefined;
             $("running").textContent = "stopped";
         }
 
@@ -133,16 +136,26 @@
             $("running").textContent = text;
         }
 
-        show(bytes) {
+        /** A piece; where more come than can be drawn, the last one is. */
+        take(piece) {
+            if (!this.piece) setTimeout(() => this.draw(), 0);
+            this.piece = piece;
+        }
+
+        draw() {
+            if (!this.piece) return;
+            const { bytes, kept } = this.piece;
+            this.piece = undefined;
             ++this.shown;
-            showRecording(bytes);
+            showRecording(bytes, !kept);
             $("running").textContent = `${replay.end.toFixed(2)} s of it, after ${((performance.now() - this.began) / 1000).toFixed(1)} s`;
         }
 
-        tell({ findings, frames, spent, dearest }) {
+        tell({ findings, doubted, frames, spent, dearest }) {
             const took = (performance.now() - this.began) / 1000;
             const each = frames > 0 ? `; ${frames} frames in ${spent.toFixed(2)} s, the dearest ${(1e3 * dearest).toFixed(1)} ms` : "";
             $("running").textContent = `done in ${took.toFixed(1)} s${each}${this.shown === 0 ? ". It has no picture: numbers alone" : ""}`;
+            $("doubts").textContent = doubted.length > 0 ? `The World does not believe what came out of ${doubted.join(", ")}: it left a joint unsolved. A smaller tolerance or more frames a second may help.` : "";
             const head = made("tr", {}, ...["", "came out", "must come out", ""].map((text) => made("th", { textContent: text })));
             $("findings").replaceChildren(head, ...findings.map(({ what, unit, came_out, expected, right }) => {
                 const verdict = expected === null ? "told" : right ? "right" : "WRONG";

@@ -151,6 +151,8 @@ void add_columns(Columns& columns, const Recording& recording) {
         columns.add(samples.residual);
         columns.add(
             samples.state, [](std::uint8_t state) { return state; }, 0, 1);
+        columns.add(
+            samples.life, [](double v) { return v; }, 0, 1 / levels);
         columns.add(samples.curve.force);
         columns.add(samples.curve.position);
     }
@@ -179,7 +181,7 @@ std::string laid_down(const Recording& recording) {
     for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
     for (const Event& event : recording.events) text["events"].push_back(text_of(event));
     const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-    std::string bytes = "ductrec1";
+    std::string bytes = "ductrec2";
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(char(words.size() >> shift & 0xff));
     return bytes + words + columns.bytes();
 }

@@ -156,6 +156,12 @@ class Bridge final : public Scene {
                 }
             }
         }
+        const std::string share = replay::quantity(100 * steel, "%");
+        stage.describe([share](const std::string& joint) {
+            if (joint.starts_with("axle")) return Stage::Facts{{"section", "none: rigid"}};
+            return Stage::Facts{{"section", "rectangle 9 m wide, 0.4375 m high"},
+                                {"material", "concrete with " + share + " of steel"}};
+        });
         return cast;
     }
     /// Of the deck's middle [m].

@@ -112,6 +112,12 @@ class LampPost final : public Scene {
         const UsualAxisJoint loose(Perfect<double>({.strength = 1e-6}), TravelLimit<double>());
         stage.hinge("bumper", bumper, cast.car, {-nose, 0, edge}, {0, 1, 0}, loose);
         stage.slider("road", cast.car, Stage::ground, {-2, 0, edge}, {1, 0, 0}, loose);
+        stage.describe([](const std::string& joint) {
+            if (joint == "bumper" || joint == "road") {
+                return Stage::Facts{{"section", "none: it guides the car"}};
+            }
+            return Stage::Facts{{"section", "box 100 x 100 x 4 mm"}, {"material", "S355"}};
+        });
         stage.keep_awake();
         return cast;
     }

@@ -81,6 +81,10 @@ class Paperclip final : public Scene {
             {.strain_per_travel =
                  hinge_strain<double>({.height = diameter, .hinge_length = wire.hinge_length})});
         const FatigueAxisJoint bend(Perfect<double>({.strength = moment}), life);
+        stage.describe(
+            {{"section", "wire of 1 mm"},
+             {"material", "Coffin-Manson: ductility " + replay::quantity(wire.ductility, "") +
+                              ", exponent " + replay::quantity(wire.exponent, "")}});
         return stage.hinge("bend", hand, vice, {0, 0, 0}, {0, 0, 1}, bend);
     }
     void to_and_fro(Run& run, std::size_t number) const {

@@ -97,6 +97,7 @@ class Plate final : public Scene {
 
     static Cast build(Stage& stage, const Case& of) {
         Cast cast;
+        stage.describe({{"section", "strip of a plate of 10 mm"}, {"material", "steel, 355 MPa"}});
         const int n = of.parts;
         const double a = side / n, gap = 5e-4;
         const double bending = per_length * a;

@@ -80,6 +80,10 @@ class Ramp final : public Scene {
         for (std::size_t i = 0; i < cars.size(); ++i) {
             cars[i] = car(stage, std::to_string(i + 1), edge - 2 - 6 * double(i));
         }
+        stage.describe([](const std::string& of) {
+            return Stage::Facts{{"section", of == "joint" ? "elastic-plastic hinge of the ramp"
+                                                          : "spring and damper of a wheel"}};
+        });
         stage.keep_awake();
         take.action(60);
         take.run(10);

@@ -220,6 +220,7 @@ class RollCage final : public Scene {
         Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 128});
         Stage& stage = take.stage();
         BuiltStructure& built = stage.build(cage());
+        stage.describe({{"section", "tube 50 x 3 mm"}, {"material", "S355"}});
         take.action(60);
         take.run(3);
         const Ledger<double>& ledger = stage.world().ledger();

@@ -44,6 +44,10 @@ Take::Take(Run& run, std::string name, std::string about, StageParameters parame
     stage_ = engine == "bullet" ? bullet_stage(parameters) : ode_stage(parameters);
 }
 
+Take::~Take() {
+    if (!stage_->world().run().believed()) run_.doubt(name_);
+}
+
 double Take::frame() const { return run_.options().frame; }
 
 void Take::action(double samples_a_second) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recorder.hpp"
@@ -49,6 +50,10 @@ class Run;
 class Take {
   public:
     Take(Run& run, std::string name, std::string about, StageParameters parameters);
+    /// Tells the run where its World does not believe what came out.
+    ~Take();
+    Take(const Take&) = delete;
+    Take& operator=(const Take&) = delete;
 
     [[nodiscard]] Stage& stage() { return *stage_; }
     [[nodiscard]] double frame() const;
@@ -88,6 +93,9 @@ class Run {
     void spent(double seconds) { times_.push_back(seconds); }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     [[nodiscard]] bool right() const;
+    /// Takes whose World does not believe what came out, as a joint was left unsolved.
+    [[nodiscard]] const std::vector<std::string>& doubted() const { return doubted_; }
+    void doubt(std::string take) { doubted_.push_back(std::move(take)); }
     /// Where somebody keeps recordings.
     void keep(const std::string& name, const replay::Recorder& recorder);
 
@@ -96,6 +104,7 @@ class Run {
     RunOptions options_;
     std::vector<Finding> findings_;
     std::vector<std::string> replays_; ///< under which names they are kept
+    std::vector<std::string> doubted_;
     std::vector<double> times_;
 };
 

@@ -63,6 +63,9 @@ void print(const Run& run) {
             fmt::print("        {:<44} {:>12.6g}{}\n", f.what, f.came_out, unit);
         }
     }
+    for (const std::string& take : run.doubted()) {
+        fmt::print("        {}: the World does not believe what came out\n", take);
+    }
     std::vector<double> times = run.times();
     std::sort(times.begin(), times.end());
     if (times.empty()) return;

@@ -48,6 +48,8 @@ class Tension final : public Scene {
             stage.connect("bars", block, beam, {0, 0, 4}, axes,
                           section_joint(bars, steel, {.length = 1, .elastic = true}));
         stage.keep_awake();
+        stage.describe({{"section", "steel bars of " + std::to_string(steel_ * 1e4) + " cm²"},
+                        {"material", "200 MPa, 200 GPa"}});
         take.action();
         const int steps = int(std::lround(1 / take.frame()));
         for (int i = 1; i <= steps; ++i) {

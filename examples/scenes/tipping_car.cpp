@@ -66,6 +66,8 @@ class TippingCar final : public Scene {
         JointQueries& foot = stage.hinge("foot", post, base, {0, 0, foot_at}, {0, 1, 0},
                                          UsualAxisJoint(Perfect<double>({.strength = moment}),
                                                         TravelLimit<double>({.limit = largest_})));
+        stage.describe({{"section", "box 100 x 100 x 4 mm"},
+                        {"material", "steel, " + replay::quantity(yield_ * 1e6, "Pa")}});
         take.action(240);
         for (int i = 0; i * take.frame() < 1 && !foot.broken(); ++i) take.step();
         const double after = stage.velocity(car).x();

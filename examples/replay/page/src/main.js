@@ -53,8 +53,12 @@ class Replay {
         this.describe();
     }
 
-    /** Another recording, or this one where it has grown: then the joint stays, and whoever was at its end is. */
-    show(recording) {
+    /**
+     * Another recording, or this one where it has grown: then the joint stays, and whoever was at its end is.
+     * `growing`: it will be shown for a moment only, as when it plays.
+     */
+    show(recording, growing = false) {
+        this.growing = growing;
         const grown = recording.name === this.recording.name && recording.joints.length === this.recording.joints.length;
         const { time, joint, end } = this;
         this.scene.show(recording);
@@ -223,7 +227,9 @@ class Replay {
             ["state", words],
             ["utilisation", joint.utilisation[i].toFixed(3)],
             [joint.turns ? "moment" : "force", `${short(joint.force[i])} ${unit[0]}`],
+            ["strength left", state & broken ? "none" : `${Math.max(0, 100 * (1 - joint.utilisation[i])).toFixed(1)} %`],
             ["plastic travel", `${short(joint.plastic[i])} ${unit[1]}`],
+            ["life left", Number.isNaN(joint.life[i]) ? "without end" : `${(100 * (1 - joint.life[i])).toFixed(1)} % of plastic travel`],
             ["absorbed", `${short(joint.absorbed[i])} J`],
             ["certificate", short(joint.residual[i])],
             ...joint.facts,
@@ -284,6 +290,7 @@ class Replay {
     pace(now) {
         if (!this.playing) {
             this.pacing = undefined;
+            if (this.growing) return this.scene.setSharpness(0.5);
             return this.scene.setSharpness(1);
         }
         this.pacing ??= { since: now, frames: 0 };
@@ -309,10 +316,10 @@ class Replay {
     }
 }
 
-/** Bytes as packed.hpp lays them down, not zipped. */
-window.showRecording = (bytes) => {
+/** Bytes as packed.hpp lays them down, not zipped; `growing`: there will be more. */
+window.showRecording = (bytes, growing) => {
     const recording = decodeLaidDown(bytes);
-    if (window.replay) window.replay.show(recording);
+    if (window.replay) window.replay.show(recording, growing);
     else window.replay = new Replay(recording);
 };
 

@@ -4,7 +4,7 @@
 
 export class RecordingError extends Error {}
 
-const magic = "ductrec1";
+const magic = "ductrec2";
 const noNumber = 65535;
 
 /** Bytes of base64 text. */
@@ -86,7 +86,7 @@ export function decodeLaidDown(all) {
         if (body.moves) body.columns = Array.from({ length: 7 }, () => columns.take());
     }
     for (const joint of text.joints) {
-        take(["utilisation", "plastic", "absorbed", "residual", "state", "force", "position"], joint);
+        take(["utilisation", "plastic", "absorbed", "residual", "state", "life", "force", "position"], joint);
     }
     text.energies = text.energies.map((name) => ({ name, values: columns.take() }));
     const low = columns.take();
