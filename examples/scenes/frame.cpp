@@ -8,8 +8,11 @@
 // a beam. Members that are rigid below yield (P30): with all weights times 2.2 the rest stands,
 // with 2.3 the beam that lost its column falls, as the collapse factor is 2.2773. Where the column
 // has lost its foot alone it hangs and holds the three floors together: the factor is 2.5887, 2.5
-// stands, 2.6 falls. Last, 500 kg at 20 m/s against a column.
+// stands, 2.6 gives way, by a centimetre, where its beams come to hang like ropes, of which the
+// calculation of small displacements knows nothing. Last, 500 kg at 20 m/s against a column.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -120,13 +123,18 @@ class Frame final : public Scene {
             frame.scale_weights(weights * i / steps);
             take.step();
         }
-        take.run(2);
+        double fastest = 0; // it may come to hang from its beams, and stop
+        for (int i = 0; i < 2 * steps; ++i) {
+            take.step();
+            fastest = std::max(fastest, take.stage().speed());
+        }
         const double speed = take.stage().speed();
         if (stands) {
             run.expect(of + ": speed after 2 s", speed, 0, 1e-3, "m/s");
             run.expect(of + ": absorbed", frame.absorbed_energy(), 0, 0.1, "J");
         } else {
-            run.expect(of + ": it falls (1) or not (0)", speed > 0.01 ? 1 : 0, 1, 0);
+            run.expect(of + ": it gives way (1) or not (0)", fastest > 0.01 ? 1 : 0, 1, 0);
+            run.tell(of + ": speed after 2 s", speed, "m/s");
             run.tell(of + ": sag of the beam", frame.sag("beam 00", 0), "m");
         }
         take.cut();

@@ -45,7 +45,8 @@ Take::Take(Run& run, std::string name, std::string about, StageParameters parame
 }
 
 Take::~Take() {
-    if (!stage_->world().run().believed()) run_.doubt(name_);
+    const bool framed = stage_->keeps_tolerance();
+    if (framed ? !stage_->world().run().believed() : unsolved_) run_.doubt(name_);
 }
 
 double Take::frame() const { return run_.options().frame; }
@@ -64,6 +65,9 @@ void Take::step(double frame) {
     const std::clock_t start = std::clock();
     stage_->step(frame);
     run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
+    for (const JointEvent<double>& event : stage_->world().events()) {
+        unsolved_ = unsolved_ || event.kind == EventKind::unreliable;
+    }
     if (recorder_ && run_.options().grows) run_.options().grows(*recorder_);
 }
 

@@ -74,6 +74,7 @@ class Take {
     std::string name_, about_;
     std::unique_ptr<Stage> stage_;
     std::unique_ptr<replay::Recorder> recorder_;
+    bool unsolved_ = false; ///< a joint, in a plain step
 };
 
 class Run {
