@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Compiles the page of live.cpp to one file, out/live.html, that opens from disk: WebAssembly by
-# Debian's emscripten, of Bullet's sources from Debian. Installs what is missing; what it makes on the
-# way is in build/live. Three minutes, half a minute where only the page changed.
+# Compiles the scenes to one file, out/live.html, that opens from disk: WebAssembly by Debian's
+# emscripten, of Bullet's sources from Debian, in the replay page. Installs what is missing; what it
+# makes on the way is in build/live, and only what has changed is made again.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 root=$(cd ../.. && pwd)
 work=$root/build/live
 mkdir -p "$work" out
 
-if ! command -v em++ >/dev/null || ! dpkg -s node-acorn libeigen3-dev >/dev/null 2>&1; then
+packages=(emscripten node-acorn libeigen3-dev nlohmann-json3-dev make npm)
+if ! dpkg -s emscripten node-acorn libeigen3-dev nlohmann-json3-dev make >/dev/null 2>&1 || ! command -v npm >/dev/null; then
     sudo=()
     [ "$(id -u)" -eq 0 ] || sudo=(sudo)
     "${sudo[@]}" apt-get update -qq
-    "${sudo[@]}" apt-get install -y -qq --no-install-recommends emscripten node-acorn libeigen3-dev
+    "${sudo[@]}" apt-get install -y -qq --no-install-recommends "${packages[@]}"
 fi
 # Node.js that is not Debian's does not look where Debian has emscripten's modules
 export NODE_PATH=/usr/share/nodejs${NODE_PATH:+:$NODE_PATH}
@@ -38,29 +39,18 @@ if ! compgen -G "$work/bullet3-*/src" >/dev/null; then
 fi
 bullet=$(echo "$work"/bullet3-*/src)
 
-flags=(-O2 -fexceptions -DBT_USE_DOUBLE_PRECISION)
-objects=()
-for part in btLinearMathAll btBulletCollisionAll btBulletDynamicsAll; do
-    object=$work/$part.o
-    objects+=("$object")
-    [ -s "$object" ] && continue
-    echo "Bullet: $part"
-    em++ -std=c++17 -w "${flags[@]}" -I"$bullet" -c "$bullet/$part.cpp" -o "$object.part"
-    mv "$object.part" "$object"
-done
-echo "live.cpp"
-em++ -std=c++20 "${flags[@]}" -Wall -Wextra -I"$root/include" -I"$root/adapters/bullet/include" \
-    -isystem "$bullet" -isystem /usr/include/eigen3 -c live.cpp -o "$work/live.o"
-em++ "${flags[@]}" "$work/live.o" "${objects[@]}" -o "$work/live.js" -sMODULARIZE=1 -sEXPORT_NAME=makeLive \
-    -sSINGLE_FILE=1 -sALLOW_MEMORY_GROWTH=1 -sENVIRONMENT=web \
-    -sEXPORTED_FUNCTIONS=_live_wish,_live_start,_live_step,_live_state \
-    -sEXPORTED_RUNTIME_METHODS=UTF8ToString,HEAPF64
-awk -v made="$work/live.js" '/<!--script-->/ {
-    print "<script>"
-    while ((getline line < made) > 0) print line
-    while ((getline line < "page.js") > 0) print line
-    print "</script>"
-    next
-} { print }' page.html >"$work/live.html"
-mv "$work/live.html" out/live.html
-echo "open examples/live/out/live.html ($(($(stat -c %s out/live.html) / 1000)) kB)"
+# these headers alone: the machine's other ones are not for WebAssembly
+mkdir -p "$work/include" "$work/page"
+ln -sfn /usr/include/eigen3/Eigen "$work/include/Eigen"
+ln -sfn /usr/include/nlohmann "$work/include/nlohmann"
+make -C "$work" -f "$root/examples/live/Makefile" --no-print-directory ROOT="$root" BULLET="$bullet" \
+    -j"${JOBS:-$(nproc)}" live.js
+
+page=$root/examples/replay/page
+cp -r "$page/package.json" "$page/package-lock.json" "$page/build.mjs" "$page/src" "$work/page"
+cmp -s "$page/package-lock.json" "$work/page/node_modules/of.json" || {
+    npm ci --prefix "$work/page" --no-audit --no-fund --ignore-scripts --loglevel=error
+    cp "$page/package-lock.json" "$work/page/node_modules/of.json"
+}
+npm run --silent --prefix "$work/page" build -- "$work/replay.html"
+node page.mjs "$work" out/live.html

@@ -5,6 +5,7 @@
 // shape as the box around it.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -98,9 +99,10 @@ inline void add_body(Recorder& recorder, const btRigidBody& body, std::string na
                  [&body] { return pose_of(body.getCenterOfMassTransform()); });
 }
 
-/// The joint must live as long, and be in the World by this name.
+/// The joint must live as long, and be in the World by this name. Facts and life used:
+/// joint_facts.hpp.
 inline void add_joint(Recorder& recorder, const bullet::PlasticConstraint& joint, std::string name,
-                      std::vector<Fact> facts = {}) {
+                      std::vector<Fact> facts = {}, std::function<double()> life = {}) {
     const btRigidBody &a = joint.getRigidBodyA(), &b = joint.getRigidBodyB();
     const Pose place = pose_of(a.getCenterOfMassTransform().inverse() * joint.view().frame_a);
     recorder.add({.name = std::move(name),
@@ -108,7 +110,7 @@ inline void add_joint(Recorder& recorder, const bullet::PlasticConstraint& joint
                   .b = recorder.number(&b),
                   .in_a = place.position,
                   .facts = std::move(facts)},
-                 joint.queries());
+                 joint.queries(), std::move(life));
 }
 
 } // namespace ductile::replay

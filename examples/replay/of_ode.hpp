@@ -7,6 +7,7 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,10 +109,12 @@ inline void add_ground(Recorder& recorder, dGeomID geom, std::string name) {
     recorder.add(geom, std::move(drawn), [pose] { return pose; });
 }
 
-/// The joint must live as long, and be in the World by this name.
+/// The joint must live as long, and be in the World by this name. Facts and life used:
+/// joint_facts.hpp.
 /// @param place  where it is, world [m]; ODE does not tell it of all joints
 inline void add_joint(Recorder& recorder, const ode::PlasticConstraint& joint, std::string name,
-                      const std::array<double, 3>& place, std::vector<Fact> facts = {}) {
+                      const std::array<double, 3>& place, std::vector<Fact> facts = {},
+                      std::function<double()> life = {}) {
     const ode::AttachedBodies bodies = joint.bodies();
     dVector3 in_a{};
     dBodyGetPosRelPoint(bodies.a, place[0], place[1], place[2], in_a);
@@ -121,7 +124,7 @@ inline void add_joint(Recorder& recorder, const ode::PlasticConstraint& joint, s
                   .in_a = {in_a[0], in_a[1], in_a[2]},
                   .turns = dJointGetType(joint.id()) != dJointTypeSlider,
                   .facts = std::move(facts)},
-                 joint.queries());
+                 joint.queries(), std::move(life));
 }
 
 } // namespace ductile::replay

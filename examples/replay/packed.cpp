@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "packed.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -153,6 +151,8 @@ void add_columns(Columns& columns, const Recording& recording) {
         columns.add(samples.residual);
         columns.add(
             samples.state, [](std::uint8_t state) { return state; }, 0, 1);
+        columns.add(
+            samples.life, [](double v) { return v; }, 0, 1 / levels);
         columns.add(samples.curve.force);
         columns.add(samples.curve.position);
     }
@@ -163,35 +163,15 @@ void add_columns(Columns& columns, const Recording& recording) {
         recording.hashes, [](std::uint32_t hash) { return (hash >> 16) & 0x7fff; }, 0, 1);
 }
 
-std::string zipped(const std::string& bytes) {
-    z_stream stream{};
-    constexpr int gzip = 15 + 16, memory = 9;
-    if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, gzip, memory, Z_DEFAULT_STRATEGY) !=
-        Z_OK) {
-        throw Error("zlib could not be started");
-    }
-    std::string result(deflateBound(&stream, uLong(bytes.size())), '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    stream.avail_in = uInt(bytes.size());
-    stream.next_out = reinterpret_cast<Bytef*>(result.data());
-    stream.avail_out = uInt(result.size());
-    const int end = deflate(&stream, Z_FINISH);
-    result.resize(stream.total_out);
-    deflateEnd(&stream);
-    if (end != Z_STREAM_END) throw Error("zlib could not pack the recording");
-    return result;
-}
-
 } // namespace
 
-std::string pack(const Recording& recording) {
+std::string laid_down(const Recording& recording) {
     check(recording);
     Columns columns;
     add_columns(columns, recording);
-    Json text{{"name", recording.name},   {"about", recording.about},  {"engine", recording.engine},
-              {"times", recording.times}, {"bodies", Json::array()},   {"joints", Json::array()},
-              {"energies", Json::array()}, {"events", Json::array()},
-              {"columns", columns.text()}};
+    Json text{{"name", recording.name},    {"about", recording.about}, {"engine", recording.engine},
+              {"times", recording.times},  {"bodies", Json::array()},  {"joints", Json::array()},
+              {"energies", Json::array()}, {"events", Json::array()},  {"columns", columns.text()}};
     for (std::size_t i = 0; i < recording.bodies.size(); ++i) {
         text["bodies"].push_back(text_of(recording.bodies[i], recording.poses[i]));
     }
@@ -201,9 +181,9 @@ std::string pack(const Recording& recording) {
     for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
     for (const Event& event : recording.events) text["events"].push_back(text_of(event));
     const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-    std::string bytes = "ductrec1";
+    std::string bytes = "ductrec2";
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(char(words.size() >> shift & 0xff));
-    return zipped(bytes + words + columns.bytes());
+    return bytes + words + columns.bytes();
 }
 
 } // namespace ductile::replay

@@ -2,7 +2,7 @@
 //
 // A recording as bytes, small enough to travel inside a page: a gzip stream of
 //
-//   "ductrec1"  8 bytes
+//   "ductrec2"  8 bytes
 //   length      of the text that follows, 4 bytes, little-endian
 //   text        JSON: what does not change, the times, and of each column its `low`, `step`,
 //   `order` low bytes   of all samples, column by column high bytes  likewise
@@ -10,11 +10,11 @@
 // A column is quantised to 65535 values over its range, value = low + step q, q = 65535 where it is
 // not a number; then the difference to the sample before, or (order 2) to the straight line through
 // the two before, as a zigzag of 16 bits. Turns have the range -1 ... 1, all other columns their
-// own.
+// own, but for the life used, 0 ... 1.
 //
 // Columns, in order: of each body that moves x, y, z, w, x, y, z; of each joint utilisation,
-// plastic travel, absorbed, residual, state, force, position; the energies; the hashes' low and
-// high halves.
+// plastic travel, absorbed, residual, state, life, force, position; the energies; the hashes' low
+// and high halves.
 #pragma once
 
 #include <string>
@@ -23,7 +23,10 @@
 
 namespace ductile::replay {
 
-/// @throws Error where the recording does not hold together (`check`).
+/// What is above, not yet zipped. @throws Error where the recording does not hold together
+/// (`check`).
+[[nodiscard]] std::string laid_down(const Recording& recording);
+/// Zipped; throws likewise.
 [[nodiscard]] std::string pack(const Recording& recording);
 
 } // namespace ductile::replay

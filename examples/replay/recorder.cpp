@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -14,6 +15,8 @@
 namespace ductile::replay {
 
 namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::quiet_NaN();
 
 /// FNV-1a of the bytes of a number.
 void add_to_hash(std::uint32_t& hash, double value) {
@@ -65,13 +68,13 @@ int Recorder::number(const void* body) const {
     return known == by_body_.end() ? -1 : known->second;
 }
 
-void Recorder::add(Joint joint, const JointQueries& queries) {
+void Recorder::add(Joint joint, const JointQueries& queries, std::function<double()> life) {
     const auto same = [&](const SeenJoint& seen) { return seen.queries == &queries; };
     if (std::any_of(joints_.begin(), joints_.end(), same) ||
         !by_name_.emplace(joint.name, int(joints_.size())).second) {
         throw Error("Recorder.add: joint \"" + joint.name + "\" was added already");
     }
-    SeenJoint& seen = joints_.emplace_back(SeenJoint{&queries, {}});
+    SeenJoint& seen = joints_.emplace_back(SeenJoint{&queries, std::move(life), {}});
     const std::size_t frames = recording_.times.size();
     const auto axis = [&](std::string name, bool turning) {
         seen.axes.push_back({.name = std::move(name),
@@ -79,8 +82,11 @@ void Recorder::add(Joint joint, const JointQueries& queries) {
                              .force = std::vector<double>(frames, 0),
                              .position = std::vector<double>(frames, 0)});
     };
-    if (dynamic_cast<const LinkQueries*>(&queries) != nullptr) {
-        for (const JointAxis each : all_joint_axes) axis(std::string(to_string(each)), turns(each));
+    if (const auto* link = dynamic_cast<const LinkQueries*>(&queries)) {
+        // rigid axes bear what they must: a slider's moments say nothing of its strength
+        for (const JointAxis each : link->plastic_axes()) {
+            axis(std::string(to_string(each)), turns(each));
+        }
     } else {
         axis("axis", joint.turns);
     }
@@ -90,6 +96,7 @@ void Recorder::add(Joint joint, const JointQueries& queries) {
         column->assign(frames, 0);
     }
     samples.state.assign(frames, holds);
+    samples.life.assign(frames, seen.life ? 0 : unlimited);
     recording_.joints.push_back(std::move(joint));
 }
 
@@ -147,6 +154,7 @@ void Recorder::sample_joint(std::size_t number) {
         repeat(samples.plastic_travel);
         repeat(samples.absorbed);
         repeat(samples.state);
+        repeat(samples.life);
         samples.utilisation.push_back(0);
         samples.residual.push_back(0);
         for (Axis& axis : seen.axes) {
@@ -160,6 +168,7 @@ void Recorder::sample_joint(std::size_t number) {
     samples.plastic_travel.push_back(queries.plastic_travel());
     samples.absorbed.push_back(queries.absorbed_energy());
     samples.residual.push_back(std::max(queries.residual(), queries.rigid_residual()));
+    samples.life.push_back(seen.life ? seen.life() : unlimited);
     const bool flows = queries.plastic_travel() > 0;
     samples.state.push_back(
         std::uint8_t((flows ? flowed : holds) | (queries.broken() ? broken : holds) |
@@ -172,8 +181,9 @@ void Recorder::sample_joint(std::size_t number) {
         axis.position.push_back(position);
     };
     if (const auto* link = dynamic_cast<const LinkQueries*>(&queries)) {
-        for (const JointAxis axis : all_joint_axes) {
-            book(seen.axes[index(axis)], link->force(axis), link->position(axis),
+        std::size_t at = 0;
+        for (const JointAxis axis : link->plastic_axes()) {
+            book(seen.axes[at++], link->force(axis), link->position(axis),
                  link->plastic_offset(axis));
         }
     } else if (const auto* axis = dynamic_cast<const AxisQueries*>(&queries)) {

@@ -43,8 +43,10 @@ class Recorder {
     /// @throws Error where this body was added already
     void add(const void* key, Body body, std::function<Pose()> pose);
     /// `joint` must stay valid until `finish` or `remove`; its World must know it by this name.
+    /// @param life  share of its life that is used, 1 where it breaks (joint_facts.hpp); nothing:
+    ///              it is not known, or has no end
     /// @throws Error where this joint, or one of the name, was added already
-    void add(Joint joint, const JointQueries& queries);
+    void add(Joint joint, const JointQueries& queries, std::function<double()> life = {});
     void remove(const void* body);
     void remove(const JointQueries& joint);
     /// Number of an engine's body; -1 where it is not known, as the ground is not.
@@ -67,6 +69,7 @@ class Recorder {
     };
     struct SeenJoint {
         const JointQueries* queries;
+        std::function<double()> life;
         std::vector<Axis> axes;
     };
 

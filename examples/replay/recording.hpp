@@ -68,6 +68,7 @@ struct JointSamples {
     std::vector<double> absorbed;       ///< [J]
     std::vector<double> residual;       ///< certificate [m/s | rad/s]
     std::vector<std::uint8_t> state;    ///< JointState, added up
+    std::vector<double> life; ///< share that is used, 1: it breaks; not a number: without end [-]
     Curve curve;
 };
 
@@ -86,7 +87,7 @@ struct Recording {
     std::vector<Body> bodies;
     std::vector<std::vector<Pose>> poses; ///< by body; one sample where it does not move
     std::vector<Joint> joints;
-    std::vector<JointSamples> samples; ///< by joint
+    std::vector<JointSamples> samples;                                 ///< by joint
     std::vector<std::pair<std::string, std::vector<double>>> energies; ///< named [J]
     std::vector<Event> events;                                         ///< in order of time
     std::vector<std::uint32_t> hashes; ///< of the poses, bit for bit, of each sample

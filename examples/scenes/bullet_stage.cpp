@@ -139,15 +139,24 @@ class BulletStage final : public Stage {
             }
             for (std::size_t i = 0; i < plan.joints.size(); ++i) {
                 if (!structure_->has_joint(i)) continue;
-                replay::add_joint(recorder, *structure_->joint(i), plan.joints[i].name);
+                const auto& joint = *structure_->joint(i);
+                const Known known = known_of(joint, plan.joints[i].joint, true);
+                replay::add_joint(recorder, joint, plan.joints[i].name,
+                                  facts_of(plan.joints[i].name, known.facts), known.life);
             }
         }
-        for (std::size_t i = 0; i < joints_.size(); ++i) {
-            replay::add_joint(recorder, *joints_[i], joint_names_[i]);
+        for (const OwnJoint& own : joints_) {
+            replay::add_joint(recorder, *own.joint, own.name, facts_of(own.name, own.known.facts),
+                              own.known.life);
         }
     }
 
   private:
+    struct OwnJoint {
+        std::string name;
+        Known known;
+        std::unique_ptr<bullet::PlasticConstraint> joint;
+    };
     [[nodiscard]] BuiltStructure& structure() override { return *structure_; }
     [[nodiscard]] const void* body_of_structure(std::size_t number) const override {
         return structure_->body(number);
@@ -172,8 +181,8 @@ class BulletStage final : public Stage {
         Made& result = *made;
         result.add_to(engine_, true); // joined bodies do not collide
         world_->add(result, name);
-        joints_.push_back(std::move(made));
-        joint_names_.push_back(name);
+        const bool rotates = !std::is_same_v<Made, bullet::PlasticSlider<UsualAxisJoint>>;
+        joints_.push_back({name, known_of(result, joint, rotates), std::move(made)});
         return result;
     }
     btRigidBody& own(double mass, std::string name, const btVector3& at, bool collides = true) {
@@ -211,11 +220,11 @@ class BulletStage final : public Stage {
     btDiscreteDynamicsWorld engine_{&dispatcher_, &broadphase_, &solver_, &configuration_};
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
-    std::vector<std::string> names_, joint_names_;
+    std::vector<std::string> names_;
     bool keeps_tolerance_ = false;
     std::unique_ptr<bullet::World> world_;
     std::unique_ptr<bullet::Structure> structure_;
-    std::vector<std::unique_ptr<bullet::PlasticConstraint>> joints_;
+    std::vector<OwnJoint> joints_;
 };
 
 } // namespace

@@ -156,12 +156,15 @@ class OdeStage final : public Stage {
             for (std::size_t i = 0; i < plan.joints.size(); ++i) {
                 if (!structure_->has_joint(i)) continue;
                 const Vector3<double>& at = plan.joints[i].frame.origin;
-                replay::add_joint(recorder, *structure_->joint(i), plan.joints[i].name,
-                                  {at.x(), at.y(), at.z()});
+                const auto& joint = *structure_->joint(i);
+                const Known known = known_of(joint, plan.joints[i].joint, true);
+                replay::add_joint(recorder, joint, plan.joints[i].name, {at.x(), at.y(), at.z()},
+                                  facts_of(plan.joints[i].name, known.facts), known.life);
             }
         }
         for (const OwnJoint& own : joints_) {
-            replay::add_joint(recorder, *own.joint, own.name, {own.at.x(), own.at.y(), own.at.z()});
+            replay::add_joint(recorder, *own.joint, own.name, {own.at.x(), own.at.y(), own.at.z()},
+                              facts_of(own.name, own.known.facts), own.known.life);
         }
     }
 
@@ -182,6 +185,7 @@ class OdeStage final : public Stage {
     struct OwnJoint {
         std::string name;
         Vector3<double> at;
+        Known known;
         std::unique_ptr<ode::PlasticConstraint> joint;
     };
     template <class Joint>
@@ -197,7 +201,8 @@ class OdeStage final : public Stage {
         auto made = std::make_unique<Made>(engine_.id, body_of(a), body_of(b), frame, joint);
         Made& result = *made;
         world_->add(result, name);
-        joints_.push_back({name, at, std::move(made)});
+        const bool rotates = !std::is_same_v<Made, ode::PlasticSlider<UsualAxisJoint>>;
+        joints_.push_back({name, at, known_of(result, joint, rotates), std::move(made)});
         return result;
     }
     void touch(dGeomID a, dGeomID b) {

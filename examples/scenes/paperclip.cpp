@@ -20,6 +20,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "ductile/fracture/hinge_strain.hpp"
 #include "scene.hpp"
@@ -48,13 +49,17 @@ class Paperclip final : public Scene {
         return "a wire of 1 mm is bent to and fro until it breaks in the leg that Coffin-Manson "
                "says";
     }
-    void add_options(CLI::App& app) override {
-        app.add_option("--half-cycle", half_cycle_, "time from one side to the other [s]")
-            ->capture_default_str();
+    [[nodiscard]] std::vector<Option> options() override {
+        return {{"half-cycle", "time from one side to the other", "s", &half_cycle_, 0.2, 5, ""}};
     }
-    void play(Run& run) override {
-        for (std::size_t i = 0; i < wires.size(); ++i) to_and_fro(run, i);
-        one_way(run);
+    [[nodiscard]] std::vector<Part> parts() override {
+        std::vector<Part> parts;
+        for (std::size_t i = 0; i < wires.size(); ++i) {
+            parts.push_back(
+                {"wire " + std::to_string(i + 1), [this, i](Run& run) { to_and_fro(run, i); }});
+        }
+        parts.push_back({"one way", one_way});
+        return parts;
     }
 
   private:
@@ -76,6 +81,10 @@ class Paperclip final : public Scene {
             {.strain_per_travel =
                  hinge_strain<double>({.height = diameter, .hinge_length = wire.hinge_length})});
         const FatigueAxisJoint bend(Perfect<double>({.strength = moment}), life);
+        stage.describe(
+            {{"section", "wire of 1 mm"},
+             {"material", "Coffin-Manson: ductility " + replay::quantity(wire.ductility, "") +
+                              ", exponent " + replay::quantity(wire.exponent, "")}});
         return stage.hinge("bend", hand, vice, {0, 0, 0}, {0, 0, 1}, bend);
     }
     void to_and_fro(Run& run, std::size_t number) const {

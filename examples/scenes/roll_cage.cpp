@@ -26,6 +26,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "ductile/material/named.hpp"
 #include "ductile/section/tube.hpp"
@@ -55,13 +56,14 @@ class RollCage final : public Scene {
         return "a roll-over hoop: its force over crush, 1.5 t at 6 m/s on its roof; a cage that "
                "rolls";
     }
-    void add_options(CLI::App& app) override {
-        app.add_option("--speed", speed_, "of the roof [m/s]")->capture_default_str();
+    [[nodiscard]] std::vector<Option> options() override {
+        return {{"speed", "of the roof", "m/s", &speed_, 1, 8, lands}};
     }
-    void play(Run& run) override {
-        for (const Case& of : cases) crush(run, of);
-        land(run);
-        roll_over(run);
+    [[nodiscard]] std::vector<Part> parts() override {
+        return {{"roll over", roll_over},
+                {lands, [this](Run& run) { land(run); }},
+                {cases[0].name, [](Run& run) { crush(run, cases[0]); }},
+                {cases[1].name, [](Run& run) { crush(run, cases[1]); }}};
     }
 
   private:
@@ -160,8 +162,7 @@ class RollCage final : public Scene {
         take.cut();
     }
     void land(Run& run) const {
-        Take take =
-            run.take("1500 kg at 6 m per s", "A hoop stops 1.5 t.", {.gravity = 0, .floor = false});
+        Take take = run.take(lands, "A hoop stops 1.5 t.", {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
         const Cast cast = build(stage, speed_);
         take.action(120);
@@ -219,6 +220,7 @@ class RollCage final : public Scene {
         Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 128});
         Stage& stage = take.stage();
         BuiltStructure& built = stage.build(cage());
+        stage.describe({{"section", "tube 50 x 3 mm"}, {"material", "S355"}});
         take.action(60);
         take.run(3);
         const Ledger<double>& ledger = stage.world().ledger();
@@ -232,6 +234,7 @@ class RollCage final : public Scene {
         take.cut();
     }
 
+    static constexpr const char* lands = "1500 kg at 6 m per s";
     double speed_ = 6;
 };
 

@@ -7,9 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "write_glb.hpp"
-#include "write_html.hpp"
-
 namespace ductile::scenes {
 
 bool Finding::right() const {
@@ -47,10 +44,15 @@ Take::Take(Run& run, std::string name, std::string about, StageParameters parame
     stage_ = engine == "bullet" ? bullet_stage(parameters) : ode_stage(parameters);
 }
 
+Take::~Take() {
+    const bool framed = stage_->keeps_tolerance();
+    if (framed ? !stage_->world().run().believed() : unsolved_) run_.doubt(name_);
+}
+
 double Take::frame() const { return run_.options().frame; }
 
 void Take::action(double samples_a_second) {
-    if (run_.options().out.empty()) return;
+    if (!run_.options().keep) return;
     recorder_ = std::make_unique<replay::Recorder>(
         replay::RecorderParameters{.name = run_.scene() + ": " + name_,
                                    .about = about_,
@@ -63,6 +65,10 @@ void Take::step(double frame) {
     const std::clock_t start = std::clock();
     stage_->step(frame);
     run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
+    for (const JointEvent<double>& event : stage_->world().events()) {
+        unsolved_ = unsolved_ || event.kind == EventKind::unreliable;
+    }
+    if (recorder_ && run_.options().grows) run_.options().grows(*recorder_);
 }
 
 void Take::run(double time) {
@@ -80,19 +86,7 @@ bool Take::settle(double speed, double time) {
 }
 
 void Take::cut() {
-    if (!recorder_) return;
-    std::string file = run_.scene() + "-" + name_ + "-" + stage_->engine() + ".html";
-    for (char& c : file) {
-        if (c == ' ') c = '-';
-    }
-    std::filesystem::create_directories(run_.options().out);
-    const replay::Recording recording = recorder_->finish();
-    const std::filesystem::path path = run_.options().out / file;
-    replay::write_html(recording, path);
-    if (run_.options().glb) {
-        replay::write_glb(recording, std::filesystem::path(path).replace_extension("glb"));
-    }
-    run_.replays_.push_back(file);
+    if (recorder_) run_.keep(name_, *recorder_);
 }
 
 Run::Run(std::string scene, RunOptions options)
@@ -114,6 +108,35 @@ bool Run::right() const {
 
 void Run::tell(std::string what, double came_out, std::string unit) {
     findings_.push_back({std::move(what), std::move(unit), came_out, std::nullopt, 0});
+}
+
+void Run::keep(const std::string& name, const replay::Recorder& recorder) {
+    if (options_.keep) replays_.push_back(options_.keep(name, recorder.finish()));
+}
+
+void Scene::play(Run& run) {
+    const std::string& wanted = run.options().part;
+    std::string known;
+    bool played = false;
+    for (const Part& part : parts()) {
+        known += (known.empty() ? "" : ", ") + part.name;
+        if (wanted.empty() ? part.only_asked : wanted != part.name) continue;
+        part.play(run);
+        played = true;
+    }
+    if (!played) {
+        throw std::invalid_argument("part = " + wanted + ": " + name() + " has " + known);
+    }
+}
+
+std::vector<std::unique_ptr<Scene>> all_scenes() {
+    std::vector<std::unique_ptr<Scene>> all;
+    for (const auto make :
+         {frame_scene, tension_scene, tipping_car_scene, gate_scene, fence_scene, lamp_post_scene,
+          paperclip_scene, bridge_scene, plate_scene, roll_cage_scene, ramp_scene}) {
+        all.push_back(make());
+    }
+    return all;
 }
 
 } // namespace ductile::scenes

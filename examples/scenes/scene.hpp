@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// What every scene is made of: options, takes, and a table of what must come out beside what came
-// out.
+// What every scene is made of: options, parts, takes, and a table of what must come out beside what
+// came out. Knows no command line, no file and no page.
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recorder.hpp"
@@ -27,10 +27,21 @@ struct Finding {
 
 struct RunOptions {
     std::string engine = "bullet";
-    double frame = 1.0 / 60;   ///< [s]
-    double tolerance = 0.01;   ///< of frames, where the engine's World takes one
-    std::filesystem::path out; ///< folder of the replays; empty: none are written
-    bool glb = false;          ///< each of them as glTF too
+    double frame = 1.0 / 60; ///< [s]
+    double tolerance = 0.01; ///< of frames, where the engine's World takes one
+    std::string part;        ///< of the scene; empty: all of it
+    /// Gets a take's recording, and says under which name it is kept; none: nothing is recorded.
+    std::function<std::string(const std::string& name, const replay::Recording&)> keep;
+    /// Is told after each step of a take that is recorded.
+    std::function<void(const replay::Recorder&)> grows;
+};
+
+/// A number of a scene that a user may change.
+struct Option {
+    std::string name, about, unit;
+    double* value;
+    double low, high; ///< of a slider for it
+    std::string part; ///< the only one that asks for it; empty: all do
 };
 
 class Run;
@@ -39,6 +50,10 @@ class Run;
 class Take {
   public:
     Take(Run& run, std::string name, std::string about, StageParameters parameters);
+    /// Tells the run where its World does not believe what came out.
+    ~Take();
+    Take(const Take&) = delete;
+    Take& operator=(const Take&) = delete;
 
     [[nodiscard]] Stage& stage() { return *stage_; }
     [[nodiscard]] double frame() const;
@@ -51,7 +66,7 @@ class Take {
     /// Until nothing is faster than `speed` [m/s] for a second, at most `time` [s]; false where it
     /// never was.
     bool settle(double speed, double time);
-    /// Writes the replay.
+    /// Hands over what was recorded.
     void cut();
 
   private:
@@ -59,6 +74,7 @@ class Take {
     std::string name_, about_;
     std::unique_ptr<Stage> stage_;
     std::unique_ptr<replay::Recorder> recorder_;
+    bool unsolved_ = false; ///< a joint, in a plain step
 };
 
 class Run {
@@ -78,14 +94,26 @@ class Run {
     void spent(double seconds) { times_.push_back(seconds); }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     [[nodiscard]] bool right() const;
+    /// Takes whose World does not believe what came out, as a joint was left unsolved.
+    [[nodiscard]] const std::vector<std::string>& doubted() const { return doubted_; }
+    void doubt(std::string take) { doubted_.push_back(std::move(take)); }
+    /// Where somebody keeps recordings.
+    void keep(const std::string& name, const replay::Recorder& recorder);
 
   private:
-    friend class Take;
     std::string scene_;
     RunOptions options_;
     std::vector<Finding> findings_;
-    std::vector<std::string> replays_; ///< files in the folder
+    std::vector<std::string> replays_; ///< under which names they are kept
+    std::vector<std::string> doubted_;
     std::vector<double> times_;
+};
+
+/// What of a scene can be played by itself: a take, or several that belong together.
+struct Part {
+    std::string name;
+    std::function<void(Run&)> play;
+    bool only_asked = false; ///< no part of the whole
 };
 
 /// A scene: its problem, its options, its course.
@@ -96,8 +124,10 @@ class Scene {
     Scene& operator=(const Scene&) = delete;
     [[nodiscard]] virtual std::string name() const = 0;
     [[nodiscard]] virtual std::string about() const = 0;
-    virtual void add_options(CLI::App&) {}
-    virtual void play(Run& run) = 0;
+    [[nodiscard]] virtual std::vector<Option> options() { return {}; }
+    [[nodiscard]] virtual std::vector<Part> parts() = 0;
+    /// All parts, or the one that is asked for. @throws std::invalid_argument where there is none
+    void play(Run& run);
 
   protected:
     Scene() = default;
@@ -114,5 +144,7 @@ class Scene {
 [[nodiscard]] std::unique_ptr<Scene> plate_scene();
 [[nodiscard]] std::unique_ptr<Scene> roll_cage_scene();
 [[nodiscard]] std::unique_ptr<Scene> ramp_scene();
+/// Of these, in the order of the gallery.
+[[nodiscard]] std::vector<std::unique_ptr<Scene>> all_scenes();
 
 } // namespace ductile::scenes

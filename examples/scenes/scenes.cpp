@@ -8,6 +8,7 @@
 // Exit status 1 where something did not come out as it must.
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -22,6 +23,8 @@
 
 #include "files.hpp"
 #include "scene.hpp"
+#include "write_glb.hpp"
+#include "write_html.hpp"
 #include "write_index.hpp"
 
 using namespace ductile::scenes;
@@ -29,14 +32,14 @@ using namespace ductile::scenes;
 namespace {
 
 /// What a run cost, as a line of measured.csv.
-std::string measured(const Run& run) {
+std::string measured(const Run& run, const std::filesystem::path& out) {
     std::vector<double> times = run.times();
     std::sort(times.begin(), times.end());
-    const auto largest = [&run](const char* kind) {
+    const auto largest = [&](const char* kind) {
         std::uintmax_t most = 0;
         for (const std::string& replay : run.replays()) {
             std::error_code none; // is not there
-            const auto file = (run.options().out / replay).replace_extension(kind);
+            const auto file = (out / replay).replace_extension(kind);
             const std::uintmax_t size = std::filesystem::file_size(file, none);
             if (!none) most = std::max(most, size);
         }
@@ -60,6 +63,9 @@ void print(const Run& run) {
             fmt::print("        {:<44} {:>12.6g}{}\n", f.what, f.came_out, unit);
         }
     }
+    for (const std::string& take : run.doubted()) {
+        fmt::print("        {}: the World does not believe what came out\n", take);
+    }
     std::vector<double> times = run.times();
     std::sort(times.begin(), times.end());
     if (times.empty()) return;
@@ -81,21 +87,12 @@ auto within(double low, double high) {
 } // namespace
 
 int main(int argc, char** argv) try {
-    std::vector<std::unique_ptr<Scene>> scenes;
-    scenes.push_back(frame_scene());
-    scenes.push_back(tension_scene());
-    scenes.push_back(tipping_car_scene());
-    scenes.push_back(gate_scene());
-    scenes.push_back(fence_scene());
-    scenes.push_back(lamp_post_scene());
-    scenes.push_back(paperclip_scene());
-    scenes.push_back(bridge_scene());
-    scenes.push_back(plate_scene());
-    scenes.push_back(roll_cage_scene());
-    scenes.push_back(ramp_scene());
+    const std::vector<std::unique_ptr<Scene>> scenes = all_scenes();
 
     CLI::App app("Scenes to look at, with what must come out");
     RunOptions options;
+    std::filesystem::path out;
+    bool glb = false;
     std::string engine = "both";
     app.add_option("--engine", engine)
         ->check(CLI::IsMember({"bullet", "ode", "both"}))
@@ -106,22 +103,27 @@ int main(int argc, char** argv) try {
     app.add_option("--tolerance", options.tolerance, "of frames, 0: steps as they are [-]")
         ->check(within(0, 0.5))
         ->capture_default_str();
-    app.add_option("--out", options.out, "folder of the replays and index.html; none: no replays");
-    app.add_flag("--glb", options.glb, "replays as glTF too");
+    app.add_option("--part", options.part,
+                   "of the one scene; none: all that is no part of one's own");
+    app.add_option("--out", out, "folder of the replays and index.html; none: no replays");
+    app.add_flag("--glb", glb, "replays as glTF too");
     app.require_subcommand(0, int(scenes.size()));
     app.fallthrough();
     for (const auto& scene : scenes) {
         CLI::App& command = *app.add_subcommand(scene->name(), scene->about());
-        scene->add_options(command);
-        for (CLI::Option* option : command.get_options()) {
-            if (option != command.get_help_ptr()) option->check(within(1e-9, 1e9));
+        for (const Option& option : scene->options()) {
+            command
+                .add_option("--" + option.name, *option.value,
+                            option.about + " [" + option.unit + "]")
+                ->check(within(1e-9, 1e9))
+                ->capture_default_str();
         }
     }
     app.failure_message(
         [](const CLI::App*, const CLI::Error& error) { return std::string(error.what()) + '\n'; });
     CLI11_PARSE(app, argc, argv);
 
-    if (!options.out.empty()) write_index({}, options.out); // sooner than after all of them
+    if (!out.empty()) write_index({}, out); // sooner than after all of them
     bool right = true;
     std::string costs =
         "scene,engine,frame_s,frames,median_ms,dearest_ms,replays,largest_html_B,largest_glb_B\n";
@@ -134,19 +136,32 @@ int main(int argc, char** argv) try {
             fmt::print("{} ({}): {}\n", scene->name(), of, scene->about());
             std::fflush(stdout);
             options.engine = of;
+            if (!out.empty()) {
+                options.keep = [&](const std::string& name,
+                                   const ductile::replay::Recording& seen) {
+                    std::string file = scene->name() + "-" + name + "-" + of + ".html";
+                    std::replace(file.begin(), file.end(), ' ', '-');
+                    ductile::replay::write_html(seen, out / file);
+                    if (glb) {
+                        ductile::replay::write_glb(
+                            seen, std::filesystem::path(out / file).replace_extension("glb"));
+                    }
+                    return file;
+                };
+            }
             Run run(scene->name(), options);
             scene->play(run);
             print(run);
             std::fflush(stdout);
             right = right && run.right();
-            costs += measured(run);
+            costs += measured(run, out);
             shown.push_back({scene->about(), of, std::move(run)});
         }
     }
-    if (!options.out.empty()) {
-        ductile::replay::write_file(options.out / "measured.csv", costs);
-        write_index(shown, options.out);
-        fmt::print("open {}\n", (options.out / "index.html").string());
+    if (!out.empty()) {
+        ductile::replay::write_file(out / "measured.csv", costs);
+        write_index(shown, out);
+        fmt::print("open {}\n", (out / "index.html").string());
     }
     return right ? 0 : 1;
 } catch (const std::exception& error) {

@@ -4,9 +4,13 @@
 // body of code per scene, whatever the engine; bullet_stage.cpp and ode_stage.cpp are the engines.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "ductile/fracture/coffin_manson.hpp"
 #include "ductile/fracture/low_cycle_fatigue.hpp"
@@ -15,6 +19,7 @@
 #include "ductile/structure/structure_model.hpp"
 #include "ductile/world/link_queries.hpp"
 #include "ductile/world/stepped_world.hpp"
+#include "joint_facts.hpp"
 #include "recorder.hpp"
 
 namespace ductile::scenes {
@@ -98,14 +103,44 @@ class Stage {
     virtual void step(double frame) = 0;
     [[nodiscard]] virtual const SteppedWorld& world() const = 0;
 
+    using Facts = std::vector<replay::Fact>;
+    /// What is known of a joint by its name, section and material; to be said before it is
+    /// recorded. Capacities follow from the joint itself.
+    void describe(std::function<Facts(const std::string& joint)> words) {
+        words_ = std::move(words);
+    }
+    /// Of all joints.
+    void describe(Facts words) {
+        describe([words = std::move(words)](const std::string&) { return words; });
+    }
     /// From now on, all that was made so far.
     virtual void record(replay::Recorder& recorder) = 0;
 
   protected:
     Stage() = default;
+    /// What the stage knows of a joint that it made.
+    struct Known {
+        Facts facts;                  ///< of capacities
+        std::function<double()> life; ///< share used; empty: without end
+    };
+    template <class Made, class Joint>
+    [[nodiscard]] static Known known_of(const Made& made, const Joint& joint, bool rotates) {
+        if constexpr (std::is_same_v<Joint, UsualSixAxisJoint>) {
+            return {replay::facts_of(joint), replay::life_used(made)};
+        } else {
+            return {replay::facts_of(joint, rotates), replay::life_used(made)};
+        }
+    }
+    /// What is known of a joint by name, then its capacities.
+    [[nodiscard]] Facts facts_of(const std::string& name, const Facts& capacities) const {
+        Facts all = words_ ? words_(name) : Facts{};
+        all.insert(all.end(), capacities.begin(), capacities.end());
+        return all;
+    }
     replay::Recorder* recorder_ = nullptr; ///< null: none
 
   private:
+    std::function<Facts(const std::string&)> words_;
     [[nodiscard]] virtual BuiltStructure& structure() = 0;
     [[nodiscard]] virtual const void* body_of_structure(std::size_t number) const = 0;
     [[nodiscard]] virtual const JointQueries& joint_of_structure(std::size_t number) const = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "ductile/joint/any_link.hpp"
 #include "ductile/joint/joint_axis.hpp"
@@ -16,6 +17,8 @@ namespace ductile {
 
 class LinkQueries : public PairQueries {
   public:
+    /// The axes that have a strength, in the order of JointAxis; the others are rigid.
+    [[nodiscard]] std::span<const JointAxis> plastic_axes() const { return link_.axes(); }
     /// Reaction on A along +axis of frame B in the last step, whether rigid or plastic; zero while
     /// the joint does not act, and once it is broken [N | N m].
     [[nodiscard]] double force(JointAxis axis) const {

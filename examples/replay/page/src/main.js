@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// The replay page: time, controls, and what they show. `window.replay` is for tests and the console.
+// The replay page: time, controls, and what they show. `window.replay` is for tests, the console, and
+// a page that makes its recordings itself and calls `showRecording`.
 import { css, gradient, brokenColour, lostColour } from "./colours.js";
 import { CurvePlot, EnergyPlot, short } from "./plots.js";
-import { broken, decode, firstDifference, flowed, fromBase64, ofPage, placeOf, RecordingError, unreliable } from "./recording.js";
+import { broken, decode, decodeLaidDown, firstDifference, flowed, fromBase64, ofPage, placeOf, RecordingError, unreliable } from "./recording.js";
 import { Scene } from "./scene.js";
 
 const $ = (id) => document.getElementById(id);
@@ -23,26 +24,49 @@ function option(value, text) {
 
 class Replay {
     constructor(recording) {
-        this.recording = recording;
-        this.time = recording.times[0];
-        this.end = recording.times[recording.times.length - 1];
         this.playing = false;
         this.speed = 1;
         this.colour = "utilisation";
-        this.joint = recording.joints.length ? 0 : -1;
         this.drawn = 0;
-        const events = recording.events.find((event) => event.joint >= 0);
-        if (events) this.joint = events.joint;
         this.scene = new Scene($("view"), recording);
-        const shown = { time: () => this.time, setTime: (time) => this.setTime(time), index: () => this.index() };
-        this.energy = new EnergyPlot($("energy"), recording, shown);
-        this.curve = new CurvePlot($("curve"), recording, shown);
-        this.describe();
+        for (const speed of speeds) $("speed").append(option(speed, speed < 1 ? `1/${Math.round(1 / speed)}` : `${speed}`));
+        this.take(recording);
         this.listen();
         this.restore();
         this.setJoint(this.joint);
         this.setTime(this.time);
         this.loop();
+    }
+
+    take(recording) {
+        this.recording = recording;
+        this.time = recording.times[0];
+        this.end = recording.times[recording.times.length - 1];
+        const events = recording.events.find((event) => event.joint >= 0);
+        this.joint = events ? events.joint : recording.joints.length ? 0 : -1;
+        this.shown = undefined;
+        this.energy?.destroy();
+        this.curve?.destroy();
+        const shown = { time: () => this.time, setTime: (time) => this.setTime(time), index: () => this.index() };
+        this.energy = new EnergyPlot($("energy"), recording, shown);
+        this.curve = new CurvePlot($("curve"), recording, shown);
+        this.describe();
+    }
+
+    /**
+     * Another recording, or this one where it has grown: then the joint stays, and whoever was at its end is.
+     * `growing`: it will be shown for a moment only, as when it plays.
+     */
+    show(recording, growing = false) {
+        this.growing = growing;
+        const grown = recording.name === this.recording.name && recording.joints.length === this.recording.joints.length;
+        const { time, joint, end } = this;
+        this.scene.show(recording);
+        this.take(recording);
+        this.legend();
+        this.setJoint(grown && joint >= 0 ? joint : this.joint);
+        $("follow").value = String(this.scene.followed);
+        this.setTime(grown && time < end ? time : this.end);
     }
 
     index() {
@@ -55,7 +79,7 @@ class Replay {
         $("name").textContent = recording.name;
         $("engine").textContent = recording.engine;
         $("about").textContent = recording.about;
-        for (const speed of speeds) $("speed").append(option(speed, speed < 1 ? `1/${Math.round(1 / speed)}` : `${speed}`));
+        for (const list of ["follow", "joint", "ticks", "events"]) $(list).textContent = "";
         $("follow").append(option(-1, "nothing"));
         recording.bodies.forEach((body, i) => body.moves && $("follow").append(option(i, body.name)));
         recording.joints.forEach((joint, i) => $("joint").append(option(i, joint.name)));
@@ -161,7 +185,7 @@ class Replay {
         this.colour = colour;
         $("colour").value = colour;
         this.legend();
-        this.show();
+        this.draw();
         this.remember();
     }
 
@@ -175,11 +199,11 @@ class Replay {
 
     setTime(time) {
         this.time = Math.min(this.end, Math.max(this.recording.times[0], time));
-        this.show();
+        this.draw();
         if (!this.playing) this.remember();
     }
 
-    show() {
+    draw() {
         $("scrub").value = this.time;
         $("time").textContent = `${this.time.toFixed(4)} s`;
         this.scene.update(this.time, this.colour);
@@ -203,7 +227,9 @@ class Replay {
             ["state", words],
             ["utilisation", joint.utilisation[i].toFixed(3)],
             [joint.turns ? "moment" : "force", `${short(joint.force[i])} ${unit[0]}`],
+            ["strength left", state & broken ? "none" : `${Math.max(0, 100 * (1 - joint.utilisation[i])).toFixed(1)} %`],
             ["plastic travel", `${short(joint.plastic[i])} ${unit[1]}`],
+            ["life left", Number.isNaN(joint.life[i]) ? "without end" : `${(100 * (1 - joint.life[i])).toFixed(1)} % of plastic travel`],
             ["absorbed", `${short(joint.absorbed[i])} J`],
             ["certificate", short(joint.residual[i])],
             ...joint.facts,
@@ -238,7 +264,9 @@ class Replay {
 
     /** The state is in the address: t, speed, joint, colour, camera. */
     remember() {
-        const state = new URLSearchParams({ t: this.time.toFixed(5), speed: this.speed, joint: this.joint, colour: this.colour, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") });
+        const state = new URLSearchParams(location.hash.slice(1)); // others have words there too
+        const own = { t: this.time.toFixed(5), speed: this.speed, joint: this.joint, colour: this.colour, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") };
+        for (const [key, value] of Object.entries(own)) state.set(key, value);
         history.replaceState(null, "", `#${state}`);
     }
 
@@ -262,6 +290,7 @@ class Replay {
     pace(now) {
         if (!this.playing) {
             this.pacing = undefined;
+            if (this.growing) return this.scene.setSharpness(0.5);
             return this.scene.setSharpness(1);
         }
         this.pacing ??= { since: now, frames: 0 };
@@ -287,7 +316,15 @@ class Replay {
     }
 }
 
+/** Bytes as packed.hpp lays them down, not zipped; `growing`: there will be more. */
+window.showRecording = (bytes, growing) => {
+    const recording = decodeLaidDown(bytes);
+    if (window.replay) window.replay.show(recording, growing);
+    else window.replay = new Replay(recording);
+};
+
 async function start() {
+    if (document.getElementById("live")) return;
     try {
         const script = document.getElementById("recording");
         if (!script) throw new RecordingError("there is no recording in this page");

@@ -27,7 +27,9 @@ function widthOf(target) {
 }
 
 function keepWidth(plot, target) {
-    new ResizeObserver(() => plot.setSize({ width: widthOf(target), height: plot.height })).observe(target);
+    const observer = new ResizeObserver(() => plot.setSize({ width: widthOf(target), height: plot.height }));
+    observer.observe(target);
+    return observer;
 }
 
 /** What is laid over a plot, so that it is not drawn anew for each frame. */
@@ -58,6 +60,7 @@ export function stacked(energies) {
 export class EnergyPlot {
     constructor(target, recording, { time, setTime }) {
         this.time = time;
+        target.textContent = "";
         const bands = stacked(recording.energies);
         const unexplained = recording.energies.find(({ name }) => name === "unexplained");
         if (bands.length === 0) {
@@ -89,7 +92,11 @@ export class EnergyPlot {
         );
         this.line = overlay(this.plot, "now");
         this.plot.over.addEventListener("click", () => setTime(this.plot.posToVal(this.plot.cursor.left, "x")));
-        keepWidth(this.plot, target);
+        this.observer = keepWidth(this.plot, target);
+    }
+    destroy() {
+        this.observer?.disconnect();
+        this.plot?.destroy();
     }
     update() {
         if (this.plot) put(this.line, this.plot.valToPos(this.time(), "x"), 0);
@@ -100,9 +107,13 @@ export class CurvePlot {
     constructor(target, recording, { time, setTime, index }) {
         Object.assign(this, { target, recording, index, setTime, time });
     }
-    show(number) {
+    destroy() {
+        this.observer?.disconnect();
         this.plot?.destroy();
         this.plot = undefined;
+    }
+    show(number) {
+        this.destroy();
         const joint = this.recording.joints[number];
         if (!joint) return;
         const { force, position, turns } = joint;
@@ -158,7 +169,7 @@ export class CurvePlot {
             }
             this.setTime(this.recording.times[best]);
         });
-        keepWidth(this.plot, this.target);
+        this.observer = keepWidth(this.plot, this.target);
     }
     update() {
         if (!this.plot) return;

@@ -4,7 +4,7 @@
 
 export class RecordingError extends Error {}
 
-const magic = "ductrec1";
+const magic = "ductrec2";
 const noNumber = 65535;
 
 /** Bytes of base64 text. */
@@ -65,12 +65,16 @@ class Columns {
  * @throws {RecordingError} where they are anything else
  */
 export async function decode(bytes) {
-    const all = await unzipped(bytes);
+    return decodeLaidDown(await unzipped(bytes));
+}
+
+/** Likewise, of bytes that are not zipped. */
+export function decodeLaidDown(all) {
     const letters = new TextDecoder();
     if (letters.decode(all.subarray(0, 8)) !== magic) {
         throw new RecordingError("this is not a recording, or one of another version");
     }
-    const length = new DataView(all.buffer).getUint32(8, true);
+    const length = new DataView(all.buffer, all.byteOffset).getUint32(8, true);
     const text = JSON.parse(letters.decode(all.subarray(12, 12 + length)));
     const frames = text.times.length;
     const samples = text.columns.low.length * frames;
@@ -82,7 +86,7 @@ export async function decode(bytes) {
         if (body.moves) body.columns = Array.from({ length: 7 }, () => columns.take());
     }
     for (const joint of text.joints) {
-        take(["utilisation", "plastic", "absorbed", "residual", "state", "force", "position"], joint);
+        take(["utilisation", "plastic", "absorbed", "residual", "state", "life", "force", "position"], joint);
     }
     text.energies = text.energies.map((name) => ({ name, values: columns.take() }));
     const low = columns.take();

@@ -174,7 +174,6 @@ export class Scene {
     constructor(view, recording) {
         this.view = view;
         this.sharpness = 1;
-        this.recording = recording;
         // opaque, which three does not ask for: else the browser blends it with what is below
         const canvas = document.createElement("canvas");
         const context = canvas.getContext("webgl2", { alpha: false, antialias: false });
@@ -185,20 +184,35 @@ export class Scene {
         this.camera.up.set(0, 0, 1);
         this.controls = new OrbitControls(this.camera, this.renderer.domElement);
         this.controls.addEventListener("change", () => (this.stale = true));
-        this.poses = recording.bodies.map(() => new Float64Array(7));
-        this.colours = recording.bodies.map(() => stillColour);
-        this.shares = new Float64Array(recording.bodies.length);
-        this.largestTravel = Math.max(1e-12, ...recording.joints.map((joint) => joint.plastic.reduce((a, b) => (b > a ? b : a), 0)));
-        this.addShapes();
-        this.addMarkers();
         this.dark = matchMedia("(prefers-color-scheme: dark)");
         this.dark.addEventListener("change", () => this.paint());
         this.paint();
+        this.show(recording);
         this.resize();
-        new ResizeObserver(() => this.resize()).observe(view);
-        this.followed = -1;
-        this.update(recording.times[0], "utilisation");
         this.reset();
+        new ResizeObserver(() => this.resize()).observe(view);
+    }
+
+    /** Another recording; the view stays where it has the same bodies and joints, as one that has grown. */
+    show(recording) {
+        const parts = ({ bodies, joints }) => JSON.stringify([bodies.map(({ name, shapes }) => [name, shapes]), joints.map(({ name }) => name)]);
+        const same = this.recording && parts(recording) === parts(this.recording);
+        this.recording = recording;
+        this.largestTravel = Math.max(1e-12, ...recording.joints.map((joint) => joint.plastic.reduce((a, b) => (b > a ? b : a), 0)));
+        if (same) return;
+        for (const { geometry } of this.scene.children) geometry.dispose();
+        this.scene.clear();
+        this.texture?.dispose();
+        this.bars = [];
+        this.holding = undefined;
+        this.followed = -1;
+        this.poses = recording.bodies.map(() => new Float64Array(7));
+        this.colours = recording.bodies.map(() => stillColour);
+        this.shares = new Float64Array(recording.bodies.length);
+        this.addShapes();
+        this.addMarkers();
+        this.update(recording.times[0], "utilisation");
+        if (this.renderer.domElement.clientWidth > 0) this.reset();
     }
 
     paint() {
@@ -230,7 +244,7 @@ export class Scene {
         const key = joints.map((_, i) => (holds(i) ? "" : i)).join();
         if (key === this.holding) return;
         this.holding = key;
-        for (const { mesh, geometry } of this.bars ?? []) {
+        for (const { mesh, geometry } of this.bars) {
             this.scene.remove(mesh);
             geometry.dispose();
         }

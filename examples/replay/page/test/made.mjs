@@ -22,6 +22,7 @@ export function pack({ name, times, bodies, joints }) {
     for (const { sample } of joints) {
         for (const each of ["utilisation", "plastic", "absorbed", "residual"]) add((t) => sample(t)[each] ?? 0);
         whole((t) => sample(t).state ?? 0);
+        add((t) => sample(t).life ?? 0, [0, 1]);
         for (const each of ["force", "position"]) add((t) => sample(t)[each] ?? 0);
     }
     const energies = ["kinetic", "plastic", "unexplained"];
@@ -49,7 +50,7 @@ export function pack({ name, times, bodies, joints }) {
         columns: { low: columns.map((c) => c.low), step: columns.map((c) => c.step), order: columns.map(() => 1) },
     });
     const head = Buffer.alloc(12);
-    head.write("ductrec1");
+    head.write("ductrec2");
     head.writeUInt32LE(Buffer.byteLength(text), 8);
     return gzipSync(Buffer.concat([head, Buffer.from(text), low, high]));
 }
