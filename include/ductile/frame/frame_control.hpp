@@ -108,6 +108,7 @@ class FrameControl {
         bool at_event; ///< a flow stops or a gap closes there
     };
 
+    [[nodiscard]] double tolerated_share() const noexcept;
     [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
     [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;

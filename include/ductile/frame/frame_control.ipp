@@ -21,6 +21,7 @@ inline constexpr double contact_share = 0.3;  ///< of the work of contacts that 
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
 inline constexpr int most_tries = 12;         ///< of one part
+inline constexpr int tries_at_gaps = 6;       ///< the same, for gaps that closed in it unforeseen
 inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap
 inline constexpr double nothing_left = 1e-12; ///< of a frame
 /// Turn of a body up to which a contact that was asked for where it will be tells its way: what is
@@ -56,6 +57,11 @@ DUCTILE_INLINE void FrameControl::forget() noexcept {
     past_.clear();
     fresh_ = false;
     next_ = spin_ = 0;
+}
+
+/// Of the work of a part, that may be misplaced in it [-].
+DUCTILE_INLINE double FrameControl::tolerated_share() const noexcept {
+    return detail::part_share * parameters_.tolerance;
 }
 
 DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double length) {
@@ -158,11 +164,13 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
     const double first = h;
     bool jump = false, at_event = at_gap, at_stop = false;
     for (int tries = 0;; ++tries) {
-        const PartMotion& motion = engine.part(h);
         ++solves_;
+        const bool last = jump || !saved || spent() || tries >= detail::tries_at_gaps;
+        engine.set_early_share(last ? std::numeric_limits<double>::infinity() : tolerated_share());
+        const PartMotion& motion = engine.part(h);
         Judgement judged = judge(motion, h, shortest);
         const double early = judged.closed;
-        if (tries >= tries_at_gaps) judged.closed = 0;
+        if (tries >= detail::tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         // of one that turned too far it says nothing, and such a part is no way out
         if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
@@ -247,11 +255,11 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         }
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
-    const double share = detail::part_share * parameters_.tolerance;
+    const double share = tolerated_share();
     judged.tolerated = share * (motion.plastic_work + ahead + unmissed);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
-    if (2 * (h - motion.closed) > share * h) judged.closed = motion.closed;
+    if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
     if (used() > 0.5) judged.allowed *= std::pow(10.0, 4 * (used() - 0.5));
     return judged;
 }

@@ -42,8 +42,11 @@ struct ClosingContacts {
     double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
 };
 
-/// How often a part is put back for gaps that closed in it unforeseen.
-inline constexpr int tries_at_gaps = 6;
+/// Whether a contact that touched at `closed` [s], 0: none did, pushed for so much longer in a part
+/// of `h` [s] that it took `share` of the speed before [-].
+[[nodiscard]] inline bool pushed_too_early(double closed, double h, double share) noexcept {
+    return closed > 0 && 2 * (h - closed) > share * h;
+}
 
 class PartEngine {
   public:
@@ -65,14 +68,25 @@ class PartEngine {
     [[nodiscard]] virtual ClosingContacts closing(double h, double touching, double apart) = 0;
     /// Of all bodies [J].
     [[nodiscard]] virtual double kinetic_energy() const = 0;
+    /// A part in which contacts took such a share of the speed too early is put back whatever else
+    /// it tells; infinite: it stands.
+    void set_early_share(double share) noexcept { early_share_ = share; }
     /// Length below which a part is not cut any more [s], > 0.
     [[nodiscard]] virtual double shortest_part() const noexcept { return 1e-7; }
 
   protected:
+    /// Where a gap closed that was not foreseen [s]; such a part need not be looked at.
+    [[nodiscard]] bool is_put_back(double closed, double h) const noexcept {
+        return pushed_too_early(closed, h, early_share_);
+    }
+
     PartEngine() = default;
     PartEngine(const PartEngine&) = default;
     PartEngine& operator=(const PartEngine&) = default;
     ~PartEngine() = default;
+
+  private:
+    double early_share_ = std::numeric_limits<double>::infinity();
 };
 
 } // namespace ductile

@@ -6,8 +6,8 @@
 // with all its sections open, and any order ends there.
 //
 //   in a step  the worst of each piece
-//   in a blow  the nearest to where it was struck: what is farther in is not loaded then
-//              (member_course.hpp)
+//   in a blow  the nearest to where it was struck, if it takes more than 1e-4 of the blow: what is
+//              farther in is not loaded then (member_course.hpp)
 //
 // Where a hinge travels the sections that it comes to carry M_p all along: only what is beyond by
 // more than round-off is opened.
@@ -27,6 +27,9 @@
 
 namespace ductile {
 
+/// When sections close: where one held for long enough, or all that hold.
+enum class Closing { after_step, before_blow };
+
 struct ActiveSections {
     double beyond = 1e-7; ///< of its strength, by which a section opens [-], >= 0
     int hold = 3;         ///< steps after which one that holds closes, >= 1
@@ -42,6 +45,38 @@ inline constexpr int no_section = -1;
     const double strength = joint.strength(carried.bending > 0 ? -1 : 1) * dt;
     return strength > 0 ? std::abs(carried.bending) / strength
                         : std::numeric_limits<double>::infinity();
+}
+
+/// Half of the product of a blow's moment at a closed section and of the turn that opening it would
+/// give: what the section then takes of the blow, of a piece as if it were straight [J]. Derived
+/// from two bodies that share a point.
+[[nodiscard]] inline double opening_energy(const Member& member, const MemberPiece& piece,
+                                           const SectionForce& carried) noexcept {
+    struct Half {
+        double per_mass = 0, per_inertia = 0, arm = 0; ///< 1/m, 1/I, d; 0: it is held
+    };
+    const auto half = [&](int from, int to, int step) {
+        double mass = 0, first = 0, second = 0, at = 0; // of mass about the section
+        for (int k = from; k != to; k += step) {
+            const MemberSegment& segment = member.segment(k);
+            if (segment.held) return Half{};
+            const double s = at + segment.length / 2;
+            mass += segment.mass;
+            first += segment.mass * s;
+            second += segment.mass * s * s + segment.inertia[0];
+            at += segment.length;
+        }
+        const double d = first / mass;
+        return Half{1 / mass, 1 / (second - first * d), d};
+    };
+    const Half a = half(carried.section, piece.run.first - 1, -1),
+               b = half(carried.section + 1, piece.run.last + 1, 1);
+    // a force between them keeps their ends together
+    const double along = a.arm * a.per_inertia - b.arm * b.per_inertia;
+    const double across =
+        a.per_mass + a.arm * a.arm * a.per_inertia + b.per_mass + b.arm * b.arm * b.per_inertia;
+    const double turn = a.per_inertia + b.per_inertia - along * along / across;
+    return carried.bending * carried.bending * turn / 2;
 }
 
 /// The closed section of a piece that carries the most, if that is too much.

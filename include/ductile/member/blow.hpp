@@ -15,12 +15,15 @@
 //
 //   n <= 1   it stays whole: a blow that it bears
 //   n > 1    it yields, as a rigid-plastic member would, and of what this absorbs the share
-//            1 - 1/n² is flow: n grows with the speed, so it is the part above the speed at which n = 1;
-//            E/n² is left in vibration
+//            1 - 1/N² is flow; E/N² is left in vibration:
+//
+//   N² = max [ n², (max |M̂|/(τ M_p))² + (V √(μ EI)/M_p)² ]
+//
+// N grows with the speed, so 1/N² is the part below the speed at which N = 1; what a light striker
+// sends out as a wave and what it bends come one after the other, at places of their own.
 //
 // Limits: EI → ∞: n → ∞, every blow yields it and all of E flows (Parkes); E → 0: n → 0. Against a
-// chain of elastic-plastic joints with strikers of 0.2 to 10 times the member's mass the share is
-// off by at most 0.2 up to three times the speed of first yield, 0.08 from five times on.
+// chain of elastic-plastic joints: bullet_member_physics_test.cpp.
 //
 // Sources: the wave: Laplace transform of the Euler-Bernoulli beam, w = V/s² e^{-ax}(cos ax + sin
 // ax), a⁴ = μ s²/(4 EI); the quasi-static profile as in Stronge and Yu (1993), Dynamic Models for
@@ -30,7 +33,7 @@
 //   E, V   energy that the contact takes, closing speed of the struck place [J], [m/s]
 //   M̂      impulse of the moment                                           [N m s]
 //   EI, μ  bending stiffness, mass per length                              [N m²], [kg/m]
-//   n      utilisation by the blow                                         [-]
+//   n, N   utilisation by the blow, where it first yields and in all       [-]
 #pragma once
 
 #include <algorithm>
@@ -48,22 +51,14 @@ struct MemberBlow {
     double impulse_energy = 0;  ///< ∫ M̂²/(2 EI) ds [J s²]
     double peak_per_moment = 0; ///< 1/τ [1/s]
     double utilisation = 0;     ///< n
+    double in_all = 0;          ///< N >= n
 
     [[nodiscard]] bool yields() const noexcept { return utilisation > 1; }
     /// Of the energy, absorbed by flow [-].
     [[nodiscard]] double plastic_share() const noexcept {
-        return yields() ? 1 - 1 / (utilisation * utilisation) : 0.0;
+        return yields() ? 1 - 1 / (in_all * in_all) : 0.0;
     }
 };
-
-/// What a section comes to carry of the profile, and of the wave next to the contact [N m].
-[[nodiscard]] inline double peak_moment(const Member& member, const MemberBlow& blow,
-                                        const SectionForce& carried) noexcept {
-    const bool beside = carried.section == blow.segment || carried.section == blow.segment - 1;
-    const double wave =
-        blow.speed * std::sqrt(member.mass_per_length() * member.bending_stiffness());
-    return std::abs(carried.bending) * blow.peak_per_moment + (beside ? wave : 0.0);
-}
 
 /// `forces` are those of the blow in a whole member, `energy` what its contacts took [J]; `speed`:
 /// of what strikes, against the struck `segment` [m/s].
@@ -74,7 +69,7 @@ struct MemberBlow {
     const double stiffness = member.bending_stiffness();
     if (stiffness == std::numeric_limits<double>::infinity()) {
         for (const SectionForce& carried : forces.sections) {
-            if (carried.bending != 0) blow.utilisation = stiffness;
+            if (carried.bending != 0) blow.utilisation = blow.in_all = stiffness;
         }
         return blow;
     }
@@ -90,12 +85,22 @@ struct MemberBlow {
     blow.impulse_energy += first * beyond * beyond / (6 * stiffness);
     if (!(blow.impulse_energy > 0)) return blow;
     blow.peak_per_moment = std::sqrt(std::max(energy, 0.0) / blow.impulse_energy);
+    const double wave =
+        speed * std::sqrt(member.mass_per_length() * member.bending_stiffness()); // next to it
+    double profile = 0, sent = 0;
     for (const SectionForce& carried : forces.sections) {
-        // as for a step of one second
-        SectionForce peak = carried;
-        peak.bending = std::copysign(peak_moment(member, blow, carried), carried.bending);
-        blow.utilisation = std::max(blow.utilisation, utilisation_of(member, state, peak, 1));
+        const auto used_by = [&](double moment) { // as for a step of one second
+            SectionForce peak = carried;
+            peak.bending = std::copysign(moment, carried.bending);
+            return utilisation_of(member, state, peak, 1);
+        };
+        const double bent = std::abs(carried.bending) * blow.peak_per_moment;
+        const bool beside = carried.section == segment || carried.section == segment - 1;
+        blow.utilisation = std::max(blow.utilisation, used_by(beside ? bent + wave : bent));
+        profile = std::max(profile, used_by(bent));
+        if (beside) sent = std::max(sent, used_by(wave));
     }
+    blow.in_all = std::max(blow.utilisation, std::hypot(profile, sent));
     return blow;
 }
 

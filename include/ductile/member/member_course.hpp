@@ -109,28 +109,24 @@ class MemberCourse {
     }
 
     /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept {
-        largest_ = 0;
-        yields_ = false;
-    }
+    void begin_blow() noexcept { struck_ = yields_ = false; }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                              const MemberStrike& strike) {
         int nearest = no_section, least = std::numeric_limits<int>::max();
         double utilisation = 0;
-        constexpr double lumped = 0.02; // of the largest that the blow would have loaded
-        const bool first = largest_ == 0;
+        constexpr double noticed = 1e-4; // of the blow's energy
+        const bool first = !std::exchange(struck_, true);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             const MemberBlow blow =
                 member_blow(member_, state_, forces_, strike.energy, strike.speed, strike.segment);
-            utilisation = std::max(utilisation, blow.utilisation);
+            utilisation = std::max(utilisation, blow.in_all);
             yields_ = yields_ || blow.yields();
             for (const SectionForce& carried : forces_.sections) {
-                const double moment = std::abs(carried.bending);
-                if (first) largest_ = std::max(largest_, moment);
-                // what is not left over from segments that are not quite lumped
-                if (!yields_ || !(moment > lumped * largest_)) continue;
+                if (!yields_) break;
+                const double taken = opening_energy(member_, pieces_[i], carried);
+                if (!(taken > noticed * strike.energy)) continue;
                 const int away = std::abs(2 * carried.section + 1 - 2 * strike.segment);
                 if (away >= least) continue;
                 least = away;
@@ -159,6 +155,16 @@ class MemberCourse {
         }
         return found_;
     }
+    /// Open sections that do not move: closed they take a blow as the whole member does, whether
+    /// they were opened long before it or in a part that was put back.
+    [[nodiscard]] const std::vector<int>& holding() {
+        found_.clear();
+        for (int i = 0; i < member_.sections(); ++i) {
+            const SectionState& of = section(i);
+            if (of.open && !of.joint.flowing && !of.joint.broken) found_.push_back(i);
+        }
+        return found_;
+    }
     /// As it was; the bodies have to be those of `state`.
     void restore(const MemberState& state) {
         state_ = state;
@@ -177,13 +183,13 @@ class MemberCourse {
         for (const SectionState& section : state_) sum += section.joint.plastic_work;
         return sum;
     }
-    /// Of a blow of `energy` [J] that loads it to n.
+    /// Of a blow of `energy` [J] that loads it to N.
     void expect_vibration(double energy, double n) noexcept {
         const double share = 1 / (n * n);
-        // one that follows does not end what is left of the one before
+        // what is left of the one before it fills already, whoever strikes
         const bool left = vibration_.ahead > 0;
         vibration_.share = left ? std::max(vibration_.share, share) : share;
-        vibration_.ahead += energy * share;
+        vibration_.ahead = std::max(vibration_.ahead, energy * share);
         vibration_.counted = all_work();
     }
     std::vector<PlacedPiece> rearrange(std::span<const PlacedPiece> bodies) {
@@ -218,8 +224,8 @@ class MemberCourse {
     InternalForces forces_;
     double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
     MemberVibration vibration_;
-    bool yields_ = false; ///< this blow does, as a rigid-plastic member then
-    double largest_ = 0;  ///< moment of the blow's first solve [N m s]
+    bool struck_ = false; ///< this blow was looked at
+    bool yields_ = false; ///< it does, as a rigid-plastic member then
 };
 
 } // namespace ductile

@@ -26,7 +26,7 @@ struct SectionState {
 /// The work of open sections that an elastic member takes back after a blow, and that vibration
 /// ends. Plain value.
 struct MemberVibration {
-    double share = 0;   ///< of the work that sections do from now on, 1/n² (blow.hpp) [-]
+    double share = 0;   ///< of the work that sections do from now on, 1/N² (blow.hpp) [-]
     double ahead = 0;   ///< largest that this may come to [J]
     double counted = 0; ///< work of all sections that was looked at [J]
     double lost = 0;    ///< sum, of all blows [J]

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ductile/bullet/piece_maker.hpp"
+#include "ductile/member/active_sections.hpp"
 #include "ductile/world/joint_report.hpp"
 
 namespace ductile::bullet {
@@ -95,8 +96,8 @@ class Divisible {
                       std::vector<DivisionChange>& told) = 0;
     /// A tick stands: what it left in vibration, of what its sections took [J].
     virtual double count_vibration() = 0;
-    /// The same: closes what held, false where nothing did.
-    virtual bool close_held(bool ahead, std::vector<DivisionChange>& told) = 0;
+    /// The same, or a blow comes: closes what held, false where nothing did.
+    virtual bool close_held(Closing when, bool ahead, std::vector<DivisionChange>& told) = 0;
 };
 
 } // namespace ductile::bullet

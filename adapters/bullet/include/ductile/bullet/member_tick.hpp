@@ -54,7 +54,8 @@ class MemberTick final : public Divisible {
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
     DUCTILE_INLINE double count_vibration() override;
-    DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE bool close_held(Closing when, bool ahead,
+                                   std::vector<DivisionChange>& told) override;
 
   private:
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);

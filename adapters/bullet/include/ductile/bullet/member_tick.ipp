@@ -63,10 +63,12 @@ DUCTILE_INLINE double MemberTick::count_vibration() {
     member_.note_sections();
     return member_.course_.count_vibration();
 }
-DUCTILE_INLINE bool MemberTick::close_held(bool ahead, std::vector<DivisionChange>& told) {
+DUCTILE_INLINE bool MemberTick::close_held(Closing when, bool ahead,
+                                           std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;
     member_.note_sections();
-    const std::vector<int> held = member_.course_.held();
+    const std::vector<int> held =
+        when == Closing::before_blow ? member_.course_.holding() : member_.course_.held();
     if (held.empty()) {
         member_.note_broken();
         return false;

@@ -86,7 +86,7 @@ class Members {
     void begin_blow();
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
-    [[nodiscard]] bool close_held();
+    [[nodiscard]] bool close_held(Closing when = Closing::after_step);
     /// What the tick that stands left in vibration of members that blows opened [J].
     [[nodiscard]] double count_vibration();
     /// What opened and closed since the last call.

@@ -311,10 +311,10 @@ DUCTILE_INLINE double Members::count_vibration() {
     return sum;
 }
 
-DUCTILE_INLINE bool Members::close_held() {
+DUCTILE_INLINE bool Members::close_held(Closing when) {
     bool changed = false;
     for (Course* course : here_) {
-        if (!course->of->close_held(ahead_, changes_)) continue;
+        if (!course->of->close_held(when, ahead_, changes_)) continue;
         changed = true;
         note_bodies(std::size_t(course - members_.data()));
     }

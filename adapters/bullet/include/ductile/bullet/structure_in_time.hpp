@@ -152,7 +152,8 @@ class StructureInTime final : public BuiltStructure, private Divisible {
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
     double count_vibration() override { return 0; }
-    DUCTILE_INLINE bool close_held(bool ahead, std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE bool close_held(Closing when, bool ahead,
+                                   std::vector<DivisionChange>& told) override;
 
     World& world_;
     btVector3 gravity_;

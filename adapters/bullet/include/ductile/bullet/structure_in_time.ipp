@@ -384,8 +384,9 @@ DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ah
     for (const int joint : opened) told.push_back({&plan().joints[std::size_t(joint)], joint});
 }
 
-DUCTILE_INLINE bool StructureInTime::close_held(bool ahead, std::vector<DivisionChange>& told) {
-    if (course_.whole()) return false;
+DUCTILE_INLINE bool StructureInTime::close_held(Closing when, bool ahead,
+                                                std::vector<DivisionChange>& told) {
+    if (course_.whole() || when == Closing::before_blow) return false;
     note_joints();
     const std::vector<int> held = course_.held();
     if (held.empty()) return false;

@@ -117,6 +117,8 @@ class WorldParts final : public PartEngine {
     void look_at_pushes(double h);
 
     /// Back to before it, with the sections open that it was beyond.
+    void begin_blow();
+    void close_held(Closing when);
     void do_again();
     const PartMotion& tell();
     /// `place`: of the joint among the world's constraints.

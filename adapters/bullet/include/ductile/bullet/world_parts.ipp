@@ -208,8 +208,11 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     }
     // so short a part closes what is left of a gap: its impulses are a blow's
     const bool instant = h < shortest_part();
-    if (instant) members_.begin_blow();
+    if (instant) begin_blow();
     const auto look = [&] {
+        if (members_.empty()) return false;
+        // a contact that began unforeseen pushed for too long: the frame cuts the part there first
+        if (is_put_back(closing_.closed_early(world_, h, apart_), h)) return false;
         const auto length = double(btScalar(h));
         return instant ? members_.look_blow(length) : members_.look(length);
     };
@@ -254,9 +257,22 @@ DUCTILE_INLINE void WorldParts::do_again() {
     save();
 }
 
-DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    if (!members_.empty() || local_) save();
+/// Members are as whole as they are without it.
+DUCTILE_INLINE void WorldParts::begin_blow() {
+    if (members_.empty()) return;
+    close_held(Closing::before_blow);
+    save();
     members_.begin_blow();
+}
+
+DUCTILE_INLINE void WorldParts::close_held(Closing when) {
+    const double before = meter_.held().total();
+    if (members_.close_held(when)) meter_.bodies_rearranged(before);
+}
+
+DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    if (local_) save();
+    begin_blow();
     for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
         do_again();
     }
@@ -271,9 +287,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) {
     held_.accept();
     if (h > 0) meter_.rings_down(members_.count_vibration());
     accept_(h);
-    if (!(h > 0) || members_.empty()) return;
-    const double before = meter_.held().total();
-    if (members_.close_held()) meter_.bodies_rearranged(before);
+    if (h > 0 && !members_.empty()) close_held(Closing::after_step);
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {

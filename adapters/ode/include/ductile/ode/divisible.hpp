@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/member/active_sections.hpp"
 #include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/world/joint_report.hpp"
@@ -82,8 +83,8 @@ class Divisible {
     [[nodiscard]] virtual dBodyID body_of(int segment) const = 0;
     /// A step stands: what it left in vibration, of what its sections took [J].
     virtual double count_vibration() = 0;
-    /// The same: closes what held, and says which sections that were.
-    virtual std::vector<int> close_held(bool ahead) = 0;
+    /// The same, or a blow comes: closes what held, and says which sections that were.
+    virtual std::vector<int> close_held(Closing when, bool ahead) = 0;
 };
 
 } // namespace ductile::ode

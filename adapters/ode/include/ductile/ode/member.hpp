@@ -132,7 +132,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
                                     std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
     DUCTILE_INLINE double count_vibration() override;
-    DUCTILE_INLINE std::vector<int> close_held(bool ahead) override;
+    DUCTILE_INLINE std::vector<int> close_held(Closing when, bool ahead) override;
 
     // ---- bodies
 

@@ -203,10 +203,10 @@ DUCTILE_INLINE double Member::count_vibration() {
     note_sections();
     return course_.count_vibration();
 }
-DUCTILE_INLINE std::vector<int> Member::close_held(bool ahead) {
+DUCTILE_INLINE std::vector<int> Member::close_held(Closing when, bool ahead) {
     if (joints_.empty()) return {};
     note_sections();
-    const std::vector<int> held = course_.held();
+    const std::vector<int> held = when == Closing::before_blow ? course_.holding() : course_.held();
     if (!held.empty()) become(course_.close(held, placed_pieces()), ahead);
     return held;
 }

@@ -66,7 +66,7 @@ class Members {
     /// `ahead`: how the forces of joints act from now on. Contacts go to the bodies that have the
     /// segments that they act on.
     void open_found(bool ahead);
-    void close_held(bool ahead);
+    void close_held(Closing when, bool ahead);
     /// What the step that stands left in vibration of members that blows opened [J].
     [[nodiscard]] double count_vibration() const;
     /// What opened and closed since the last call.

@@ -200,9 +200,9 @@ DUCTILE_INLINE double Members::count_vibration() const {
     return sum;
 }
 
-DUCTILE_INLINE void Members::close_held(bool ahead) {
+DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
     for (const Course& course : members_) {
-        for (const int section : course.of->close_held(ahead)) {
+        for (const int section : course.of->close_held(when, ahead)) {
             happened_.push_back({course.of, section, EventKind::fused});
         }
     }

@@ -219,7 +219,7 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
     if (members_.any_open()) {
         const double vibration = members_.count_vibration();
         if (meter_) meter_->rings_down(vibration);
-        rearrange([this] { members_.close_held(false); });
+        rearrange([this] { members_.close_held(Closing::after_step, false); });
     }
     tell_of_members();
     members_.drop_forces();

@@ -106,6 +106,8 @@ class WorldParts final : public PartEngine {
     /// Does what changes bodies of members, and tells the ledger.
     template <class Change>
     void rearrange(const Change& change);
+    void begin_blow();
+    void close_held(Closing when);
     void do_again();
     void begin_driven();
     void drive_as_at(double time) const;
@@ -144,7 +146,6 @@ class WorldParts final : public PartEngine {
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
-    int early_ = 0; ///< parts since `save` that were too long for that
     PartMotion motion_;
 };
 

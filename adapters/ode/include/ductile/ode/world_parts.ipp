@@ -155,7 +155,6 @@ DUCTILE_INLINE void WorldParts::damp(double share) {
 // ---- a part
 
 DUCTILE_INLINE void WorldParts::save() {
-    early_ = 0;
     kept_time_ = time_;
     of_.meter.keep();
     closing_.save();
@@ -224,10 +223,10 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     // so short a part closes what is left of a gap: its impulses are a blow's
     const bool instant = h < shortest_part();
-    if (instant) of_.members.begin_blow();
+    if (instant) begin_blow();
     const auto beyond = [&] {
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
-        if (closed_ < h && early_++ < tries_at_gaps) return false;
+        if (is_put_back(closed_ < h ? closed_ : 0, h)) return false;
         return instant ? of_.members.look_blow(h) : of_.members.look(h);
     };
     for (tick(h, false); beyond(); tick(h, false)) do_again();
@@ -247,9 +246,20 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     return motion_;
 }
 
-DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    if (!of_.members.empty()) save();
+/// Members are as whole as they are without it.
+DUCTILE_INLINE void WorldParts::begin_blow() {
+    if (of_.members.empty()) return;
+    if (of_.members.any_open()) close_held(Closing::before_blow);
+    save();
     of_.members.begin_blow();
+}
+
+DUCTILE_INLINE void WorldParts::close_held(Closing when) {
+    rearrange([this, when] { of_.members.close_held(when, true); });
+}
+
+DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    begin_blow();
     for (tick(blow_length, true); of_.members.look_blow(blow_length); tick(blow_length, true)) {
         do_again();
     }
@@ -278,7 +288,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
     const bool open = h > 0 && of_.members.any_open();
     if (open) of_.meter.rings_down(of_.members.count_vibration());
     of_.accept(h);
-    if (open) rearrange([this] { of_.members.close_held(true); });
+    if (open) close_held(Closing::after_step);
 } catch (...) { // a listener's
     leave();
     throw;
