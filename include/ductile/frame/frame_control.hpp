@@ -23,7 +23,7 @@
 // Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most
 // three times as long, in the same frame also after all flows have ended, not past the first
 // stop that is predicted, u = -a t, nor past 0.045 rad of what is pushed; the last two parts of
-// a frame share what is left of it.
+// a frame share what is left of it. A frame at whose begin nothing is at stake is tried whole.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
 // Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
@@ -128,11 +128,10 @@ class FrameControl {
     bool stop_failed_ = false; ///< in this frame
     bool fresh_ = false;       ///< accelerations of the last part say nothing of the next
     double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
-    bool rests_ = false; ///< nothing flowed in the last part, which misplaced as good as nothing
-    double spin_ = 0;    ///< of what was pushed in the last part [rad/s]
-    double allowed_ = 0; ///< of the last part [J]
-    double work_ = 0;    ///< plastic, of all joints [J]
-    int solves_ = 0;     ///< of this frame
+    double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
+    double allowed_ = 0;       ///< of the last part [J]
+    double work_ = 0;          ///< plastic, of all joints [J]
+    int solves_ = 0;           ///< of this frame
 };
 
 } // namespace ductile

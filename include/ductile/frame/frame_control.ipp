@@ -63,7 +63,7 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
     report_ = {};
     solves_ = 0;
     stop_failed_ = false;
-    if (rests_) next_ = 0;
+    if (!at_stake(length)) next_ = spin_ = 0;
     double left = length;
     while (left > detail::nothing_left * length) {
         const double gap = strike(engine, first_length(left));
@@ -285,10 +285,7 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     fresh_ = judged.ended || at_event;
     // a first short part says nothing of the next one's length
     const bool says = !starts_ && !jump;
-    constexpr double most = 3;
-    const double longer = detail::growth(judged.allowed, judged.error, 3, 0.2, most);
-    next_ = says ? h * longer : 0;
-    rests_ = !judged.moves && longer == most;
+    next_ = says ? h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3) : 0;
     spin_ = motion.turned / h;
     engine.accept(h);
 }
