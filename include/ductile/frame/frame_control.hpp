@@ -20,9 +20,10 @@
 // the frame tries it no more; (4) by 0.85 √(allowed/error).
 // Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
 // its length comes first, where more than what is allowed is at stake.
-// Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most three
-// times as long, not past the first stop that is predicted, u = -a t, nor past 0.045 rad of what is
-// pushed; the last two parts of a frame share what is left of it.
+// Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most
+// three times as long, in the same frame also after all flows have ended, not past the first
+// stop that is predicted, u = -a t, nor past 0.045 rad of what is pushed; the last two parts of
+// a frame share what is left of it. A frame at whose begin nothing is at stake is tried whole.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said.
 // Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,

@@ -69,6 +69,7 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
     report_ = {};
     solves_ = 0;
     stop_failed_ = false;
+    if (!at_stake(length)) next_ = spin_ = 0;
     double left = length;
     while (left > detail::nothing_left * length) {
         const double gap = strike(engine, first_length(left));
