@@ -33,6 +33,8 @@
             this.worker?.terminate();
             this.worker = new Worker(this.script);
             this.piece = undefined;
+            this.free = 0;
+            clearTimeout(this.timer);
             return new Promise((resolve) => {
                 this.worker.onerror = (event) => resolve({ fault: event.message });
                 this.worker.onmessage = ({ data }) => {
@@ -136,9 +138,9 @@
             $("running").textContent = text;
         }
 
-        /** A piece; where more come than can be drawn, the last one is. */
+        /** A piece; where more come than can be drawn in a third of the time, the last one is. */
         take(piece) {
-            if (!this.piece) setTimeout(() => this.draw(), 0);
+            if (!this.piece) this.timer = setTimeout(() => this.draw(), Math.max(0, this.free - performance.now()));
             this.piece = piece;
         }
 
@@ -147,7 +149,11 @@
             const { bytes, kept } = this.piece;
             this.piece = undefined;
             ++this.shown;
+            const began = performance.now();
             showRecording(bytes, !kept);
+            const rest = () => (this.free = performance.now() + 2 * (performance.now() - began));
+            requestAnimationFrame(() => setTimeout(rest)); // once it is drawn
+            rest();
             $("running").textContent = `${replay.end.toFixed(2)} s of it, after ${((performance.now() - this.began) / 1000).toFixed(1)} s`;
         }
 
@@ -155,7 +161,7 @@
             const took = (performance.now() - this.began) / 1000;
             const each = frames > 0 ? `; ${frames} frames in ${spent.toFixed(2)} s, the dearest ${(1e3 * dearest).toFixed(1)} ms` : "";
             $("running").textContent = `done in ${took.toFixed(1)} s${each}${this.shown === 0 ? ". It has no picture: numbers alone" : ""}`;
-            $("doubts").textContent = doubted.length > 0 ? `The World does not believe what came out of ${doubted.join(", ")}: it left a joint unsolved. A smaller tolerance or more frames a second may help.` : "";
+            $("doubts").textContent = doubted.length > 0 ? `The World does not vouch for ${doubted.join(", ")}: it left a joint unsolved, or more of the work unresolved than the tolerance. More frames a second may help.` : "";
             const head = made("tr", {}, ...["", "came out", "must come out", ""].map((text) => made("th", { textContent: text })));
             $("findings").replaceChildren(head, ...findings.map(({ what, unit, came_out, expected, right }) => {
                 const verdict = expected === null ? "told" : right ? "right" : "WRONG";

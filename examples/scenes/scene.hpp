@@ -50,7 +50,7 @@ class Run;
 class Take {
   public:
     Take(Run& run, std::string name, std::string about, StageParameters parameters);
-    /// Tells the run where its World does not believe what came out.
+    /// Tells the run where its World does not vouch for it.
     ~Take();
     Take(const Take&) = delete;
     Take& operator=(const Take&) = delete;
@@ -94,7 +94,8 @@ class Run {
     void spent(double seconds) { times_.push_back(seconds); }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     [[nodiscard]] bool right() const;
-    /// Takes whose World does not believe what came out, as a joint was left unsolved.
+    /// Takes whose World does not vouch for them: more was left unresolved than the tolerance, or a
+    /// joint unsolved.
     [[nodiscard]] const std::vector<std::string>& doubted() const { return doubted_; }
     void doubt(std::string take) { doubted_.push_back(std::move(take)); }
     /// Where somebody keeps recordings.

@@ -64,7 +64,7 @@ void print(const Run& run) {
         }
     }
     for (const std::string& take : run.doubted()) {
-        fmt::print("        {}: the World does not believe what came out\n", take);
+        fmt::print("        {}: its World does not vouch for it\n", take);
     }
     std::vector<double> times = run.times();
     std::sort(times.begin(), times.end());
