@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/member/elastic_plastic_chain.hpp"
@@ -186,14 +187,44 @@ TEST_CASE("of a blow beyond yield a chain of elastic-plastic joints absorbs as m
             scene.go(0.5, 1.0 / 60);
             CAPTURE(share, times, chain.work() / energy, scene.post->absorbed_energy() / energy);
             CHECK(scene.post->absorbed_energy() / energy ==
-                  Approx(chain.work() / energy).margin(0.2));
-            CHECK(scene.post->vibration() == Approx(energy / (times * times)).epsilon(0.051));
+                  Approx(chain.work() / energy).margin(share < 1 ? 0.15 : 0.08));
+            // less than where all that it bears without yielding were left in it
+            CHECK(scene.post->vibration() < energy / (times * times));
+            CHECK(scene.post->vibration() > 0.5 * energy / (times * times));
             const auto& ledger = scene.world.ledger();
             CHECK(ledger.booked(Account::vibration) == Approx(scene.post->vibration()));
             CHECK(ledger.booked(Account::plastic) ==
                   Approx(scene.post->absorbed_energy()).epsilon(rough ? 1e-2 : 1e-6));
             CHECK(std::abs(ledger.unexplained()) < (rough ? 1e-2 : 1e-9) * energy);
         }
+    }
+}
+
+TEST_CASE("from either side and again, a blow leaves as much in an elastic post in any frame",
+          "[bullet][member]") {
+    std::vector<double> absorbed;
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        BallOnPost scene(elastic_post(20), 100, 6);
+        scene.ball->setFriction(0);
+        double before = 0;
+        for (const double side : {1, -1, 1}) {
+            // on the edge between two segments
+            const btVector3 tip = scene.post->pose(20).getOrigin();
+            btTransform at = btTransform::getIdentity();
+            at.setOrigin({0, tip.y() - btScalar(side * 0.23), tip.z() - btScalar(0.05)});
+            scene.ball->setCenterOfMassTransform(at);
+            scene.ball->setLinearVelocity({0, btScalar(6 * side), 0});
+            scene.ball->setAngularVelocity({0, 0, 0});
+            scene.go(0.3, frame);
+            const double now = scene.post->absorbed_energy();
+            absorbed.push_back(now - std::exchange(before, now));
+            CAPTURE(frame, side, absorbed.back());
+            CHECK(scene.post->whole());
+            CHECK(scene.world.run().believed());
+        }
+    }
+    for (const double energy : absorbed) {
+        CHECK(energy == Approx(absorbed.front()).epsilon(rough ? 0.01 : 0.003));
     }
 }
 
