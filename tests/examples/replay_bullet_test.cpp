@@ -35,7 +35,7 @@ struct Scene {
     template <class Joint>
     replay::Recording hold(Joint& joint) {
         world.add(joint, "joint");
-        replay::Recorder recorder({.name = "held", .engine = "bullet", .rate = 60});
+        replay::Recorder recorder({.name = "held", .about = "", .engine = "bullet", .rate = 60});
         replay::add_body(recorder, body, "body");
         replay::add_joint(recorder, joint, "joint", {}, replay::life_used(joint));
         for (int i = 0; i < 30; ++i) {
