@@ -39,8 +39,8 @@
                 this.worker.onerror = (event) => resolve({ fault: event.message });
                 this.worker.onmessage = ({ data }) => {
                     if (data.bytes) return this.take(data);
-                    this.draw(); // the last piece, before what it comes to
-                    resolve(data.answer ?? { fault: data.fault });
+                    const fault = this.draw(); // the last piece, before what it comes to
+                    resolve(fault || !data.answer ? { fault: fault ?? data.fault } : data.answer);
                 };
                 this.worker.postMessage({ module: this.module, wish });
             });
@@ -132,7 +132,9 @@
             $("run").textContent = "run";
         }
 
+        /** Nothing: nothing failed. */
         fail(text) {
+            if (!text) return;
             this.halt();
             $("running").className = "fault";
             $("running").textContent = text;
@@ -140,21 +142,27 @@
 
         /** A piece; where more come than can be drawn in a third of the time, the last one is. */
         take(piece) {
-            if (!this.piece) this.timer = setTimeout(() => this.draw(), Math.max(0, this.free - performance.now()));
+            if (!this.piece) this.timer = setTimeout(() => this.fail(this.draw()), Math.max(0, this.free - performance.now()));
             this.piece = piece;
         }
 
+        /** Says why not where it cannot. */
         draw() {
-            if (!this.piece) return;
+            if (!this.piece) return undefined;
             const { bytes, kept } = this.piece;
             this.piece = undefined;
-            ++this.shown;
             const began = performance.now();
-            showRecording(bytes, !kept);
+            try {
+                showRecording(bytes, !kept);
+            } catch (error) {
+                return `it cannot be shown: ${error.message}`;
+            }
+            ++this.shown;
             const rest = () => (this.free = performance.now() + 2 * (performance.now() - began));
             requestAnimationFrame(() => setTimeout(rest)); // once it is drawn
             rest();
             $("running").textContent = `${replay.end.toFixed(2)} s of it, after ${((performance.now() - this.began) / 1000).toFixed(1)} s`;
+            return undefined;
         }
 
         tell({ findings, doubted, frames, spent, dearest }) {

@@ -19,6 +19,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/ode/ode.hpp"
 #include "files.hpp"
+#include "joint_facts.hpp"
 #include "of_ode.hpp"
 #include "packed.hpp"
 #include "recorder.hpp"
@@ -71,7 +72,9 @@ replay::Recording record(Rotor& rotor, double rate, double seconds) {
                                .rate = rate});
     replay::add_body(recorder, rotor.body, "rotor");
     replay::add_ground(recorder, rotor.floor, "floor");
-    replay::add_joint(recorder, *rotor.bar, "bar", {0, 0, 0}, {{"strength", "64 N m"}});
+    replay::add_joint(recorder, *rotor.bar, "bar", {0, 0, 0},
+                      replay::facts_of(rotor.bar->joint(), true, {{"strength", "64 N m"}}),
+                      replay::life_used(*rotor.bar));
     while (rotor.world.time() < seconds - 1e-9) {
         rotor.world.step(1.0 / 240);
         recorder.look(rotor.world);
@@ -94,6 +97,12 @@ TEST_CASE("replay: what is recorded is what happened", "[replay]") {
     CHECK(bar.state.back() == (replay::flowed | replay::broken));
     CHECK(std::abs(bar.curve.force[1]) == Approx(64));
     CHECK(bar.curve.turns);
+    REQUIRE(bar.life.size() == seen.times.size());
+    CHECK(bar.life.back() == 1);
+    CHECK(bar.life[3] == Approx(bar.plastic_travel[3] / 1.5));
+    const std::vector<replay::Fact> facts{
+        {"strength", "64 N m"}, {"capacity", "64 N m"}, {"breaks at", "1.5 rad"}};
+    CHECK(seen.joints[0].facts == facts);
     REQUIRE(seen.events.size() == 2);
     CHECK(seen.events[0].kind == "yielded");
     CHECK(seen.events[1].kind == "broke");

@@ -85,6 +85,9 @@ test("scrubbing moves both plots' cursors and the numbers are the recording's", 
     assert.equal(fact("plastic travel"), "1.5 rad");
     assert.equal(fact("state"), "broken");
     assert.equal(fact("strength"), "64 N m");
+    assert.equal(fact("breaks at"), "1.5 rad");
+    assert.equal(fact("life left"), "0.0 % of plastic travel");
+    assert.equal(fact("strength left"), "none");
     assert.ok(Math.abs(parseFloat(await page.textContent("#time")) - expected.times.at(-1)) < 1e-4);
     await page.close();
 });
