@@ -263,7 +263,7 @@ class Bridge final : public Scene {
         take.cut();
     }
 
-    static constexpr const char* own = "one's own deck";
+    static constexpr const char* own = "own deck";
     static constexpr double given_speed = 10;
     double speed_ = given_speed, steel_ = 0.11, mass_ = 60e3;
 };
