@@ -263,7 +263,7 @@ TEST_CASE("hundreds of openings and closings keep the momentum", "[bullet][membe
     };
     // pushed back and forth by its mass, whose kicks are no change of the world's own
     const int kicks = rough ? 20 : 200;
-    double drift[2] = {0, 0};
+    double drift[2] = {0, 0}, given = 0;
     for (const bool in_time : {false, true}) {
         Floating scene(in_time);
         int split = 0, fused = 0;
@@ -287,6 +287,7 @@ TEST_CASE("hundreds of openings and closings keep the momentum", "[bullet][membe
             turned += change;
         }
         drift[in_time] = norm(angular(turned));
+        given = scale;
         CAPTURE(in_time, split, fused, linear_error, drift[0], drift[1], scale);
         CHECK(linear_error < (rough ? 1e-3 : 1e-12) * scale);
         CHECK(std::abs(scene.world.ledger().unexplained()) < (rough ? 1e-1 : 1e-9) * scale);
@@ -297,7 +298,9 @@ TEST_CASE("hundreds of openings and closings keep the momentum", "[bullet][membe
         const double closing = scene.world.ledger().booked(Account::members);
         CHECK(std::abs(closing) < (rough ? 1e-2 : 1e-5) * scene.member->absorbed_energy());
     }
-    CHECK(drift[1] < 2 * drift[0] + (rough ? 1e-2 : 1e-9));
+    // of a bar that spins, in parts: less yet where all its sections are jointed
+    CHECK(drift[0] < (rough ? 1e-3 : 1.5e-6) * given);
+    CHECK(drift[1] < (rough ? 1e-3 : 3e-6) * given);
 }
 
 TEST_CASE("beams bear 0.999 of their limit loads and move at 1.001", "[bullet][member]") {
