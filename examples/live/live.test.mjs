@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The live page in a real browser, from disk. To be run where playwright-core is installed, as in
-// build/release/examples/replay/page. CHROMIUM: its program; LIVE_PAGE: what build.sh made.
-// Drawn by software, which has to be asked for: else nothing is drawn, and tests pass on nothing.
+// The live page in a real browser (browser.mjs), from disk, run in build/release/examples/replay/page.
+// LIVE_PAGE: what build.sh made.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
-import { join } from "node:path";
 import test, { after, before } from "node:test";
 
-const { chromium } = createRequire(join(process.cwd(), "package.json"))("playwright-core");
+import { launch, pixels } from "../replay/page/test/browser.mjs";
+
 const file = `file://${process.env.LIVE_PAGE}`;
 const ready = { timeout: 240000 };
 let browser;
@@ -16,10 +14,7 @@ let page;
 const faults = [];
 
 before(async () => {
-    browser = await chromium.launch({
-        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-        args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-    });
+    browser = await launch();
     page = await open();
 });
 after(() => browser?.close());
@@ -94,30 +89,10 @@ test("every scene runs, is drawn, and comes out as it must", async () => {
     }
 });
 
-/** Colours of the scene's middle, as the browser drew them. */
-const pixels = () =>
-    page.evaluate(() => {
-        replay.scene.stale = true;
-        replay.scene.render();
-        const canvas = replay.scene.renderer.domElement;
-        const copy = document.createElement("canvas");
-        [copy.width, copy.height] = [canvas.width, canvas.height];
-        const context = copy.getContext("2d", { willReadFrequently: true });
-        context.drawImage(canvas, 0, 0);
-        const { data } = context.getImageData(0, 0, copy.width, copy.height);
-        const colours = new Set();
-        let sum = 0;
-        for (let i = 0; i < data.length; i += 4) {
-            colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-            sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 2147483647;
-        }
-        return { colours: colours.size, sum };
-    });
-
 test("something is drawn, it changes with time, and a joint tells what it is and what is left", async () => {
     await run("tipping-car");
     await page.evaluate(() => replay.setTime(0));
-    const start = await pixels();
+    const start = await pixels(page);
     assert.ok(start.colours > 4, `${start.colours} colours`);
     const fact = async (name) => {
         const facts = await page.$$eval("#facts > *", (items) => items.map((item) => item.textContent));
@@ -125,7 +100,7 @@ test("something is drawn, it changes with time, and a joint tells what it is and
     };
     assert.equal(await fact("life left"), "100.0 % of plastic travel");
     await page.evaluate(() => replay.setTime(replay.end));
-    assert.notEqual((await pixels()).sum, start.sum);
+    assert.notEqual((await pixels(page)).sum, start.sum);
     assert.equal(await fact("section"), "box 100 x 100 x 4 mm");
     assert.equal(await fact("material"), "steel, 355 MPa");
     assert.equal(await fact("capacity"), "19.64 kN m");

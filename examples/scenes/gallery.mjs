@@ -7,10 +7,10 @@
 //   cd build/release/examples/replay/page        (where playwright-core is installed)
 //   node SOURCE/examples/scenes/gallery.mjs SOURCE/examples/scenes/out SOURCE/examples/scenes/gallery
 import { copyFile, mkdir, stat } from "node:fs/promises";
-import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
-const { chromium } = createRequire(join(process.cwd(), "package.json"))("playwright-core");
+import { launch, pixels } from "../replay/page/test/browser.mjs";
+
 const [from, to] = process.argv.slice(2).map((path) => resolve(path));
 const largest = 60e3; // bytes
 /** Of each scene: the replay, and the share of its time at which it is seen. */
@@ -30,30 +30,17 @@ const shots = [
 ];
 
 await mkdir(to, { recursive: true });
-const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch();
 try {
     for (const [scene, replay, share] of shots) {
         const page = await browser.newPage({ viewport: { width: 900, height: 560 } });
         await page.goto(`file://${join(from, replay)}.html`);
         await page.waitForFunction(() => window.replay);
-        const colours = await page.evaluate((share) => {
-            const { start, end } = { start: replay.recording.times[0], end: replay.end };
-            replay.setTime(start + share * (end - start));
-            replay.scene.stale = true;
-            replay.scene.render();
-            const canvas = replay.scene.renderer.domElement;
-            const copy = document.createElement("canvas");
-            [copy.width, copy.height] = [canvas.width, canvas.height];
-            const context = copy.getContext("2d", { willReadFrequently: true });
-            context.drawImage(canvas, 0, 0);
-            const { data } = context.getImageData(0, 0, copy.width, copy.height);
-            const seen = new Set();
-            for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-            return seen.size;
+        await page.evaluate((share) => {
+            const start = replay.recording.times[0];
+            replay.setTime(start + share * (replay.end - start));
         }, share);
+        const { colours } = await pixels(page);
         if (colours < 4) throw new Error(`${replay}: nothing is drawn`);
         const picture = join(to, `${scene}.jpg`);
         await page.screenshot({ path: picture, type: "jpeg", quality: 70 });

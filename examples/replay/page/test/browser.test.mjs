@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The page in a real browser, from disk. CHROMIUM: its program; REPLAY_DIR: where replay_test wrote.
-// Drawn by software, which has to be asked for: else nothing is drawn, and tests pass on nothing.
+// The page in a real browser (browser.mjs), from disk. REPLAY_DIR: where replay_test wrote.
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
 import test, { after, before } from "node:test";
 
-import { chromium } from "playwright-core";
-
+import { launch, pixels } from "./browser.mjs";
 import { pageOf } from "./made.mjs";
 
 const folder = resolve(process.env.REPLAY_DIR ?? ".");
@@ -17,10 +15,7 @@ const expected = JSON.parse(await readFile(resolve(folder, "replay_rotor.json"),
 let browser;
 
 before(async () => {
-    browser = await chromium.launch({
-        executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-        args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-    });
+    browser = await launch();
 });
 after(() => browser?.close());
 
@@ -34,26 +29,6 @@ async function open(path = file, options = {}) {
     await page.waitForFunction(() => window.replay || !document.getElementById("message").hidden);
     return page;
 }
-
-/** Colours of the scene's middle, as the browser drew them. */
-const pixels = (page) =>
-    page.evaluate(() => {
-        replay.scene.stale = true;
-        replay.scene.render();
-        const canvas = replay.scene.renderer.domElement;
-        const copy = document.createElement("canvas");
-        [copy.width, copy.height] = [canvas.width, canvas.height];
-        const context = copy.getContext("2d", { willReadFrequently: true });
-        context.drawImage(canvas, 0, 0);
-        const { data } = context.getImageData(0, 0, copy.width, copy.height);
-        const colours = new Set();
-        let sum = 0;
-        for (let i = 0; i < data.length; i += 4) {
-            colours.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-            sum = (sum * 31 + data[i] + 7 * data[i + 1] + 13 * data[i + 2]) % 2147483647;
-        }
-        return { colours: colours.size, sum };
-    });
 
 test("something is drawn, it changes with time, without errors or a network", async () => {
     const page = await open();
