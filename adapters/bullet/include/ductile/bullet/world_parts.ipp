@@ -271,7 +271,7 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    if (local_) save();
+    if (members_.empty() && local_) save();
     begin_blow();
     for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
         do_again();
