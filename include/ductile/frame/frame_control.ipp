@@ -232,7 +232,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.given += row.given;
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
-        const double error = row.strength * off.travel;
+        const double error = misplaced_energy(row, off, motion.plastic_work);
         judged.error += error;
         judged.ended = judged.ended || off.ended;
         if (off.stop > 0 && error > largest) {

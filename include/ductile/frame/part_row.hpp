@@ -10,6 +10,10 @@
 //                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2
 //   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|; however slow it is then, its
 //                         force was that of its flow back
+//   one that its load     lacks the speed Δ that it should go back with, in all that follows: that
+//   turns round           is R Δ T, if it goes back for as much work as there was so far;
+//                         Δ = |c (h - s) -+ |u'||,  s = |u|/b,  T = √(2 W/(R c)),  c = b - 2 r;  it
+//                         was braked by b = -a₋, of which its own is r = (b - |u' - u|/h)/(1 -+ |f|/R)
 //   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
 //                         three times that where the flow began within the part
 //                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
@@ -23,6 +27,7 @@
 //   h, h₋   length of the part and of the one before; h₋ = 0: a₋ = 0 [s]
 //   e       travel that may be misplaced                             [m | rad]
 //   s       instant within the part at which the flow ended          [s]
+//   W       plastic work of all rows so far                          [J]
 //
 // Limit cases: constant force: e = 0. h → 0: e is of second order, and of first where a flow stops,
 // until the part ends there.
@@ -66,6 +71,7 @@ struct PartRow {
 struct Misplaced {
     double travel = 0;  ///< e, weighted [m | rad]
     double stop = 0;    ///< s; 0: it did not end within the part [s]
+    double lacking = 0; ///< Δ/√c, of a row that its load turns round [(m | rad)^½]
     bool ended = false; ///< noticeably: accelerations before and after have nothing to do with
                         ///< each other
 };
@@ -76,6 +82,19 @@ struct PartBefore {
     double acceleration = 0; ///< a₋ [m/s² | rad/s²]
     double length = 0;       ///< h₋ [s]
 };
+
+/// s and Δ/√c of a row that stopped in a part with the force of one direction; nothing where it was
+/// not known to be braked, or rests.
+[[nodiscard]] inline Misplaced turned_round(const PartRow& row, double h,
+                                            const PartBefore& before) noexcept {
+    const double way = std::copysign(1.0, row.start), share = std::min(1.0, row.share);
+    const double braked = -way * before.acceleration, mean = way * (row.start - row.end) / h;
+    const double not_its_own = 1 - (row.pushes ? -share : share);
+    const double own = (braked - mean) / not_its_own, back = braked - 2 * own;
+    const double stop = std::abs(row.start) / braked;
+    if (!(own > 0 && back > 0 && not_its_own > 0 && stop > 0 && stop < h)) return {};
+    return {.stop = stop, .lacking = std::abs(back * (h - stop) + way * row.end) / std::sqrt(back)};
+}
 
 [[nodiscard]] inline Misplaced misplaced(const PartRow& row, double h,
                                          const PartBefore& before) noexcept {
@@ -103,12 +122,22 @@ struct PartBefore {
             result.travel = std::max(result.travel, std::abs(change) * h / 8);
             stop = h * start / std::abs(change);
         }
+        if (const Misplaced back = turned_round(row, h, before); back.lacking > 0) {
+            result.lacking = back.lacking;
+            stop = back.stop;
+        }
         if (stop > nothing * h && stop < whole * h) result.stop = stop;
         result.ended = result.travel > noticed * start * h;
     } else {
         result.travel = changed * h * h * h / (moved ? 12 : 4) + below;
     }
     return result;
+}
+
+/// What that is in energy; `work`: W [J].
+[[nodiscard]] inline double misplaced_energy(const PartRow& row, const Misplaced& off,
+                                             double work) noexcept {
+    return row.strength * off.travel + off.lacking * std::sqrt(2 * row.strength * work);
 }
 
 /// Work that the row will still take if it goes on as in this part [J].

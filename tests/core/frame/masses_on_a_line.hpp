@@ -141,6 +141,7 @@ class Engine final : public ductile::PartEngine {
                                     .end = breaks_down ? std::nan("") : end,
                                     .share = std::abs(force) / r.strength,
                                     .strength = r.strength,
+                                    .pushes = force * start[i] > 0,
                                     .noise = 1e-9,
                                     .least = 1e-6});
             motion_.plastic_work += r.work;
