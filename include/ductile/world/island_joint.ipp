@@ -3,6 +3,9 @@
 // Bodies of island_joint.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "ductile/world/island_joint.hpp"
 
 namespace ductile {
@@ -22,15 +25,16 @@ DUCTILE_INLINE solve::IslandBlock ellipsoid_of(const AnyLink<double>& link, int 
     return block;
 }
 
-DUCTILE_INLINE void add_ellipsoid(solve::Island& island, const AnyLink<double>& link,
-                                  solve::IslandBlock block) {
-    if (link.totals().flowing) block.state = solve::BlockState::surface;
+/// Share of a bound from where a row, or a surface, counts as reached.
+inline constexpr double at_bound = 1 - 1e-5;
+
+DUCTILE_INLINE void add_ellipsoid(solve::Island& island, solve::IslandBlock block, bool reached) {
+    if (reached) block.state = solve::BlockState::surface;
     island.blocks.push_back(block);
 }
 
 /// Rows that flowed in the last step.
 DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link, int first) {
-    constexpr double at_bound = 1 - 1e-5;
     for (const JointAxis axis : link.axes()) {
         const RowLimits<double>& limits = link.limits()[index(axis)];
         const double force = link.forces()[Eigen::Index(index(axis))];
@@ -58,6 +62,13 @@ DUCTILE_INLINE solve::IslandRow& add_row(solve::Island& island, const IslandSeat
     return row;
 }
 
+DUCTILE_INLINE double softness_of(const RowLimits<double>& limits, double stiffness,
+                                  double dt) noexcept {
+    const double section = 1 / (stiffness * dt * dt);
+    const bool elastic = limits.compliance > 0;
+    return section_softness * (elastic ? std::min(section, limits.compliance) : section);
+}
+
 DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a,
                             const IslandSeat& b, double dt) {
     const int first = int(island.rows.size());
@@ -76,13 +87,13 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
                 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
                 : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
         row.compliance = limits.compliance;
-        row.softness = section_softness / (stiffness[i] * dt * dt);
+        row.softness = softness_of(limits, stiffness[i], dt);
         row.lower = limits.lower * dt;
         row.upper = limits.upper * dt;
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
     if (on_surface) {
-        detail::add_ellipsoid(island, link, block);
+        detail::add_ellipsoid(island, block, link.totals().flowing);
     } else if (link.totals().flowing) {
         detail::begin_at_bounds(island, link, first);
     }

@@ -197,8 +197,9 @@ DUCTILE_INLINE void JointConstraint::make_rows(double dt) {
         const LinkRow<double> row = link_.row(axis).along_unit();
         SymmetricRow symmetric = symmetric_row(row.limits, dt);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
-        symmetric.cfm += std::max(detail::softness * dt * moved,
-                                  section_softness / (stiffness[Eigen::Index(index(axis))] * dt));
+        const double of_section = stiffness[Eigen::Index(index(axis))];
+        symmetric.cfm +=
+            std::max(detail::softness * dt * moved, softness_of(row.limits, of_section, dt) * dt);
         Vector3<double>& centre = row.turns ? centre_.moment : centre_.force;
         centre = sum(centre, scaled(symmetric.centre, row.direction));
         const double scale = row_scale(moved + symmetric.cfm / dt);
