@@ -12,7 +12,9 @@
 //   stands where  error <= κ tolerance scale,  κ = 0.1
 //
 // Where nothing moves the scale is 0 and the part stands, whatever its length. Contacts that begin
-// take energy that is real and does not shrink with the part, hence 0.3.
+// take energy that is real and does not shrink with the part, hence 0.3. In the shortest part it is
+// a blow, no error, and so is what rigid rows take of velocities that did not fit; what they give
+// is one.
 //
 // Shorter: (1) to where a gap closed unforeseen; (2) to equal parts where a body that is pushed
 // turned by more than 0.05 rad, or a joint farther than it can follow; (3) to where the row stopped

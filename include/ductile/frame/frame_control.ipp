@@ -250,7 +250,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.error += judged.given;
     judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
-        judged.error += std::abs(motion.rigid_work);
+        // velocities that did not fit are struck too; what rows give is never a blow
+        if (!(h <= shortest && motion.rigid_work > 0)) {
+            judged.error += std::abs(motion.rigid_work);
+        }
         if (!(h <= shortest)) {
             judged.error += detail::contact_share * std::abs(motion.contact_work);
         }
