@@ -157,8 +157,7 @@ class Fence final : public Scene {
             all += mass;
         }
         const double aside = thick / 2 - depth;
-        const double inertia =
-            mass * ((length * length + thick * thick) / 12 + aside * aside);
+        const double inertia = mass * ((length * length + thick * thick) / 12 + aside * aside);
         const double turned = inertia / (length * length);
         double felt = 0;
         for (int i = 0; i < rods; ++i) {
