@@ -257,6 +257,12 @@ TEST_CASE("What rigid rows take of velocities that do not fit is a blow, what th
         run(engine, control, 0.1);
         CHECK_FALSE(control.run().believed());
     }
+    SECTION("taken in each part, all as short as may be") {
+        engine.kick = 1e-3;
+        FrameControl control;
+        control.frame(engine, 5e-6);
+        CHECK_FALSE(control.run().believed());
+    }
     SECTION("taken in each part") {
         engine.kick = 0.5;
         FrameControl control;
