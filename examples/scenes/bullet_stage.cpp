@@ -41,6 +41,8 @@ class BulletStage final : public Stage {
             shapes_.push_back(std::make_unique<btSphereShape>(box.half.x()));
         } else {
             shapes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(box.half)));
+            constexpr double hardly = 1e-4; // of all else Bullet rounds the edges by 4 cm [m]
+            if (box.sharp) shapes_.back()->setMargin(hardly);
         }
         btRigidBody& body = own(box.mass, box.name, bullet::to_bullet(box.at), box.collides);
         body.setFriction(box.friction);

@@ -8,14 +8,16 @@
 //
 // And a fence of reinforced concrete, 30 m long, 3 m high, 2 m thick, 1 % of steel by area (2058
 // kg/m³, 370 t, M_p = 0.01 × 200 MPa × b h²/4 = 6 MN m), that lies free and is hit in the middle by
-// 50 t at 60 km/h, before friction stops it. Its hinges are in the face that is hit. A part of mass
-// m and length l turns about them with I = m (l² + 4 h²)/12, and feels at one end what e is felt at
-// its other,
+// 50 t at 60 km/h, before friction stops it. Its hinges are in the face that is hit, or in the
+// middle of its thickness h. A part of mass m and length l turns about hinges at a depth d with
+// I = m ((l² + h²)/12 + (h/2 - d)²), and feels at one end what e is felt at its other,
 //
 //   e' = a - b²/(a + e),   a = m/4 + I/l²,   b = m/4 - I/l²
 //
 // so that the blow leaves u = G V0/(G + 2 e), all of it moves on at V = G V0/(G + 2 μ L), and the
-// hinges take G V0 (u - V)/2.
+// hinges take G V0 (u - V)/2. Parts are sharp, as it is hit where two of them meet: Bullet rounds
+// their edges by 4 cm, so that a ball pushes them apart. Hinges in the middle then take 2.643 MJ in
+// place of 3.103 MJ, those in the face 2.786 in place of 2.804 MJ, whatever the frame.
 #include <array>
 #include <string>
 #include <vector>
@@ -44,7 +46,8 @@ class Fence final : public Scene {
             parts.push_back({std::to_string(rods) + " rods a half",
                              [rods = rods, work = work](Run& run) { strike(run, rods, work); }});
         }
-        parts.push_back({"vehicle", [this](Run& run) { hit(run); }});
+        parts.push_back({"vehicle", [this](Run& run) { hit(run, "vehicle", 0); }});
+        parts.push_back({"middle", [this](Run& run) { hit(run, "middle", thick / 2); }});
         return parts;
     }
 
@@ -96,14 +99,15 @@ class Fence final : public Scene {
         }
         take.cut();
     }
-    void hit(Run& run) const {
-        constexpr double long_half = 15, thick = 2, high = 3, steel = 0.01;
+    /// `depth` of the hinges below the face that is hit [m].
+    void hit(Run& run, const std::string& name, double depth) const {
+        constexpr double long_half = 15, high = 3, steel = 0.01;
         constexpr double nose = 0.05; // all but sharp: it touches both parts where they meet
         constexpr double density = 2000 * (1 - steel) + 7800 * steel;
         constexpr double moment = steel * 200e6 * high * thick * thick / 4;
         constexpr int rods = 3;
         constexpr double length = long_half / rods, mass = density * length * thick * high;
-        Take take = run.take("vehicle", "A fence that lies free is hit by a vehicle.",
+        Take take = run.take(name, "A fence that lies free is hit by a vehicle.",
                              {.gravity = 0, .floor = false});
         Stage& stage = take.stage();
         const UsualAxisJoint hinge(Perfect<double>({.strength = moment}), TravelLimit<double>());
@@ -130,11 +134,12 @@ class Fence final : public Scene {
             parts.push_back(stage.add({.name = "part " + std::to_string(i),
                                        .mass = mass,
                                        .half = {length / 2, thick / 2, high / 2},
-                                       .at = {x, thick / 2, high / 2}}));
+                                       .at = {x, thick / 2, high / 2},
+                                       .sharp = true}));
             if (i == 0) continue;
             hinges.push_back(&stage.hinge("hinge " + std::to_string(i), parts[std::size_t(i)],
-                                          parts[std::size_t(i) - 1], {x - length / 2, 0, high / 2},
-                                          {0, 0, 1}, hinge));
+                                          parts[std::size_t(i) - 1],
+                                          {x - length / 2, depth, high / 2}, {0, 0, 1}, hinge));
         }
         stage.describe([](const std::string& joint) {
             if (joint == "bumper") return Stage::Facts{{"section", "none: it holds the nose"}};
@@ -151,29 +156,32 @@ class Fence final : public Scene {
             momentum += mass * stage.velocity(part).y();
             all += mass;
         }
-        const double turned = mass * (length * length + 4 * thick * thick) / 12 / (length * length);
+        const double aside = thick / 2 - depth;
+        const double inertia = mass * ((length * length + thick * thick) / 12 + aside * aside);
+        const double turned = inertia / (length * length);
         double felt = 0;
         for (int i = 0; i < rods; ++i) {
             const double a = mass / 4 + turned, b = mass / 4 - turned;
             felt = a - b * b / (a + felt);
         }
         const double after = mass_ * speed_ / (mass_ + 2 * felt), last = mass_ * speed_ / all;
-        run.expect("vehicle: momentum", momentum, mass_ * speed_, 1e-9, "N s");
-        const std::string work = "vehicle: plastic work";
+        run.expect(name + ": momentum", momentum, mass_ * speed_, 1e-9, "N s");
+        const std::string work = name + ": plastic work";
         const double expected = mass_ * speed_ * (after - last) / 2;
         if (stage.keeps_tolerance()) {
             run.expect(work, absorbed, expected, 0.01, "J");
         } else {
             run.tell(work, absorbed, "J");
         }
-        run.expect("vehicle: unexplained of its energy",
+        run.expect(name + ": unexplained of its energy",
                    stage.world().ledger().unexplained() / (mass_ * speed_ * speed_ / 2), 0, 0.01);
-        run.tell("vehicle: its speed after", stage.velocity(vehicle).y(), "m/s");
-        run.tell("vehicle: speed of all of it", last, "m/s");
-        run.tell("vehicle: contact took", stage.world().ledger().booked(Account::contact), "J");
+        run.tell(name + ": its speed after", stage.velocity(vehicle).y(), "m/s");
+        run.tell(name + ": speed of all of it", last, "m/s");
+        run.tell(name + ": contact took", stage.world().ledger().booked(Account::contact), "J");
         take.cut();
     }
 
+    static constexpr double thick = 2;
     double mass_ = 50e3, speed_ = 60 / 3.6;
 };
 

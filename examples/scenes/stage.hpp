@@ -35,6 +35,7 @@ struct BoxBody {
     Vector3<double> velocity = Vector3<double>::Zero();                           ///< [m/s]
     double friction = 0; ///< that of a pair is the product
     bool collides = true;
+    bool sharp = false;  ///< what is no box meets its edges as they are, not rounded
     bool ball = false;   ///< of radius half.x
     bool driven = false; ///< moves as Stage::turn says, whatever acts on it
 };

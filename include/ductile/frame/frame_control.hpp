@@ -12,7 +12,9 @@
 //   stands where  error <= κ tolerance scale,  κ = 0.1
 //
 // Where nothing moves the scale is 0 and the part stands, whatever its length. Contacts that begin
-// take energy that is real and does not shrink with the part, hence 0.3.
+// take energy that is real and does not shrink with the part, hence 0.3. In the shortest part it is
+// a blow, no error, and so is what rigid rows take, once, of velocities that did not fit; what they
+// give is one.
 //
 // Shorter: (1) to where a gap closed unforeseen; (2) to equal parts where a body that is pushed
 // turned by more than 0.05 rad, or a joint farther than it can follow; (3) to where the row stopped
@@ -88,14 +90,16 @@ class FrameControl {
         double error = 0;
         double given = 0;     ///< of it: by dampers
         double of_rows = 0;   ///< of that, by flows
+        double most = 0;      ///< that those can have taken: R x speed x length
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
-        double turned = 0;  ///< of turns that were too far, in those that a part may have; 0: none
-        double power = 0;   ///< of all rows at their strength [W]
-        bool ended = false; ///< a flow ended in it
-        bool moves = false; ///< something was to be judged
+        double turned = 0;   ///< of turns that were too far, in those that a part may have; 0: none
+        double power = 0;    ///< of all rows at their strength [W]
+        bool ended = false;  ///< a flow ended in it
+        bool moves = false;  ///< something was to be judged
+        bool fitted = false; ///< rigid rows made velocities fit, without an error
     };
     /// What is known of a row from the part before.
     struct Past {
@@ -126,7 +130,7 @@ class FrameControl {
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
                bool at_event, bool jump);
-    void say_unresolved(const PartMotion& motion, const Judgement& judged, double h);
+    void say_unresolved(const PartMotion& motion, double error, double h);
 
     FrameParameters parameters_;
     FrameReport report_;
@@ -136,6 +140,7 @@ class FrameControl {
     bool starts_ = false;      ///< the part is a first short one
     bool stop_failed_ = false; ///< in this frame
     bool fresh_ = false;       ///< accelerations of the last part say nothing of the next
+    bool fitted_ = false;      ///< the last part made velocities fit
     double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
     double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
     double allowed_ = 0;       ///< of the last part [J]

@@ -2,7 +2,8 @@
 //
 // What a world says in one line where joints cannot be relied on: which is the worst, how many
 // others there are, and what to do. It is said at the end of the step in which the first one is
-// met, and again each time that their number has doubled: never a line for every joint.
+// met, and again each time that their number has doubled: never a line for every joint. What helps
+// depends on whether steps are frames with a tolerance: those are as short as their budget allows.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +33,24 @@ namespace ductile {
     }
     return line.str();
 }
-inline constexpr const char* unreliable_advice =
-    "take shorter steps, or let the World do so (tolerance)";
+[[nodiscard]] inline const char* coarse_advice(const JointEvent<double>& /*event*/,
+                                               bool in_frames) {
+    return in_frames ? "give a frame more solves (budget), or take shorter frames"
+                     : "take shorter steps, or let the World do so (tolerance)";
+}
+[[nodiscard]] inline const char* unreliable_advice(const JointEvent<double>& event,
+                                                   bool in_frames) {
+    const JointReport<double>& report = event.report;
+    if (!(report.residual <= std::numeric_limits<double>::max())) {
+        return "look for what moved or pushed its bodies so";
+    }
+    const bool unsolved = !(report.unseen_turn > 0) && !(report.gained > 0);
+    if (!unsolved) return coarse_advice(event, in_frames);
+    return in_frames ? "shorter frames do not help: look for joints that hold the same bodies "
+                       "against each other, or strengths more than 1e4 times apart"
+                     : "take shorter steps, or let the World do so (tolerance); where neither "
+                       "helps, look for joints that hold the same bodies against each other";
+}
 
 [[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
     std::ostringstream line;
@@ -41,15 +58,15 @@ inline constexpr const char* unreliable_advice =
          << " s: its plastic travel may be off by " << 100 * event.report.step_error << " %";
     return line.str();
 }
-inline constexpr const char* coarse_advice =
-    "take shorter steps, or let the World do so (tolerance)";
 
 /// Of one kind of event. Not thread-safe.
 class JointWarning {
   public:
     using Words = std::string (*)(const JointEvent<double>&);
 
-    JointWarning(Words words, const char* advice) : words_(words), advice_(advice) {}
+    using Advice = const char* (*)(const JointEvent<double>&, bool in_frames);
+
+    JointWarning(Words words, Advice advice) : words_(words), advice_(advice) {}
 
     /// Each joint once.
     void add(const JointEvent<double>& event) {
@@ -63,13 +80,13 @@ class JointWarning {
         since_ = 0;
         return true;
     }
-    /// Of the worst joint since the line before.
-    [[nodiscard]] std::string line() const {
+    /// Of the worst joint since the line before; `in_frames`: steps are frames with a tolerance.
+    [[nodiscard]] std::string line(bool in_frames) const {
         std::string text = "ductile: joint \"" + worst_.name + "\" " + words_(worst_);
         if (joints_ > 1) {
             text += ", and " + std::to_string(joints_ - 1) + (joints_ > 2 ? " others" : " other");
         }
-        return text + "; " + advice_;
+        return text + "; " + advice_(worst_, in_frames);
     }
 
   private:
@@ -82,7 +99,7 @@ class JointWarning {
     }
 
     Words words_;
-    const char* advice_;
+    Advice advice_;
     JointEvent<double> worst_;
     std::size_t joints_ = 0, since_ = 0; ///< of them all; since the line before
 };

@@ -87,7 +87,10 @@ class SteppedWorld : private JointKeeper {
     using JointKeeper::let_go;
     using JointKeeper::set_rest_damping;
     /// From the next step on a step is a frame.
-    void start_in_frames(const FrameParameters& parameters) { frames_.emplace(parameters); }
+    void start_in_frames(const FrameParameters& parameters) {
+        frames_.emplace(parameters);
+        supervisor_.set_in_frames();
+    }
     /// A part of `h` [s], or a blow of none, stands; of all joints, or those of which `whom`.
     void part_stands(double h, const std::function<bool(const void*)>& whom = {}) {
         supervisor_.look(time() + h, whom);

@@ -104,6 +104,9 @@ class Supervisor {
         if (warn_) warn_(line);
     }
 
+    /// From now on steps are frames with a tolerance.
+    void set_in_frames() noexcept { in_frames_ = true; }
+
     // ---- around a step
 
     /// Forgets the events of the last step.
@@ -135,7 +138,7 @@ class Supervisor {
     void close() {
         forget_removed();
         for (JointWarning* warning : {&unreliable_, &coarse_}) {
-            if (warning->due() && warn_) warn_(warning->line());
+            if (warning->due() && warn_) warn_(warning->line(in_frames_));
         }
     }
 
@@ -174,7 +177,7 @@ class Supervisor {
     Listener listener_;
     double time_ = 0;
     std::size_t added_ = 0;
-    bool looking_ = false, removed_ = false;
+    bool looking_ = false, removed_ = false, in_frames_ = false;
 };
 
 } // namespace ductile

@@ -263,6 +263,40 @@ TEST_CASE("A kick from elsewhere says nothing of the forces after it", "[frame]"
     CHECK(control.run().worst_frame <= 20); // 22 where they are compared
 }
 
+TEST_CASE("What rigid rows take of velocities that do not fit is a blow, what they give is none",
+          "[frame]") {
+    // 3 kg at 5 m/s, joined to 1 kg that rests: 9.375 J are gone at once, 28.125 J are left
+    Engine engine;
+    engine.masses = {{.mass = 3, .velocity = 5}, {.mass = 1}};
+    engine.rows = {{ground, 1, 500}};
+    engine.ties = {{0, 1, true}};
+    SECTION("taken") {
+        FrameControl control;
+        run(engine, control, 0.1);
+        CHECK(engine.rows[0].work == Approx(28.125).epsilon(0.01));
+        CHECK(control.run().error < 0.01 * 28.125);
+        CHECK(control.run().believed());
+    }
+    SECTION("given in each part") {
+        engine.kick = -9.5;
+        FrameControl control;
+        run(engine, control, 0.1);
+        CHECK_FALSE(control.run().believed());
+    }
+    SECTION("taken in each part, all as short as may be") {
+        engine.kick = 1e-3;
+        FrameControl control;
+        control.frame(engine, 5e-6);
+        CHECK_FALSE(control.run().believed());
+    }
+    SECTION("taken in each part") {
+        engine.kick = 0.5;
+        FrameControl control;
+        run(engine, control, 0.1);
+        CHECK_FALSE(control.run().believed());
+    }
+}
+
 TEST_CASE("What is no number is never believed, and ends", "[frame]") {
     Engine engine = sliding_mass();
     engine.breaks_down = true;

@@ -28,9 +28,10 @@ struct Contact {
     int a, b;
 };
 
-/// Holds b to a, whatever it takes, and says nothing of it.
+/// Holds b to a, whatever it takes.
 struct Tie {
     int a, b;
+    bool tells = false; ///< what it took: a rigid row of a joint
 };
 
 class Engine final : public ductile::PartEngine {
@@ -104,9 +105,10 @@ class Engine final : public ductile::PartEngine {
         motion_ = {};
         std::vector<double> start;
         for (const PlasticRow& r : rows) start.push_back(relative(r.a, r.b));
-        std::vector<double> closing;
+        std::vector<double> closing, parting;
         for (Mass& m : masses) m.position += m.velocity * moves / 2;
         for (const Contact& c : contacts) closing.push_back(relative(c.a, c.b));
+        for (const Tie& t : ties) parting.push_back(relative(t.a, t.b));
         for (Mass& m : masses) m.velocity += (m.force - m.spring * m.position) / m.mass * h;
         std::vector<double> impulse(rows.size() + contacts.size() + ties.size(), 0);
         for (int sweep = 0; sweep < 4000; ++sweep) {
@@ -151,6 +153,12 @@ class Engine final : public ductile::PartEngine {
             motion_.contact_work -= impulse[rows.size() + i] * (closing[i] + end) / 2;
         }
         motion_.rigid_work = kick;
+        for (std::size_t i = 0; i < ties.size(); ++i) {
+            if (!ties[i].tells) continue;
+            const double end = relative(ties[i].a, ties[i].b);
+            motion_.rigid_work -=
+                impulse[rows.size() + contacts.size() + i] * (parting[i] + end) / 2;
+        }
         time += moves;
         return motion_;
     }

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -41,7 +42,8 @@ TEST_CASE("a supervisor warns once, by name", "[world]") {
     CHECK(lines == std::vector<std::string>{
                        "ductile: joint \"joint 1\" was left unsolved by the solver at t = 0.5 s "
                        "(off by 0.25 m/s or rad/s); take shorter steps, or let the World do so "
-                       "(tolerance)"});
+                       "(tolerance); where neither helps, look for joints that hold the same "
+                       "bodies against each other"});
     CHECK(supervisor.watch().unreliable() == 2);
     CHECK(supervisor.time() == 1);
 }
@@ -86,7 +88,8 @@ TEST_CASE("a supervisor has one line for all joints of a step, and another when 
     CHECK(
         lines[0] ==
         "ductile: joint \"joint 4\" was left unsolved by the solver at t = 0.5 s (off by 7.25 m/s "
-        "or rad/s), and 9 others; take shorter steps, or let the World do so (tolerance)");
+        "or rad/s), and 9 others; take shorter steps, or let the World do so (tolerance); where "
+        "neither helps, look for joints that hold the same bodies against each other");
     step(10, 15);
     CHECK(lines.size() == 1);
     step(15, 20);
@@ -115,6 +118,30 @@ TEST_CASE("a supervisor warns once of steps that are too long", "[world]") {
               "ductile: joint \"post\" moved too much in the step that ended at t = 0.5 s: its "
               "plastic travel may be off by 12.5 %; take shorter steps, or let the World do so "
               "(tolerance)"});
+}
+
+TEST_CASE("what helps in a world with a tolerance is not to ask for one", "[world]") {
+    const auto said = [](const JointReport<double>& report) {
+        std::string all;
+        Supervisor supervisor([&all](const std::string& line) { all += line; });
+        supervisor.set_in_frames();
+        Puppet post{report};
+        supervisor.add(&post, "post", post.ask());
+        supervisor.open();
+        supervisor.look(0.5);
+        supervisor.close();
+        return all.substr(all.find("; ") + 2);
+    };
+    const std::string more = "give a frame more solves (budget), or take shorter frames";
+    CHECK(said({.coarse = true, .plastic_travel = 1, .step_error = 0.125}) == more);
+    CHECK(said({.outcome = Outcome::unreliable, .unseen_turn = 6.5}) == more);
+    CHECK(said({.outcome = Outcome::unreliable, .gained = 1}) == more);
+    CHECK(said({.outcome = Outcome::unreliable, .residual = 0.25}) ==
+          "shorter frames do not help: look for joints that hold the same bodies against each "
+          "other, or strengths more than 1e4 times apart");
+    CHECK(said({.outcome = Outcome::unreliable,
+                .residual = std::numeric_limits<double>::infinity()}) ==
+          "look for what moved or pushed its bodies so");
 }
 
 TEST_CASE("a listener may remove any joint while all are asked", "[world]") {

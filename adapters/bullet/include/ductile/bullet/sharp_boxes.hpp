@@ -10,7 +10,8 @@
 //
 // n is that of the sharp boxes wherever a face or two edges meet; between two corners the gap is
 // too small, and grows right as they come near. All other pairs are left as they are, as Bullet
-// rounds them in its contacts too.
+// rounds them in its contacts too: a ball that hits two boxes in a line where they meet pushes them
+// apart. A small btBoxShape::setMargin makes such edges sharp.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
