@@ -13,12 +13,14 @@
 //   one that its load     lacks the speed Δ that it should go back with, in all that follows: that
 //   turns round           is R Δ T, if it goes back for as much work as there was so far;
 //                         Δ = |c (h - s) -+ |u'||,  s = |u|/b,  T = √(2 W/(R c)),  c = b - 2 r;  it
-//                         was braked by b = -a₋, of which its own is r = (b - |u' - u|/h)/(1 -+ |f|/R)
+//                         was braked by b = -a₋, of which its own is r = (b - |u' - u|/h)/(1 -+
+//                         |f|/R)
 //   one that flows        with a force that changes: e = |a'| h³/12,  a' = (a - a₋)/((h + h₋)/2);
 //                         three times that where the flow began within the part
 //                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
-//                         strength that makes it matter; nothing below 5 % of R
+//                         strength that makes it matter; nothing below 5 % of R; ten times that
+//                         after a flow, where those of a swing add up to its phase
 //
 // Symbols
 //   u, u'   velocity of the row at the start and end of the part     [m/s | rad/s]
@@ -57,6 +59,7 @@ struct PartRow {
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
     bool elastic = false;  ///< below its strength it is a spring
+    bool swings = false;   ///< as a spring, after a flow
 
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
     /// Negated so that a speed that is no number moves.
@@ -110,9 +113,10 @@ struct PartBefore {
     const double changed = 2 * std::abs(change / h - before.acceleration) / (h + before.length);
     const double below = row.below * std::abs(row.start + row.end) * h / 2;
     if (row.elastic) {
-        constexpr double idle = 0.05, least_weight = 0.3;
+        constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 10;
         if (share <= idle) return result;
-        result.travel = changed * h * h * h / 8 * std::max(share, least_weight) + below;
+        const double alike = row.swings ? parts_of_a_swing : 1;
+        result.travel = changed * h * h * h / 8 * std::max(share, least_weight) * alike + below;
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
         result.travel = start * h * (1 - share) / 2;
         double stop = share * h;

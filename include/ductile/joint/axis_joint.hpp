@@ -29,6 +29,7 @@ class AxisJoint {
     [[nodiscard]] virtual const Step<double>& last() const noexcept = 0; ///< the step last booked
     [[nodiscard]] virtual std::optional<FractureEvent<double>> fracture() const noexcept = 0;
     [[nodiscard]] virtual double strength(double direction) const noexcept = 0;
+    [[nodiscard]] virtual double utilisation(double force) const noexcept = 0;
     [[nodiscard]] virtual double stiffness() const noexcept = 0; ///< infinite: rigid below yield
     /// What a row may be off by at `speed` [m/s | rad/s].
     [[nodiscard]] virtual double allowed_residual(double speed) const noexcept = 0;
@@ -88,6 +89,9 @@ class AxisJointOf final : public AxisJoint {
     }
     [[nodiscard]] double strength(double direction) const noexcept override {
         return joint_.strength(direction);
+    }
+    [[nodiscard]] double utilisation(double force) const noexcept override {
+        return joint_.utilisation(force);
     }
     [[nodiscard]] double stiffness() const noexcept override {
         return joint_.parameters().stiffness;

@@ -89,10 +89,8 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         return joint_.fracture();
     }
     [[nodiscard]] S utilisation() const noexcept override {
-        if (joint_.state().broken) return 0;
         if constexpr (one_axis) {
-            const S force = this->force(axes_[0]), strength = joint_.strength(force > 0 ? -1 : 1);
-            return strength > 0 ? std::abs(force) / strength : S(0);
+            return joint_.utilisation(this->force(axes_[0]));
         } else {
             return joint_.utilisation();
         }

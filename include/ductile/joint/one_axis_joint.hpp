@@ -99,6 +99,15 @@ class OneAxisJoint {
         return std::abs(law_.resistance(state_.law, Scalar(0), direction)) *
                criterion_.strength_factor(state_.criterion, Scalar(0));
     }
+    /// Share of its strength that the row uses while it pushes its bodies with `force`; 1 where it
+    /// flows, 0 where broken. Beyond the strength a back force makes it flow back [-].
+    [[nodiscard]] Scalar utilisation(Scalar force) const noexcept {
+        const Scalar way = force > 0 ? Scalar(-1) : Scalar(1), held = std::abs(force);
+        const Scalar ahead = strength(way);
+        if (state_.broken || !(ahead > 0)) return 0;
+        const bool pushed = way * law_.resistance(state_.law, Scalar(0), -way) > 0;
+        return pushed ? std::max(held / ahead, strength(-way) / held) : held / ahead;
+    }
     /// Share of life used, in [0, 1]; 1 exactly where broken.
     [[nodiscard]] Scalar damage() const noexcept {
         return state_.broken ? Scalar(1) : criterion_.damage(state_.criterion);
@@ -160,6 +169,16 @@ class OneAxisJoint {
         upper_ = std::min(-flow_.lower * share_, cap(1));
         lower_ = std::max(-flow_.upper * share_, -cap(-1));
         tolerance_ = bound_tolerance * std::max(std::abs(upper_), std::abs(lower_));
+    }
+
+    /// A spring that reaches its strength within the part has less than that at the mean: by
+    /// k gap²/2 of the work of the way |u| dt.
+    void reach_strength(Scalar dt) noexcept {
+        const Scalar way = std::abs(start_) * dt, direction = std::copysign(Scalar(1), start_);
+        Scalar& bound = start_ < 0 ? upper_ : lower_;
+        const Scalar k = parameters_.stiffness;
+        const Scalar gap = -direction * (bound / k + elastic_);
+        if (gap > 0 && gap < way) bound += direction * k * gap * gap / (2 * way);
     }
 
     /// True where somebody changed the velocity between the steps, well above solver noise.

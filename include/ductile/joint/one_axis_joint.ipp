@@ -33,6 +33,7 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
         implicit_ = ahead_ ? mean_share<Scalar> : implicit_share(k, motion.mass, dt);
         // the springs of steps as they are lose more than steel by themselves
         const Scalar material = std::max(parameters_.damping_time, motion.damping);
+        if (ahead_) reach_strength(dt);
         spring_ = ahead_ ? Spring::half_ahead(k, material, elastic_, middle, dt)
                          : Spring::now(k, motion.damping, elastic_, implicit_, dt);
         row = spring_.limits(lower_, upper_, dt);

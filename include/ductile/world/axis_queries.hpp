@@ -67,10 +67,7 @@ class AxisQueries : public PairQueries {
     [[nodiscard]] std::optional<FractureEvent<double>> fracture() const final {
         return joint_.fracture();
     }
-    [[nodiscard]] double last_utilisation() const final {
-        const double strength = joint_.strength(force_ > 0 ? -1 : 1);
-        return !joint_.broken() && strength > 0 ? std::abs(force_) / strength : 0;
-    }
+    [[nodiscard]] double last_utilisation() const final { return joint_.utilisation(force_); }
 };
 
 } // namespace ductile

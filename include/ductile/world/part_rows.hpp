@@ -22,6 +22,7 @@ inline constexpr double resting_share = 0.01;
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
     const double share = acts ? link.utilisation() : 0;
+    const bool yielded = !link.all_rigid() && link.totals().plastic_work > 0;
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
@@ -36,6 +37,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.start = link.start_velocities()[i];
         row.end = link.end_velocities()[i];
         row.share = share;
+        row.swings = yielded && !link.totals().flowing;
         row.below = link.totals().flowing ? std::max(0.0, 1 - share) : 0;
         row.pushes = link.force(axis) * row.start > 0;
         row.strength = link.strength(axis);
@@ -54,8 +56,9 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     if (!acts || axis.broken()) return;
     row.start = axis.start_velocity();
     row.end = axis.velocity();
+    row.swings = row.elastic && axis.totals().plastic_work > 0 && !axis.totals().flowing;
     row.strength = axis.strength(force > 0 ? -1 : 1);
-    row.share = row.strength > 0 ? std::abs(force) / row.strength : 0;
+    row.share = axis.utilisation(force);
     row.pushes = force * row.start > 0;
 }
 

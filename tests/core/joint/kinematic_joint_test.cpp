@@ -88,8 +88,7 @@ void swing(const Back& back, double recall, double a, double dt) {
     const bool between = a > 0.25 && a < 4;
     CHECK(s.plastic_work ==
           Approx(exact.dissipated).margin((between ? 0.12 : 0.02) * order * energy));
-    if (k > 100)
-        CHECK(s.plastic_offset == Approx(exact.offset).margin(speed * dt));
+    if (k > 100) CHECK(s.plastic_offset == Approx(exact.offset).margin(speed * dt));
     CHECK(s.other_work > -0.02 * order * energy);
     CHECK(mass.velocity * mass.velocity / 2 <= strength * strength / (2 * k) * 1.3 + 1e-9);
     CHECK(mass.unreliable == 0);
@@ -118,4 +117,20 @@ TEST_CASE("an energy limit counts what is dissipated, not what a back force hold
     CHECK(mass.joint.state().broken);
     CHECK(mass.joint.state().plastic_work == Approx(120).epsilon(1e-9));
     CHECK(mass.joint.state().plastic_travel == Approx(12).epsilon(1e-3));
+}
+
+TEST_CASE("a back force beyond the strength uses all of it while it drives the flow back",
+          "[one_axis_joint]") {
+    const Kinematic<Prager<double>> law(Perfect<double>({.strength = strength}),
+                                        Prager<double>({.modulus = modulus}));
+    Mass<OneAxisJoint<Kinematic<Prager<double>>>> mass{OneAxisJoint(law)};
+    const auto used = [&] { return mass.joint.utilisation(mass.joint.state().force); };
+    mass.step(1e-3);
+    CHECK(used() == Approx(1).epsilon(0.03));
+    while (mass.velocity > 0) mass.step(1e-3);
+    for (int i = 0; i < 200; ++i) mass.step(1e-3);
+    REQUIRE(mass.velocity < -1); // 80 N back, 10 N of strength
+    CHECK(used() == Approx(1).epsilon(0.03));
+    const double held = mass.joint.state().law.back_force; // in the middle of its range
+    CHECK(mass.joint.utilisation(-held) < 0.95);
 }
