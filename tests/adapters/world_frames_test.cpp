@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -205,6 +206,31 @@ TEST_CASE("Frames: a base that is driven by hand goes its way in parts too", "[f
             rig.world().step(frame);
         }
         CHECK(hinge.absorbed_energy() == Approx(3 * strength).epsilon(rough ? 1e-2 : 1e-6));
+    }
+}
+
+TEST_CASE("Frames: axes that share a surface take what brings them to rest", "[frame]") {
+    // 2 kg at (8, 5) m/s, which an elastic section meets at a corner of its surface: 89 J
+    using Surface = Scaled<RectangleAxialBending<double>>;
+    using Section = CoupledJoint<Surface, Perfect<double>>;
+    constexpr double energy = 89;
+    for (const double stiffness : {4e3, 4e5, 4e7, unlimited}) {
+        for (const double frame : all_frames) {
+            CAPTURE(stiffness, frame);
+            Rig rig;
+            const auto body = rig.body(2, V3::Ones(), V3::Zero());
+            WorldRig::set_velocity(body, V3(8, 5, 0));
+            const Surface surface(RectangleAxialBending<double>(), {.capacity = {20, 10}});
+            Section section(surface, Perfect<double>({.strength = 20}), TravelLimit<double>(),
+                            {.stiffness = Eigen::Vector2d::Constant(stiffness)});
+            auto& joint =
+                rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(), section,
+                            std::array<JointAxis, 2>{JointAxis::shear_x, JointAxis::shear_y});
+            rig.run(2, frame);
+            CHECK(joint.absorbed_energy() <= energy * (rough ? 1 + 1e-5 : 1 + 1e-9));
+            CHECK(joint.absorbed_energy() == Approx(energy).epsilon(2e-3));
+            CHECK(rig.world().run().believed());
+        }
     }
 }
 

@@ -77,7 +77,7 @@ struct OpenRow {
         S strained = std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
         if (ahead && share == 1) { // the bounds are those of the mean force, not of its end
             const S slip = booked.at_bound ? spring.flow(f, reaction.velocity - drift) : S(0);
-            strained = slip * f < 0 ? trial - slip : trial;
+            strained = slip * f <= 0 ? trial - slip : trial;
         }
         booked.travel = trial - strained;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
