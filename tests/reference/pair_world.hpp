@@ -87,7 +87,7 @@ void BodyPair<S>::step(AnyLink<S>& link, S dt, const Vector3<S>& force, const Ve
     a_.velocity += dt * a_.inverse_mass * force;
     a_.spin += dt * a_.inverse_inertia * torque;
     const Vector6<S> semi_axes = link.ellipsoid();
-    const bool on_surface = on_surface_ && semi_axes.minCoeff() > 0 && link.meet_surface(dt);
+    const bool on_surface = on_surface_ && semi_axes.minCoeff() > 0 && link.meet_surface(dt, false);
     const Vector3<S> at = link.point();
     Eigen::Matrix<S, 6, 12> jacobian, mobile;
     Vector<S> bias(6), lower(6), upper(6);

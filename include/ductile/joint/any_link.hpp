@@ -172,7 +172,8 @@ class AnyLink {
     [[nodiscard]] virtual Vector6<S> ellipsoid() const noexcept = 0;
     /// Rules the rows of that step anew for a solver that meets the ellipsoid itself, and does not
     /// look at the bounds; same `dt` [s]. False where it cannot, as the step gives a row's force.
-    [[nodiscard]] virtual bool meet_surface(S dt) noexcept = 0;
+    /// `passes`: as CoupledJoint's.
+    [[nodiscard]] virtual bool meet_surface(S dt, bool passes) noexcept = 0;
 
     [[nodiscard]] const JointFrame<S>& frame_in_a() const noexcept { return pose_.frame_in_a(); }
     [[nodiscard]] const JointFrame<S>& frame_in_b() const noexcept { return pose_.frame_in_b(); }

@@ -139,8 +139,10 @@ class CoupledJoint {
     [[nodiscard]] Rows prepare(const Motion& motion, Scalar dt) noexcept;
 
     /// Rules them anew for a solver that meets the surface itself, not the bounds. Nothing where
-    /// that cannot be, as the step gives the force of a row.
-    [[nodiscard]] std::optional<Rows> meet_surface(Scalar dt) noexcept;
+    /// that cannot be, as the step gives the force of a row. `passes`: no force of the surface
+    /// stops it in this step, so that rigid rows too flow along the normal with their mean
+    /// velocity.
+    [[nodiscard]] std::optional<Rows> meet_surface(Scalar dt, bool passes = false) noexcept;
 
     /// Books the step that `prepare` opened; same `dt` [s]. `granted`: of its flow
     /// (work_share.hpp). Not finite: see Step::residual.
@@ -186,6 +188,13 @@ class CoupledJoint {
         }
         predicted = stopping_force(predicted, start_, state_.start_velocity, impedance);
         const Scalar use = now.value(predicted);
+        if (ahead_ && use > 1) { // it passes: see meet_surface
+            Vector passing = start_;
+            for (int i = 0; i < dimension; ++i) {
+                if (!rigid(i)) passing[i] = 0;
+            }
+            predicted -= impedance * passing;
+        }
         // a joint that will hold needs neither a projection nor the matrix for it, only its chords
         if (use > 1 + on_surface<Scalar>) predicted = now.project(predicted, impedance.shape());
         const bool flows = use >= 1 - bound_tolerance;
@@ -379,6 +388,7 @@ class CoupledJoint {
     Scalar cap_ = 0;         ///< γ of a brittle break
     bool ahead_ = false;     ///< Motion::ahead
     bool will_flow_ = false; ///< as predicted
+    bool passes_ = false;    ///< as meet_surface was told
     Scalar turning_ = 0, damping_ = 0; ///< Motion's
     Vector drift_ = Vector::Zero();    ///< Motion's
 };

@@ -15,12 +15,14 @@ namespace ductile {
 // flow where they are; `bound` predicts with 1
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
-auto CoupledJoint<Surface, Law, Criterion>::meet_surface(Scalar dt) noexcept
+auto CoupledJoint<Surface, Law, Criterion>::meet_surface(Scalar dt, bool passes) noexcept
     -> std::optional<Rows> {
+    passes_ = passes && ahead_;
     for (int i = 0; i < dimension; ++i) {
         if (will_flow_ && !ahead_) implicit_[i] = 1;
         if (!rigid(i) && !(implicit_[i] > 0) && !(damping(i) > 0)) return std::nullopt;
         rows_[std::size_t(i)] = row(i, dt);
+        if (passes_ && rigid(i)) rows_[std::size_t(i)].bias -= start_[i] - drift_[i];
     }
     return rows_;
 }
@@ -50,6 +52,7 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     if (ahead_) elastic_ = motion.before - state_.plastic_offset;
     sound_ = is_finite(motion, dt);
     rows_.fill({.lower = 0, .upper = 0});
+    passes_ = false;
     if (state_.broken || !sound_) return rows_;
     bound(motion, dt);
     for (int i = 0; i < dimension; ++i) {
@@ -85,6 +88,9 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         booked = reaction.on_surface ? open.book_on_surface(of_row, dt, flows, off[i])
                                      : open.book(of_row, dt);
         step.residual = worse(step.residual, booked.residual);
+        // stopped after all, it was thrown back
+        if (passes_ && !flows && rigid(i))
+            step.residual = worse(step.residual, std::abs(start_[i]));
     }
     // what the solver left undone is nobody's flow: no travel, no life, no break
     const bool solved = step.residual <= allowed_residual(reaction.velocity);
@@ -109,9 +115,11 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         taken.at_bound[i] = booked.at_bound;
         if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
     }
-    const Scalar misdirected =
-        off_normal_work(surface_, reaction.force, step.direction, taken.flow);
-    taken.error.flow = std::max(taken.error.flow, misdirected);
+    if (!ahead_) { // else the frame judges its parts
+        const Scalar misdirected =
+            off_normal_work(surface_, reaction.force, step.direction, taken.flow);
+        taken.error.flow = std::max(taken.error.flow, misdirected);
+    }
     if (solved && brittle(reaction.force)) {
         snap(step, taken, reaction, dt);
     } else {

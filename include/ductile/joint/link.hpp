@@ -116,10 +116,10 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         return Vector6<S>::Zero();
     }
 
-    bool meet_surface(S dt) noexcept override {
+    bool meet_surface(S dt, bool passes) noexcept override {
         if constexpr (!one_axis) {
             if (joint_.state().broken) return false;
-            const auto rows = joint_.meet_surface(dt);
+            const auto rows = joint_.meet_surface(dt, passes);
             if (!rows) return false;
             for (std::size_t k = 0; k < rows->size(); ++k) {
                 RowLimits<S>& limits = limits_[index(axes_[k])];

@@ -33,6 +33,26 @@ DUCTILE_INLINE void add_ellipsoid(solve::Island& island, solve::IslandBlock bloc
     island.blocks.push_back(block);
 }
 
+/// Compliance and bounds of a row [N s | N m s].
+DUCTILE_INLINE void rule(solve::IslandRow& row, const RowLimits<double>& limits, double stiffness,
+                         double dt) {
+    row.compliance = limits.compliance;
+    row.softness = softness_of(limits, stiffness, dt);
+    row.lower = limits.lower * dt;
+    row.upper = limits.upper * dt;
+}
+
+/// Whether its bodies alone would need more than the ellipsoid has to meet the rows' velocities.
+DUCTILE_INLINE bool passes(const solve::Island& island, const solve::IslandBlock& block) {
+    double square = 0;
+    for (int i = 0; i < block.count; ++i) {
+        const solve::IslandRow& row = island.rows[std::size_t(block.first + i)];
+        const double effect = own_effect(island, row) * block.size[std::size_t(i)];
+        if (effect > 0) square += (row.target / effect) * (row.target / effect);
+    }
+    return square > 1;
+}
+
 /// Rows that flowed in the last step.
 DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link, int first) {
     for (const JointAxis axis : link.axes()) {
@@ -75,8 +95,6 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
     const LinkPose<double>& pose = link.pose();
     const Vector3<double> none = Vector3<double>::Zero();
     const Vector6<double> stiffness = link.section_stiffness();
-    const solve::IslandBlock block = detail::ellipsoid_of(link, first, dt);
-    const bool on_surface = block.count > 0 && link.meet_surface(dt);
     for (const JointAxis axis : all_joint_axes) {
         const auto i = Eigen::Index(index(axis));
         const RowLimits<double>& limits = link.limits()[index(axis)];
@@ -86,13 +104,18 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
             turns(axis)
                 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
                 : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
-        row.compliance = limits.compliance;
-        row.softness = softness_of(limits, stiffness[i], dt);
-        row.lower = limits.lower * dt;
-        row.upper = limits.upper * dt;
+        detail::rule(row, limits, stiffness[i], dt);
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
-    if (on_surface) {
+    const solve::IslandBlock block = detail::ellipsoid_of(link, first, dt);
+    const AnyLink<double>::Limits alone = link.limits();
+    if (block.count > 0 && link.meet_surface(dt, detail::passes(island, block))) {
+        for (const JointAxis axis : link.axes()) {
+            solve::IslandRow& row = island.rows[std::size_t(first) + index(axis)];
+            const RowLimits<double>& limits = link.limits()[index(axis)];
+            row.target += limits.bias - alone[index(axis)].bias;
+            detail::rule(row, limits, stiffness[Eigen::Index(index(axis))], dt);
+        }
         detail::add_ellipsoid(island, block, link.totals().flowing);
     } else if (link.totals().flowing) {
         detail::begin_at_bounds(island, link, first);
