@@ -154,6 +154,25 @@ TEST_CASE("Frames: a spring that yields within a frame takes what its way needs"
     }
 }
 
+TEST_CASE("Frames: a brittle spring absorbs nothing, at any frame", "[frame]") {
+    // 15 N of 20 N on 4000 N/m hold 0.028 J
+    constexpr double mass = 2, speed = 3, limit = 15, stiffness = 4000;
+    const double left = std::sqrt(speed * speed - limit * limit / (stiffness * mass));
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+        WorldRig::set_velocity(body, V3(speed, 0, 0));
+        const OneAxisJoint weld(Perfect<double>({.strength = 20}),
+                                BrittleForce<double>({.limit = limit}), {.stiffness = stiffness});
+        auto& slider = rig.slider(body, V3(1, 0, 0), weld);
+        rig.run(0.1, frame);
+        CHECK(slider.broken());
+        CHECK(slider.absorbed_energy() == 0);
+        CHECK(WorldRig::velocity(body).x() == Approx(left).epsilon(1e-4));
+    }
+}
+
 TEST_CASE("Frames: a load meets a spring's swing in its phase", "[frame]") {
     constexpr double mass = 2, strength = 20, stiffness = 4000, frame = 1.0 / 60; // ω h = 0.75
     constexpr int frames = 200, fine = 2000;

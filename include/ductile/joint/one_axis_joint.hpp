@@ -176,6 +176,7 @@ class OneAxisJoint {
     void reach_strength(Scalar dt) noexcept {
         const Scalar way = std::abs(start_) * dt, direction = std::copysign(Scalar(1), start_);
         Scalar& bound = start_ < 0 ? upper_ : lower_;
+        if (std::abs(bound) == cap(-direction)) return; // where it snaps
         const Scalar k = parameters_.stiffness;
         const Scalar gap = -direction * (bound / k + elastic_);
         if (gap > 0 && gap < way) bound += direction * k * gap * gap / (2 * way);
