@@ -13,7 +13,8 @@
 // One rigid body is the exact solution of the always-jointed member where no section is beyond what
 // it can carry: sections that hold are rows within their bounds, and the velocities of such a
 // system are unique. Where what holds a piece is redundant the impulses are not unique, and a
-// section may be opened that holds then: at the cost of another solve, without an error.
+// section may be opened that holds then: at the cost of another solve, without an error
+// (redundant_forces.hpp).
 //
 // Symbols, all in world axes
 //   J, N, p   impulse, its moment, where it acts         [N s], [N m s], [m]
@@ -36,6 +37,8 @@ struct MemberLoad {
     Vector3<double> point = Vector3<double>::Zero();   ///< p [m]
     Vector3<double> impulse = Vector3<double>::Zero(); ///< J [N s]
     Vector3<double> moment = Vector3<double>::Zero();  ///< N [N m s]
+    const void* support = nullptr; ///< the joint with what cannot move, whatever pushes it
+    Vector3<double> held_at = Vector3<double>::Zero(); ///< by that, in the segment [m]
 };
 
 /// How a piece went through a step. Plain value.

@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/member/active_sections.hpp"
 #include "ductile/member/blow.hpp"
+#include "ductile/member/redundant_forces.hpp"
 
 namespace ductile {
 
@@ -79,6 +79,9 @@ class MemberCourse {
     /// What blows leave in vibration of an elastic member, of what its sections did.
     [[nodiscard]] const MemberVibration& vibration() const noexcept { return vibration_; }
     void restore(const MemberVibration& vibration) noexcept { vibration_ = vibration; }
+    /// What it carries beside what its motion says.
+    [[nodiscard]] const RedundantForces& redundant() const noexcept { return redundant_; }
+    void restore(const RedundantForces& redundant) { redundant_ = redundant; }
     /// To be called where a step stands, `state` being of then; what it left in vibration [J].
     double count_vibration() noexcept {
         if (!(vibration_.ahead > 0)) return 0;
@@ -105,11 +108,18 @@ class MemberCourse {
             const int worst = worst_section(member_, state_, forces_, dt, rule_);
             if (worst != no_section) found_.push_back(worst);
         }
+        if (whole()) {
+            is_opened_ = !found_.empty() && !is_borne(steps, loads, dt);
+            if (!is_opened_) found_.clear();
+        } else {
+            is_opened_ = is_opened_ && dt == closed_dt_;
+            if (is_opened_) list_supports(member_, pieces_, steps, loads, dt, supports_);
+        }
         return found_;
     }
 
     /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { struck_ = yields_ = false; }
+    void begin_blow() noexcept { struck_ = yields_ = is_opened_ = false; }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                              const MemberStrike& strike) {
@@ -150,6 +160,13 @@ class MemberCourse {
     /// Counts a step that stands, and says which open sections it would close.
     [[nodiscard]] const std::vector<int>& held() {
         found_.clear();
+        if (std::exchange(is_opened_, false) && is_proved()) {
+            for (int i = 0; i < member_.sections(); ++i) {
+                if (section(i).open) found_.push_back(i);
+                section(i).alarms = 0;
+            }
+            return found_;
+        }
         for (int i = 0; i < member_.sections(); ++i) {
             if (section(i).open && closes(section(i), rule_)) found_.push_back(i);
         }
@@ -160,24 +177,43 @@ class MemberCourse {
     [[nodiscard]] const std::vector<int>& holding() {
         found_.clear();
         for (int i = 0; i < member_.sections(); ++i) {
-            const SectionState& of = section(i);
-            if (of.open && !of.joint.flowing && !of.joint.broken) found_.push_back(i);
+            if (section(i).open && rests(section(i))) found_.push_back(i);
         }
         return found_;
     }
     /// As it was; the bodies have to be those of `state`.
     void restore(const MemberState& state) {
         state_ = state;
+        is_opened_ = false;
         make_pieces();
     }
     /// Closes sections, `bend` of their states being what they are bent by now.
     std::vector<PlacedPiece> close(std::span<const int> sections,
                                    std::span<const PlacedPiece> bodies) {
         for (const int i : sections) section(i).open = false;
-        return rearrange(bodies);
+        std::vector<PlacedPiece> placed = rearrange(bodies);
+        if (whole()) redundant_.become(member_, pieces_.front());
+        return placed;
     }
 
   private:
+    /// Of a whole member, whose forces were just found.
+    [[nodiscard]] bool is_borne(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
+                                double dt) {
+        closed_dt_ = dt;
+        list_supports(member_, pieces_, steps, loads, dt, closed_supports_);
+        if (closed_supports_.empty()) return false;
+        closed_forces_ = forces_;
+        return redundant_.bear(member_, state_, forces_, closed_supports_, dt, rule_);
+    }
+    /// Whether what supports carry now, that it is open, shows that the whole member would hold.
+    [[nodiscard]] bool is_proved() {
+        if (supports_.empty()) return false;
+        redundant_.learn(supports_);
+        redundant_.become(member_, make_piece(member_, state_, {0, member_.segments() - 1}));
+        return redundant_.bear(member_, state_, closed_forces_, closed_supports_, closed_dt_,
+                               rule_);
+    }
     [[nodiscard]] double all_work() const noexcept {
         double sum = 0;
         for (const SectionState& section : state_) sum += section.joint.plastic_work;
@@ -224,6 +260,11 @@ class MemberCourse {
     InternalForces forces_;
     double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
     MemberVibration vibration_;
+    RedundantForces redundant_;
+    bool is_opened_ = false;                                ///< the whole member, by the step
+    InternalForces closed_forces_;                          ///< of that, solved when it was whole
+    std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
+    double closed_dt_ = 0;
     bool struck_ = false; ///< this blow was looked at
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };

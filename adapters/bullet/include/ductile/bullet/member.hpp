@@ -88,8 +88,7 @@ class Member : public DividedMember<OpenSection> {
     friend class MemberSnapshot;
     friend class MemberTick;
     struct Attachment {
-        double place;
-        int segment;
+        MemberPlace at;
         Maker maker;
         std::unique_ptr<btTypedConstraint> constraint;
         std::unique_ptr<btJointFeedback> feedback;

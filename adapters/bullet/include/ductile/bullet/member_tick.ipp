@@ -245,10 +245,18 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
     for (const Member::Attachment& attachment : member.attachments_) {
         const btTypedConstraint& constraint = *attachment.constraint;
         if (!constraint.isEnabled()) continue;
-        const bool solved =
-            constraint.getRigidBodyA().isActive() || constraint.getRigidBodyB().isActive();
-        if (!solved) continue;
-        add(constraint, member.course_.piece_of(attachment.segment), attachment.segment);
+        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+        const bool support = (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
+                             constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
+        // one between what cannot move is not solved, what it told not of now
+        const bool still = support && attachment.body->isStaticObject();
+        if (!still && !a.isActive() && !b.isActive()) continue;
+        if (!still)
+            add(constraint, member.course_.piece_of(attachment.at.segment), attachment.at.segment);
+        if (!lists || !support) continue;
+        if (still) loads_.push_back({.segment = attachment.at.segment});
+        loads_.back().support = &attachment;
+        loads_.back().held_at = attachment.at.in_segment;
     }
     for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;

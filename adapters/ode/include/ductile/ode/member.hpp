@@ -88,12 +88,18 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         MemberRun run{};
         bool own = false; ///< else the user's
     };
+    /// What acts on a body, about its centre of mass [N], [N m].
+    struct Wrench {
+        Vector3<double> force = Vector3<double>::Zero(), torque = force;
+    };
     /// A joint of the user's on a body of the member.
     struct Hold {
         dJointID joint;
         dBodyID body;
-        int segment;
-        bool acts; ///< it is enabled
+        MemberPlace at;
+        bool acts;            ///< it is enabled
+        bool support = false; ///< by what cannot move
+        Wrench wrench{};      ///< of the step; the ledger may have lent its feedback
     };
     /// Of a piece, where the step solves it.
     struct Before {
@@ -101,11 +107,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         BodyMotion motion, after;
         bool solved = false;
     };
-    /// What acts on a body, about its centre of mass [N], [N m].
-    struct Wrench {
-        Vector3<double> force, torque;
-    };
-
     // ---- what the World asks
 
     DUCTILE_INLINE void enter(World& world) override;
@@ -147,7 +148,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void put_geoms();
     void make_joints(bool ahead);
     void find_holds();
-    [[nodiscard]] int segment_of(dJointID joint, std::size_t piece) const;
+    [[nodiscard]] MemberPlace place_of(dJointID joint, std::size_t piece) const;
 
     // ---- a step
 
@@ -168,8 +169,8 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     bool is_missing_ = false; ///< the World does not have its body
     std::vector<PieceBody> pieces_;
     std::vector<Hold> holds_;
-    std::vector<std::pair<dJointID, int>> told_; ///< which segments joints hold
-    std::vector<Before> before_;                 ///< by piece
+    std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
+    std::vector<Before> before_;                         ///< by piece
     std::vector<PieceStep> steps_;
     std::vector<MemberLoad> loads_;
 };

@@ -159,7 +159,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     }
     put_geoms();
     for (Hold& hold : holds_) {
-        const dBodyID from = std::exchange(hold.body, body_of(hold.segment));
+        const dBodyID from = std::exchange(hold.body, body_of(hold.at.segment));
         detail::hand_over(hold.joint, from, hold.body);
     }
     // joints end before their bodies

@@ -47,6 +47,15 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
+    for (Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        const bool of_a = bodies.a == hold.body;
+        hold.support = !can_move(of_a ? bodies.b : bodies.a);
+        // of one between what cannot move nothing is solved
+        const bool solved = can_move(hold.body) || !hold.support;
+        hold.wrench = solved ? wrench_of(*dJointGetFeedback(hold.joint), of_a) : Wrench{};
+    }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
         const dBodyID body = pieces_[i].body;
         before_[i].solved = can_move(body) && dBodyIsEnabled(body) != 0;
@@ -84,8 +93,7 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
         all += dt * norm(wrench_of(*touch.feedback, touch.of_a).force);
     }
     for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
-        add(wrench_of(*dJointGetFeedback(hold.joint), attached_bodies(hold.joint).a == hold.body));
+        if (hold.acts) add(hold.wrench);
     }
     for (const OpenSection& open : joints_) {
         for (const bool of_upper : {true, false}) add(wrench_of(open, of_upper));
@@ -134,8 +142,10 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
     }
     for (const Hold& hold : holds_) {
         if (!hold.acts) continue;
-        const bool of_a = attached_bodies(hold.joint).a == hold.body;
-        add_load(wrench_of(*dJointGetFeedback(hold.joint), of_a), hold.segment, dt);
+        add_load(hold.wrench, hold.at.segment, dt);
+        if (!hold.support) continue;
+        loads_.back().support = hold.joint;
+        loads_.back().held_at = hold.at.in_segment;
     }
     for (const OpenSection& open : joints_) {
         if (!open.hinge->is_awake_member()) continue;
