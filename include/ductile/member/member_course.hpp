@@ -157,27 +157,18 @@ class MemberCourse {
         }
         return rearrange(bodies);
     }
-    /// Counts a step that stands, and says which open sections it would close.
-    [[nodiscard]] const std::vector<int>& held() {
+    /// Open sections to close. After a step, which stands: it is counted. Before a blow: all that
+    /// do not move, as it is to be taken as the whole member takes it, whether they were opened
+    /// long before or in a part that was put back.
+    [[nodiscard]] const std::vector<int>& held(Closing when) {
         found_.clear();
-        if (std::exchange(is_opened_, false) && is_proved()) {
-            for (int i = 0; i < member_.sections(); ++i) {
-                if (section(i).open) found_.push_back(i);
-                section(i).alarms = 0;
-            }
-            return found_;
-        }
+        const bool step = when == Closing::after_step;
+        const bool all = step && std::exchange(is_opened_, false) && is_proved();
         for (int i = 0; i < member_.sections(); ++i) {
-            if (section(i).open && closes(section(i), rule_)) found_.push_back(i);
-        }
-        return found_;
-    }
-    /// Open sections that do not move: closed they take a blow as the whole member does, whether
-    /// they were opened long before it or in a part that was put back.
-    [[nodiscard]] const std::vector<int>& holding() {
-        found_.clear();
-        for (int i = 0; i < member_.sections(); ++i) {
-            if (section(i).open && rests(section(i))) found_.push_back(i);
+            SectionState& of = section(i);
+            if (all) of.alarms = 0;
+            if (!of.open) continue;
+            if (all || (step ? closes(of, rule_) : rests(of))) found_.push_back(i);
         }
         return found_;
     }

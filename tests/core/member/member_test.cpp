@@ -255,9 +255,9 @@ TEST_CASE("in a blow the section nearest to it opens, in a step the worst", "[me
     const std::vector<MemberLoad> rest{{.segment = 3, .point = {0, 0, 0.75}, .impulse = {0, 1, 0}}};
     CHECK(course.struck(steps, rest, strike) == no_section);
     // one that holds closes after three steps
-    CHECK(course.held().empty());
-    CHECK(course.held().empty());
-    CHECK(course.held() == opened);
+    CHECK(course.held(Closing::after_step).empty());
+    CHECK(course.held(Closing::after_step).empty());
+    CHECK(course.held(Closing::after_step) == opened);
     CHECK(course.close(opened, pieces).size() == 1);
     CHECK(course.whole());
 }
@@ -285,7 +285,8 @@ TEST_CASE("before a blow sections that do not move close, whenever they were ope
     course.section(1).joint.flowing = course.section(3).joint.flowing = true;
     course.section(1).joint.velocity = 1e-6;
     course.section(2).joint.broken = true;
-    CHECK(course.holding() == std::vector<int>{3}); // at its bound, as many shares of loads are
+    CHECK(course.held(Closing::before_blow) ==
+          std::vector<int>{3}); // at its bound, as many shares of loads are
 }
 
 TEST_CASE("what a member cannot be is said", "[member]") {

@@ -67,8 +67,7 @@ DUCTILE_INLINE bool MemberTick::close_held(Closing when, bool ahead,
                                            std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;
     member_.note_sections();
-    const std::vector<int> held =
-        when == Closing::before_blow ? member_.course_.holding() : member_.course_.held();
+    const std::vector<int> held = member_.course_.held(when);
     if (held.empty()) {
         member_.note_broken();
         return false;

@@ -209,7 +209,7 @@ DUCTILE_INLINE double Member::count_vibration() {
 DUCTILE_INLINE std::vector<int> Member::close_held(Closing when, bool ahead) {
     if (joints_.empty()) return {};
     note_sections();
-    const std::vector<int> held = when == Closing::before_blow ? course_.holding() : course_.held();
+    const std::vector<int> held = course_.held(when);
     if (!held.empty()) become(course_.close(held, placed_pieces()), ahead);
     return held;
 }
