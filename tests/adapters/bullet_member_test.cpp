@@ -299,6 +299,9 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
     CHECK(message_of([&] {
               member.apply_force({1, 0, 0}, -1);
           }) == "Member.apply_force.place = -1 m: must be in [0, 1] m");
+    CHECK(message_of([&] {
+              member.apply_force({0, NAN, 0}, 0.5);
+          }) == "Member.apply_force.force = nan N: must be finite");
     btPoint2PointConstraint pin(moving, {0, 0, 0});
     rig.engine.addConstraint(&pin);
     CHECK(message_of([&] { world.add(member); }).find("Member::attach") != std::string::npos);

@@ -41,6 +41,15 @@ inline Member heavy_post(int segments = 10, double strength = 500) {
     return Member(p);
 }
 
+/// 2 m, 24 kg in ten segments of some width, clamped.
+inline Member cantilever(double strength) {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-2, 1e-2, 2e-2});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = strength})));
+    return Member(p);
+}
+
 /// P11: 4 m, 400 kg, M_p = 50 kN m, clamped, a stub at its end that cannot turn where it is held.
 inline Member beam_to_hold(int segments) {
     MemberParameters p;

@@ -80,10 +80,10 @@ DUCTILE_INLINE void Member::attach(double place, Maker maker) {
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
-    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
+    const Force applied = force_at(to_core(force), place);
     if (forces_.empty() && pushed_) pushed_();
-    forces_.push_back({to_core(force), at});
-    body_of(at.segment).activate();
+    forces_.push_back(applied);
+    body_of(applied.at.segment).activate();
 }
 
 DUCTILE_INLINE void Member::require_possible() const {

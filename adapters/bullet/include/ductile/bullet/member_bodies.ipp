@@ -125,6 +125,7 @@ DUCTILE_INLINE void Member::make_attachments() {
         if (attachment.constraint == nullptr) {
             throw std::invalid_argument("Member.attach.maker: must make a constraint");
         }
+        attachment.told = btJointFeedback(); // was of another body
         attachment.constraint->setJointFeedback(attachment.feedback.get());
         world_->addConstraint(attachment.constraint.get());
     }

@@ -225,10 +225,10 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
 
 /// Of attachments and of its own joints.
 DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
-    const Member& member = member_;
-    const auto add = [&](const btTypedConstraint& constraint, std::size_t piece, int segment) {
+    Member& member = member_;
+    const auto add = [&](const btTypedConstraint& constraint, const btJointFeedback& told,
+                         std::size_t piece, int segment) {
         const btRigidBody* body = member.pieces_[piece].body;
-        const btJointFeedback& told = *constraint.getJointFeedback();
         const bool of_a = &constraint.getRigidBodyA() == body;
         const btVector3 force = of_a ? told.m_appliedForceBodyA : told.m_appliedForceBodyB;
         const btVector3 torque = of_a ? told.m_appliedTorqueBodyA : told.m_appliedTorqueBodyB;
@@ -241,27 +241,30 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         loads_.push_back(
             {segment, pose.origin, scaled(dt, to_core(force)), scaled(dt, to_core(torque))});
     };
-    for (const Member::Attachment& attachment : member.attachments_) {
+    const auto moves = [](const btRigidBody& body) {
+        return body.isActive() && !body.isStaticOrKinematicObject();
+    };
+    for (Member::Attachment& attachment : member.attachments_) {
         const btTypedConstraint& constraint = *attachment.constraint;
         if (!constraint.isEnabled()) continue;
         const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+        // what sleeps carries on as when it was solved; between what cannot move nothing is
+        if (moves(a) || moves(b)) attachment.told = *attachment.feedback;
+        const int segment = attachment.at.segment;
+        add(constraint, attachment.told, member.course_.piece_of(segment), segment);
         const bool support = (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
                              constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
-        // one between what cannot move is not solved, what it told not of now
-        const bool still = support && attachment.body->isStaticObject();
-        if (!still && !a.isActive() && !b.isActive()) continue;
-        if (!still)
-            add(constraint, member.course_.piece_of(attachment.at.segment), attachment.at.segment);
         if (!lists || !support) continue;
-        if (still) loads_.push_back({.segment = attachment.at.segment});
         loads_.back().support = &attachment;
         loads_.back().held_at = attachment.at.in_segment;
     }
     for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;
         const std::size_t lower = member.course_.piece_of(open.section);
-        if (member.pieces_[lower].own != nullptr) add(*open.hinge, lower, open.section);
-        add(*open.hinge, lower + 1, open.section + 1);
+        if (member.pieces_[lower].own != nullptr) {
+            add(*open.hinge, *open.feedback, lower, open.section);
+        }
+        add(*open.hinge, *open.feedback, lower + 1, open.section + 1);
     }
 }
 

@@ -78,7 +78,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     /// @throws std::invalid_argument where the place is beyond the ends or the joint null.
     void attach(double place, dJointID joint);
     /// `force` [N] at `place` [m] along the member, world axes, for the next step.
-    /// @throws std::invalid_argument where the place is beyond the ends.
+    /// @throws std::invalid_argument where the place is beyond the ends or the force not finite.
     void apply_force(const Vector3<double>& force, double place);
 
   private:
@@ -99,7 +99,13 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         MemberPlace at;
         bool acts;            ///< it is enabled
         bool support = false; ///< by what cannot move
-        Wrench wrench{};      ///< of the step; the ledger may have lent its feedback
+        Wrench wrench{};      ///< when it was last solved; the ledger may have lent its feedback
+    };
+    /// By a body that touches a clamped member.
+    struct Pressed {
+        dBodyID body;
+        Vector3<double> point; ///< [m]
+        Vector3<double> force; ///< [N]
     };
     /// Of a piece, where the step solves it.
     struct Before {
@@ -152,6 +158,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
 
     // ---- a step
 
+    void find_asleep(std::span<const Touch> touches);
     [[nodiscard]] double sum_of_impulses(double dt, std::span<const Touch> touches) const;
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
@@ -171,6 +178,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     std::vector<Hold> holds_;
     std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
     std::vector<Before> before_;                         ///< by piece
+    std::vector<Pressed> pressed_, asleep_; ///< when it was last solved; of these, what sleeps
     std::vector<PieceStep> steps_;
     std::vector<MemberLoad> loads_;
 };

@@ -115,9 +115,9 @@ DUCTILE_INLINE void Member::attach(double place, dJointID joint) {
     told_.emplace_back(joint, at);
 }
 DUCTILE_INLINE void Member::apply_force(const Vector3<double>& force, double place) {
-    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
-    forces_.push_back({force, at});
-    if (can_move(body_of(at.segment))) dBodyEnable(body_of(at.segment));
+    forces_.push_back(force_at(force, place));
+    const dBodyID body = body_of(forces_.back().at.segment);
+    if (can_move(body)) dBodyEnable(body);
 }
 
 DUCTILE_INLINE void Member::enter(World& world) {
@@ -183,7 +183,7 @@ DUCTILE_INLINE MemberPlace Member::place_of(dJointID joint, std::size_t piece) c
     return {segment, transposed_times(at.axes, difference(to_core(anchor), at.origin))};
 }
 DUCTILE_INLINE void Member::find_holds() {
-    holds_.clear();
+    const std::vector<Hold> before = std::exchange(holds_, {});
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         const dBodyID body = pieces_[i].body;
         for (int k = 0, count = dBodyGetNumJoints(body); k < count; ++k) {
@@ -192,7 +192,11 @@ DUCTILE_INLINE void Member::find_holds() {
                 std::any_of(joints_.begin(), joints_.end(),
                             [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
-            holds_.push_back({joint, body, place_of(joint, i), dJointIsEnabled(joint) != 0});
+            Hold& hold = holds_.emplace_back(
+                Hold{joint, body, place_of(joint, i), dJointIsEnabled(joint) != 0});
+            for (const Hold& was : before) {
+                if (was.joint == joint && was.body == body) hold.wrench = was.wrench;
+            }
         }
     }
 }

@@ -161,6 +161,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     for (Hold& hold : holds_) {
         const dBodyID from = std::exchange(hold.body, body_of(hold.at.segment));
         detail::hand_over(hold.joint, from, hold.body);
+        wake(hold.joint);
     }
     // joints end before their bodies
     std::erase_if(joints_, [this](const OpenSection& open) {
