@@ -806,6 +806,27 @@ TEST_CASE("forces on bodies that end in the frame are forgotten with them", "[od
     }
 }
 
+TEST_CASE("a member opens further where steps tear its open hinges apart", "[ode][member]") {
+    // a radian a step about its axis
+    const Rig rig;
+    World world(rig.id, {.warn = {}});
+    MemberParameters p;
+    p.segments = lumped_segments(2, 20, 10, {0.05, 0.05, 0.1});
+    p.sections.assign(9, UsualAxisJoint(Perfect<double>({.strength = 100})));
+    const Member of(p);
+    const dBodyID body = body_of(rig, of, {0, 0, 0});
+    ode::Member member(body, of, {.origin = {0, 0, -1}});
+    world.add(member);
+    dBodySetAngularVel(body, 0, 10, 60);
+    int most = 0;
+    for (int i = 0; i < 120; ++i) {
+        world.step(1.0 / 60);
+        most = std::max(most, member.open_sections());
+    }
+    CHECK(most > 3);
+    CHECK(member.absorbed_energy() > 0);
+}
+
 TEST_CASE("a member may be removed when it splits, and its world goes on", "[ode][member]") {
     for (const double tolerance : {0.0, 0.01}) {
         BallOnPost scene(heavy_post(), 100, 2, tolerance);

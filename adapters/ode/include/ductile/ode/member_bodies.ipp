@@ -245,7 +245,7 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
             dBodyGetWorld(user_), pieces_[i + 1].body, held ? nullptr : pieces_[i].body,
             hinge_frame(upper.section(description(), section + 1, false)),
             hinge_frame(held ? placed(frame_of(i), in_lower) : in_lower),
-            description().section(section));
+            description().section(section), Meeting::as_they_are);
         go_on(*open.hinge, course_.section(section));
         world_->take_in(*open.hinge);
         if (ahead) open.hinge->begin_frame();
