@@ -83,11 +83,13 @@ inline void internal_forces(const Member& member, const MemberPiece& piece, cons
     Vector3<double> about = placed(step.pose, piece.section(member, piece.run.last, true)).origin;
     const auto add = [&](const Vector3<double>& at, const Vector3<double>& impulse,
                          const Vector3<double>& alone, double sign) {
-        const Vector3<double> turned = sum(cross(difference(at, about), impulse), alone);
+        const Vector3<double> arm = difference(at, about);
+        const Vector3<double> turned = sum(cross(arm, impulse), alone);
         force = sum(force, scaled(sign, impulse));
         moment = sum(moment, scaled(sign, turned));
         result.largest_force = std::max(result.largest_force, norm(impulse));
-        result.largest_moment = std::max(result.largest_moment, norm(turned));
+        result.largest_moment =
+            std::max(result.largest_moment, norm(arm) * norm(impulse) + norm(alone));
     };
     const auto move_to = [&](const Vector3<double>& point) {
         moment = sum(moment, cross(difference(about, point), force));

@@ -294,15 +294,9 @@ DUCTILE_INLINE void MemberTick::finish_steps(double dt, std::span<const BodyBefo
         }
         const BodyChange went =
             body_change(body, before[std::size_t(body.getWorldArrayIndex())], dt);
-        step.change = went.change;
+        step.change = went.of(piece.inertia, step.pose.axes);
         step.spin = went.spin;
-        if (went.turns) step.dt = dt;
-        if (&body == &member.user_) {
-            // its inertia is the user's
-            const Vector3<double> about =
-                times(to_core(body.getInvInertiaTensorWorld().inverse()), step.change.spin);
-            step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);
-        }
+        step.dt = went.dt;
     }
 }
 
