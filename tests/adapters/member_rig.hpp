@@ -219,18 +219,22 @@ struct BallOnPost {
 
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
+        : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
+    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
+               double gap, double place, bool held_twice)
         : world(rig.engine, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
         constexpr double radius = 0.1;
         auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(radius)));
         btVector3 inertia;
         sphere->calculateLocalInertia(btScalar(mass), inertia);
-        ball = &rig.body(mass, inertia,
-                         {0, btScalar(-half - radius - gap), btScalar(of.length() - 0.03)}, sphere,
-                         usual, everything);
+        ball = &rig.body(mass, inertia, {0, btScalar(-half - radius - gap), btScalar(place)},
+                         sphere, usual, everything);
         ball->setLinearVelocity({0, btScalar(speed), 0});
         post = std::make_unique<bullet::Member>(
             rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(half, of.length()), usual, everything), of,
             here, bullet::MemberBox{half, half});
+        if (held_twice) hold_across(*post, of.length(), of.length(), true, false);
         world.add(*post, "post");
     }
     void go(double time, double frame) {

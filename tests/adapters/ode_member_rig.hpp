@@ -213,17 +213,26 @@ struct BallOnPost {
 
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
+        : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
+    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
+               double gap, double place, bool held_twice)
         : world(rig.id, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
         constexpr double radius = 0.1;
         const double inertia = 0.4 * mass * radius * radius;
-        ball = rig.body(mass, {inertia, inertia, inertia},
-                        {0, -half - radius - gap, of.length() - 0.03});
+        ball = rig.body(mass, {inertia, inertia, inertia}, {0, -half - radius - gap, place});
         dGeomSetBody(dCreateSphere(rig.space, dReal(radius)), ball);
         set_velocity(ball, {0, speed, 0});
         world.add(ball);
         const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
         rig.boxes(body, of, half);
         post = std::make_unique<ode::Member>(body, of, here);
+        if (held_twice) {
+            const dJointID end = dJointCreateFixed(rig.id, nullptr);
+            dJointAttach(end, body, nullptr);
+            dJointSetFixed(end);
+            post->attach(of.length(), end);
+        }
         world.add(*post, "post");
         rig.meet(world);
     }

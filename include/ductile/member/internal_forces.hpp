@@ -23,6 +23,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -39,6 +40,8 @@ struct MemberLoad {
     Vector3<double> moment = Vector3<double>::Zero();  ///< N [N m s]
     const void* support = nullptr; ///< the joint with what cannot move, whatever pushes it
     Vector3<double> held_at = Vector3<double>::Zero(); ///< by that, in the segment [m]
+    /// Whether its kind bears a force along y and z of the segment, a moment about x, either way.
+    std::array<bool, 3> bears{};
 };
 
 /// How a piece went through a step. Plain value.

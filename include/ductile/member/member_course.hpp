@@ -129,8 +129,8 @@ class MemberCourse {
         const bool first = !std::exchange(struck_, true);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
-            const MemberBlow blow =
-                member_blow(member_, state_, forces_, strike.energy, strike.speed, strike.segment);
+            const MemberBlow blow = member_blow(member_, state_, elastic_forces(steps, loads),
+                                                strike.energy, strike.speed, strike.segment);
             utilisation = std::max(utilisation, blow.in_all);
             yields_ = yields_ || blow.yields();
             for (const SectionForce& carried : forces_.sections) {
@@ -192,10 +192,29 @@ class MemberCourse {
     [[nodiscard]] bool is_borne(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                                 double dt) {
         closed_dt_ = dt;
-        list_supports(member_, pieces_, steps, loads, dt, closed_supports_);
+        find_supports(steps, loads, dt);
         if (closed_supports_.empty()) return false;
         closed_forces_ = forces_;
         return redundant_.bear(member_, state_, forces_, closed_supports_, dt, rule_);
+    }
+    /// Of a blow, whose forces of a piece were just found.
+    [[nodiscard]] const InternalForces& elastic_forces(std::span<const PieceStep> steps,
+                                                       std::span<const MemberLoad> loads) {
+        if (!whole() || !(member_.bending_stiffness() < std::numeric_limits<double>::infinity())) {
+            return forces_;
+        }
+        find_supports(steps, loads, 1);
+        closed_forces_ = forces_;
+        redundant_.relax(member_, closed_forces_);
+        return closed_forces_;
+    }
+    /// Of the whole member; what those that are new bear by their kind.
+    void find_supports(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
+                       double dt) {
+        list_supports(member_, pieces_, steps, loads, dt, closed_supports_);
+        if (redundant_.knows(closed_supports_)) return;
+        redundant_.learn(closed_supports_);
+        redundant_.become(member_, pieces_.front());
     }
     /// Whether what supports carry now, that it is open, shows that the whole member would hold.
     [[nodiscard]] bool is_proved() {

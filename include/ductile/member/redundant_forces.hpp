@@ -12,9 +12,13 @@
 // before; the loads may be others than then. Where none is found the member opens, which is right
 // whether there is one or not.
 //
-// What a support can carry at all is seen in the step that opens the member: solved with its
-// sections as joints, a pin has no moment there, and a stop pushes to one side. Counted are joints
-// with what cannot move, whatever pushes it: what stands on the ground by its weight may let go.
+// What a support can carry at all its kind says where an adapter knows that; else it is seen in the
+// step that opens the member: solved with its sections as joints, a pin has no moment there, and a
+// stop pushes to one side. Counted are joints with what cannot move, whatever pushes it: what
+// stands on the ground by its weight may let go.
+//
+// Blow. Of all shares an elastic member takes those of the least strain energy, whatever the rows
+// of its rigid body chose: min_x ∫ (M̂ + Σ x_i m_i)²/(2 EI) ds (Castigliano).
 //
 // Sources: static theorem: Jirasek & Bazant (2002), Inelastic Analysis of Structures, ch. 4;
 // projections: Motzkin & Schoenberg (1954), Canadian Journal of Mathematics 6, 393.
@@ -27,9 +31,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -43,6 +49,7 @@ struct MemberSupport {
     int segment = 0;
     Vector3<double> at = Vector3<double>::Zero();      ///< in the segment [m]
     Vector3<double> carries = Vector3<double>::Zero(); ///< w there [N]
+    std::array<bool, 3> bears{};                       ///< either way, as its kind says
 
     [[nodiscard]] bool is(const MemberSupport& other) const noexcept {
         return joint == other.joint && segment == other.segment;
@@ -71,7 +78,8 @@ inline void list_supports(const Member& member, std::span<const MemberPiece> pie
         const Vector3<double> w{dot(column(at.axes, 1), load.impulse),
                                 dot(column(at.axes, 2), load.impulse),
                                 dot(column(at.axes, 0), moment) / member.length()};
-        supports.push_back({load.support, load.segment, load.held_at, scaled(1 / dt, w)});
+        supports.push_back(
+            {load.support, load.segment, load.held_at, scaled(1 / dt, w), load.bears});
     }
     std::sort(supports.begin(), supports.end());
 }
@@ -79,7 +87,11 @@ inline void list_supports(const Member& member, std::span<const MemberPiece> pie
 /// Of a whole member. Plain value.
 class RedundantForces {
   public:
-    /// Supports carry this in a step that opened the whole member.
+    [[nodiscard]] bool knows(std::span<const MemberSupport> supports) const noexcept {
+        return std::equal(supports.begin(), supports.end(), supports_.begin(), supports_.end(),
+                          [](const MemberSupport& a, const MemberSupport& b) { return a.is(b); });
+    }
+    /// Supports carry this in a step.
     void learn(std::span<const MemberSupport> supports) {
         constexpr double noticed = 1e-5; // of the largest
         if (!knows(supports)) {
@@ -94,8 +106,11 @@ class RedundantForces {
         }
         for (std::size_t i = 0; i < count(); ++i) {
             const double w = supports[i / 3].carries[int(i % 3)];
-            if (w > noticed * largest) most_[i] = std::numeric_limits<double>::infinity();
-            if (w < -noticed * largest) least_[i] = -std::numeric_limits<double>::infinity();
+            const bool both = supports[i / 3].bears[i % 3];
+            if (both || w > noticed * largest) most_[i] = std::numeric_limits<double>::infinity();
+            if (both || w < -noticed * largest) {
+                least_[i] = -std::numeric_limits<double>::infinity();
+            }
         }
     }
     /// It is this one from now on.
@@ -144,6 +159,57 @@ class RedundantForces {
         return false;
     }
 
+    /// Adds to what a whole member carries in a blow what its supports give it where it is elastic:
+    /// of all shares those with the least strain energy. By conjugate gradients.
+    void relax(const Member& member, InternalForces& forces) {
+        const std::size_t n = count(), sections = std::size_t(member.sections());
+        if (n == 0) return;
+        // ∫ a b ds of moments that are linear between sections, none beyond the last ones
+        const auto weighted = [&](const std::vector<double>& a) {
+            std::vector<double> result(sections);
+            for (std::size_t s = 0; s < sections; ++s) {
+                const double before = member.segment(int(s)).length,
+                             behind = member.segment(int(s) + 1).length;
+                result[s] = a[s] * (before + behind) / 3;
+                if (s > 0) result[s] += a[s - 1] * before / 6;
+                if (s + 1 < sections) result[s] += a[s + 1] * behind / 6;
+            }
+            return result;
+        };
+        const auto along_rows = [&](const std::vector<double>& a) {
+            std::vector<double> result(n);
+            for (std::size_t s = 0; s < sections; ++s) {
+                for (std::size_t k = 0; k < n; ++k) result[k] += row(n + s)[k] * a[s];
+            }
+            return result;
+        };
+        const auto square = [](const std::vector<double>& a) {
+            return std::inner_product(a.begin(), a.end(), a.begin(), 0.0);
+        };
+        std::vector<double> moments(sections), change(sections);
+        for (const SectionForce& carried : forces.sections) {
+            moments[std::size_t(carried.section)] = carried.bending;
+        }
+        std::vector<double> left = along_rows(weighted(moments)), way = left;
+        const double first = square(left);
+        for (std::size_t i = 0; i < n && square(left) > 1e-24 * first; ++i) {
+            for (std::size_t s = 0; s < sections; ++s) {
+                change[s] = std::inner_product(way.begin(), way.end(), row(n + s), 0.0);
+            }
+            const std::vector<double> stiff = along_rows(weighted(change));
+            const double most = std::inner_product(way.begin(), way.end(), stiff.begin(), 0.0);
+            if (!(most > 0)) break;
+            const double before = square(left), step = before / most;
+            for (std::size_t s = 0; s < sections; ++s) moments[s] -= step * change[s];
+            for (std::size_t k = 0; k < n; ++k) left[k] -= step * stiff[k];
+            const double share = square(left) / before;
+            for (std::size_t k = 0; k < n; ++k) way[k] = left[k] + share * way[k];
+        }
+        for (SectionForce& carried : forces.sections) {
+            carried.bending = moments[std::size_t(carried.section)];
+        }
+    }
+
   private:
     /// side (row · x) <= room
     struct Bound {
@@ -151,10 +217,6 @@ class RedundantForces {
         double side, room;
     };
     [[nodiscard]] std::size_t count() const noexcept { return 3 * supports_.size(); }
-    [[nodiscard]] bool knows(std::span<const MemberSupport> supports) const noexcept {
-        return std::equal(supports.begin(), supports.end(), supports_.begin(), supports_.end(),
-                          [](const MemberSupport& a, const MemberSupport& b) { return a.is(b); });
-    }
     [[nodiscard]] double* row(std::size_t i) noexcept { return rows_.data() + i * count(); }
     [[nodiscard]] double dot_beside(std::size_t i) noexcept {
         double sum = 0;

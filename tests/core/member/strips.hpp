@@ -60,6 +60,17 @@ inline Member beam_to_hold(int segments) {
     return Member(p);
 }
 
+/// 4 m, 0.4 kg, M_p = 5 kN m, EI = 1 MN m², else as beam_to_hold: a wave is next to nothing.
+inline Member elastic_beam_to_hold() {
+    MemberParameters p;
+    p.segments = lumped_segments(4, 0.4, 16, {1e-4, 1e-4, 1e-3});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.segments.push_back({.length = 1e-6, .mass = 1, .inertia = {1, 1, 1}});
+    p.sections.assign(p.segments.size() - 1, UsualAxisJoint(Perfect<double>({.strength = 5e3})));
+    p.bending_stiffness = 1e6;
+    return Member(p);
+}
+
 /// 2 m, 24 kg in ten segments; its fifth section breaks at 0.05 rad, all others are strong.
 inline Member post_that_breaks() {
     MemberParameters p;

@@ -3,7 +3,11 @@
 // Bodies of member_tick.hpp.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -223,6 +227,32 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
     }
 }
 
+/// What a constraint locks of a force along y and z of the segment at `pose`, a moment about x.
+DUCTILE_INLINE std::array<bool, 3> MemberTick::borne_by(btTypedConstraint& constraint,
+                                                        const btTransform& pose) {
+    if (const auto* point = dynamic_cast<const btPoint2PointConstraint*>(&constraint)) {
+        const bool rigid = point->m_setting.m_impulseClamp == 0;
+        return {rigid, rigid, false};
+    }
+    auto* axes = dynamic_cast<btGeneric6DofSpring2Constraint*>(&constraint);
+    if (axes == nullptr) return {};
+    axes->calculateTransforms();
+    const btMatrix3x3 &frame = axes->getCalculatedTransformA().getBasis(), &own = pose.getBasis();
+    const btTranslationalLimitMotor2& move = *axes->getTranslationalLimitMotor();
+    const auto locks = [&](bool turns, int along) {
+        constexpr double aligned = 1 - 1e-6;
+        for (int i = 0; i < 3; ++i) {
+            const btRotationalLimitMotor2& turn = *axes->getRotationalLimitMotor(i);
+            const bool locked = turns ? turn.m_loLimit == turn.m_hiLimit
+                                      : move.m_lowerLimit[i] == move.m_upperLimit[i];
+            const double share = std::abs(double(frame.getColumn(i).dot(own.getColumn(along))));
+            if (locked && share > aligned) return true;
+        }
+        return false;
+    };
+    return {locks(false, 1), locks(false, 2), locks(true, 0)};
+}
+
 /// Of attachments and of its own joints.
 DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
     Member& member = member_;
@@ -257,6 +287,7 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         if (!lists || !support) continue;
         loads_.back().support = &attachment;
         loads_.back().held_at = attachment.at.in_segment;
+        loads_.back().bears = borne_by(*attachment.constraint, member.pose(segment));
     }
     for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;

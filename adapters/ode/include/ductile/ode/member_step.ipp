@@ -157,6 +157,9 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
         if (!hold.support) continue;
         loads_.back().support = hold.joint;
         loads_.back().held_at = hold.at.in_segment;
+        // a hinge may turn, or has stops
+        const dJointType type = dJointGetType(hold.joint);
+        loads_.back().bears = {true, true, type == dJointTypeFixed};
     }
     for (const OpenSection& open : joints_) {
         if (!open.hinge->is_awake_member()) continue;
