@@ -250,7 +250,8 @@ TEST_CASE("what acts on a member that is damped and spins is all accounted for",
             }
             CAPTURE(tolerance, inertia_share, left_over);
             CHECK(left_over > 0); // it was looked at
-            CHECK(left_over < (rough ? 1e-4 : 1e-9));
+            // of moments of some 0.3 N m s, the round-off of an angular momentum of 70
+            CHECK(left_over < (rough ? 1e-3 : 1e-9));
             CHECK(member.absorbed_energy() == 0);
         }
     }
