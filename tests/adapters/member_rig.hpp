@@ -90,6 +90,7 @@ struct AlwaysJointed {
                 world.add(*hinges.back());
             }
             before = &body;
+            bodies.push_back(before);
             place += segment.length;
         }
         last = before;
@@ -101,6 +102,7 @@ struct AlwaysJointed {
     }
 
     std::vector<std::unique_ptr<Hinge>> hinges;
+    std::vector<btRigidBody*> bodies;
     btRigidBody* last = nullptr;
 };
 
@@ -141,22 +143,72 @@ struct Struck {
     }
 };
 
-/// Holds a member across at `place` along it, at `z` in the world [m]; it may slide along, turn
-/// about x.
+/// Holds a body across where `at` in it is at `z` in the world [m]; it may slide along, turn about
+/// x.
+inline std::unique_ptr<btTypedConstraint> held_across(btRigidBody& body, const btTransform& at,
+                                                      double z, bool slides, bool turns) {
+    // the older one of six axes lets go where there is no error
+    auto held = std::make_unique<btGeneric6DofSpring2Constraint>(
+        btTypedConstraint::getFixedBody(), body,
+        btTransform(btQuaternion::getIdentity(), {0, 0, btScalar(z)}), at);
+    const btScalar free = slides ? 1 : 0, turn = turns ? 1 : 0;
+    held->setLinearLowerLimit({0, 0, free});
+    held->setLinearUpperLimit({0, 0, -free});
+    held->setAngularLowerLimit({turn, 0, 0});
+    held->setAngularUpperLimit({-turn, 0, 0});
+    return held;
+}
+/// The same of a member at `place` along it [m].
 inline void hold_across(bullet::Member& member, double place, double z, bool slides, bool turns) {
     member.attach(place, [z, slides, turns](btRigidBody& piece, const btTransform& at) {
-        // the older one of six axes lets go where there is no error
-        auto held = std::make_unique<btGeneric6DofSpring2Constraint>(
-            btTypedConstraint::getFixedBody(), piece,
-            btTransform(btQuaternion::getIdentity(), {0, 0, btScalar(z)}), at);
-        const btScalar free = slides ? 1 : 0, turn = turns ? 1 : 0;
-        held->setLinearLowerLimit({0, 0, free});
-        held->setLinearUpperLimit({0, 0, -free});
-        held->setAngularLowerLimit({turn, 0, 0});
-        held->setAngularUpperLimit({-turn, 0, 0});
-        return held;
+        return held_across(piece, at, z, slides, turns);
     });
 }
+
+/// A beam that stands clamped, its other end held so that it may slide along alone, or not at all,
+/// and a mass of 100 kg fixed by a point to it at `place` [m].
+struct HeldTwice {
+    Rig rig;
+    bullet::World world;
+    std::unique_ptr<AlwaysJointed> always;
+    std::unique_ptr<bullet::Member> member;
+    btRigidBody* mass;
+
+    HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
+              bool slides = true)
+        : world(rig.engine, {.tolerance = tolerance, .warn = {}}),
+          mass(&rig.body(100, {10, 10, 10}, {0, 0, btScalar(place)})) {
+        const btVector3 none(0, 0, 0);
+        const double length = of.length();
+        if (!just_in_time) {
+            always = std::make_unique<AlwaysJointed>(rig, world, of);
+            const auto half = btScalar(of.segment(of.segments() - 1).length / 2);
+            const MemberPlace at = of.on_axis("place", place);
+            rig.constraints.push_back(held_across(
+                *always->last, btTransform(here.getBasis(), {0, 0, half}), length, slides, false));
+            rig.constraints.push_back(std::make_unique<btPoint2PointConstraint>(
+                *always->bodies[std::size_t(at.segment - 1)], *mass,
+                btVector3(0, 0, btScalar(at.in_segment[2])), none));
+            for (auto& constraint : rig.constraints) rig.engine.addConstraint(constraint.get());
+            return;
+        }
+        member = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
+        hold_across(*member, length, length, slides, false);
+        member->attach(place, [this](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, *mass, at.getOrigin(),
+                                                             btVector3(0, 0, 0));
+        });
+        world.add(*member);
+    }
+    void strike(double speed) { mass->setLinearVelocity({0, btScalar(speed), 0}); }
+    void push(double force) { mass->applyCentralForce({0, btScalar(force), 0}); }
+    [[nodiscard]] double absorbed_energy() const {
+        return member ? member->absorbed_energy() : always->absorbed_energy();
+    }
+    [[nodiscard]] double bend(int section) const {
+        return member ? member->bend(section) : always->hinges[std::size_t(section)]->rotation();
+    }
+};
 
 /// A ball that strikes the end of a clamped post, 0 ... 2 s.
 struct BallOnPost {
@@ -167,18 +219,22 @@ struct BallOnPost {
 
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
+        : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
+    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
+               double gap, double place, bool held_twice)
         : world(rig.engine, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
         constexpr double radius = 0.1;
         auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(radius)));
         btVector3 inertia;
         sphere->calculateLocalInertia(btScalar(mass), inertia);
-        ball = &rig.body(mass, inertia,
-                         {0, btScalar(-half - radius - gap), btScalar(of.length() - 0.03)}, sphere,
-                         usual, everything);
+        ball = &rig.body(mass, inertia, {0, btScalar(-half - radius - gap), btScalar(place)},
+                         sphere, usual, everything);
         ball->setLinearVelocity({0, btScalar(speed), 0});
         post = std::make_unique<bullet::Member>(
             rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(half, of.length()), usual, everything), of,
             here, bullet::MemberBox{half, half});
+        if (held_twice) hold_across(*post, of.length(), of.length(), true, false);
         world.add(*post, "post");
     }
     void go(double time, double frame) {

@@ -160,6 +160,50 @@ struct Struck {
     }
 };
 
+/// A beam that stands clamped, its other end held so that it may slide along alone, or not at all,
+/// and a mass of 100 kg fixed by a point to it at `place` [m].
+struct HeldTwice {
+    Rig rig;
+    ode::World world;
+    std::unique_ptr<AlwaysJointed> always;
+    std::unique_ptr<ode::Member> member;
+    dBodyID mass;
+
+    HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
+              bool slides = true)
+        : world(rig.id, {.tolerance = tolerance, .warn = {}}),
+          mass(rig.body(100, {10, 10, 10}, {0, 0, place})) {
+        const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, of.length()});
+        for (const dBodyID body : {mass, carriage}) world.add(body);
+        const dJointID rail = dJointCreateSlider(rig.id, nullptr),
+                       end = dJointCreateFixed(rig.id, nullptr);
+        dJointAttach(rail, carriage, nullptr);
+        dJointSetSliderAxis(rail, 0, 0, 1);
+        dBodyID last = nullptr, struck = nullptr;
+        if (just_in_time) {
+            member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
+            last = struck = member->body_of(0);
+            member->attach(of.length(), end);
+        } else {
+            always = std::make_unique<AlwaysJointed>(rig, world, of);
+            last = always->bodies.back();
+            struck = always->bodies[std::size_t(of.segment_at(place) - 1)];
+        }
+        dJointAttach(end, last, slides ? carriage : nullptr);
+        dJointSetFixed(end);
+        rig.pin(struck, mass, {0, 0, place});
+        if (member) world.add(*member);
+    }
+    void strike(double speed) const { set_velocity(mass, {0, speed, 0}); }
+    void push(double force) const { dBodyAddForce(mass, 0, dReal(force), 0); }
+    [[nodiscard]] double absorbed_energy() const {
+        return member ? member->absorbed_energy() : always->absorbed_energy();
+    }
+    [[nodiscard]] double bend(int section) const {
+        return member ? member->bend(section) : always->hinges[std::size_t(section)]->rotation();
+    }
+};
+
 /// A ball that strikes the end of a clamped post, 0 ... 2 s.
 struct BallOnPost {
     Rig rig;
@@ -169,17 +213,26 @@ struct BallOnPost {
 
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
+        : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
+    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
+               double gap, double place, bool held_twice)
         : world(rig.id, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
         constexpr double radius = 0.1;
         const double inertia = 0.4 * mass * radius * radius;
-        ball = rig.body(mass, {inertia, inertia, inertia},
-                        {0, -half - radius - gap, of.length() - 0.03});
+        ball = rig.body(mass, {inertia, inertia, inertia}, {0, -half - radius - gap, place});
         dGeomSetBody(dCreateSphere(rig.space, dReal(radius)), ball);
         set_velocity(ball, {0, speed, 0});
         world.add(ball);
         const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
         rig.boxes(body, of, half);
         post = std::make_unique<ode::Member>(body, of, here);
+        if (held_twice) {
+            const dJointID end = dJointCreateFixed(rig.id, nullptr);
+            dJointAttach(end, body, nullptr);
+            dJointSetFixed(end);
+            post->attach(of.length(), end);
+        }
         world.add(*post, "post");
         rig.meet(world);
     }

@@ -208,6 +208,44 @@ TEST_CASE("what lies on a clamped member falls asleep", "[ode][member]") {
     }
 }
 
+TEST_CASE("what sleeps on a clamped member, or hangs on it, loads it still", "[ode][member]") {
+    const Member of = cantilever(1900);
+    for (const double tolerance : {0.0, 0.01}) {
+        for (const bool hangs : {true, false}) {
+            Rig rig({0, -9.81, 0});
+            dWorldSetContactSurfaceLayer(rig.id, dReal(1e-4));
+            World world(rig.id, {.tolerance = tolerance, .warn = {}});
+            const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
+            rig.boxes(body, of, 0.05);
+            ode::Member member(body, of, here);
+            const dBodyID mass = rig.body(50, {1, 1, 1}, {0, hangs ? -1.0 : 0.15 - 1e-4, 1.9});
+            rig.box(mass, {0.1, 0.1, 0.1});
+            dBodySetAutoDisableFlag(mass, 1);
+            dBodySetAutoDisableAverageSamplesCount(mass, 1);
+            if (hangs) rig.pin(body, mass, {0, 0, 1.9});
+            world.add(mass);
+            world.add(member);
+            rig.meet(world);
+            for (int i = 0; i < 200; ++i) world.step(1.0 / 60);
+            CAPTURE(tolerance, hangs);
+            CHECK(dBodyIsEnabled(mass) == 0);
+            CHECK(member.absorbed_energy() == 0);
+            // 235 N m by its weight and 932 by the mass
+            for (int i = 0; i < 60; ++i) {
+                member.apply_force({0, -300, 0}, 2);
+                world.step(1.0 / 60);
+            }
+            CHECK(member.whole());
+            CHECK(dBodyIsEnabled(mass) == 0);
+            for (int i = 0; i < 60; ++i) {
+                member.apply_force({0, -450, 0}, 2);
+                world.step(1.0 / 60);
+            }
+            CHECK(member.absorbed_energy() > 100);
+        }
+    }
+}
+
 TEST_CASE("a post bears 0.99 of its collapse load whole and moves at 1.001", "[ode][member]") {
     // clamped, and a bar that moves held by a fixed joint of the engine's own
     for (const bool clamped : {true, false}) {
@@ -662,6 +700,9 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[o
     CHECK(message_of([&] {
               member.apply_force({1, 0, 0}, -1);
           }) == "Member.apply_force.place = -1 m: must be in [0, 1] m");
+    CHECK(message_of([&] {
+              member.apply_force({0, NAN, 0}, 0.5);
+          }) == "Member.apply_force.force = nan N: must be finite");
     World quick(rig.id, {.solver = ode::Solver::quick, .warn = {}});
     CHECK(message_of([&] { quick.add(member); }).find("Solver::quick") != std::string::npos);
     const Rig elsewhere;
@@ -763,6 +804,27 @@ TEST_CASE("forces on bodies that end in the frame are forgotten with them", "[od
         CHECK(most > 1);
         CHECK(scene.post->absorbed_energy() > 50);
     }
+}
+
+TEST_CASE("a member opens further where steps tear its open hinges apart", "[ode][member]") {
+    // a radian a step about its axis
+    const Rig rig;
+    World world(rig.id, {.warn = {}});
+    MemberParameters p;
+    p.segments = lumped_segments(2, 20, 10, {0.05, 0.05, 0.1});
+    p.sections.assign(9, UsualAxisJoint(Perfect<double>({.strength = 100})));
+    const Member of(p);
+    const dBodyID body = body_of(rig, of, {0, 0, 0});
+    ode::Member member(body, of, {.origin = {0, 0, -1}});
+    world.add(member);
+    dBodySetAngularVel(body, 0, 10, 60);
+    int most = 0;
+    for (int i = 0; i < 120; ++i) {
+        world.step(1.0 / 60);
+        most = std::max(most, member.open_sections());
+    }
+    CHECK(most > 3);
+    CHECK(member.absorbed_energy() > 0);
 }
 
 TEST_CASE("a member may be removed when it splits, and its world goes on", "[ode][member]") {

@@ -12,11 +12,12 @@
 // Where a hinge travels the sections that it comes to carry M_p all along: only what is beyond by
 // more than round-off is opened.
 //
-// Closed again is a section that held, moment within its strength, in some steps in a row. It does
-// not move then, so nothing is lost but the drift of its joint; and opening it too early or late
-// changes no motion, only what it costs. Where a member is held more than once, impulses of the
-// closed one may be beyond a section that holds when it is open: after some such alarms each
-// doubles the steps.
+// Closed again is a section that did not move in some steps in a row, be its moment within its
+// strength or, as where many distributions balance the loads, just at it. So nothing is lost but
+// the drift of its joint; and opening it too early or late changes no motion, only what it costs.
+// Where a member is held more than once, impulses of the closed one may be beyond a section that
+// holds when it is open (redundant_forces.hpp); where it is so again and again, each such alarm
+// after some doubles the steps.
 #pragma once
 
 #include <algorithm>
@@ -94,10 +95,17 @@ inline constexpr int no_section = -1;
     return worst;
 }
 
+/// Of an open section, whose joint has committed the step.
+[[nodiscard]] inline bool rests(const SectionState& section) noexcept {
+    constexpr double still = 1e-9; // [rad/s]; a load 1e-6 beyond the limit moves it by 1e-9 in 1 µs
+    return !section.joint.broken &&
+           (!section.joint.flowing || std::abs(section.joint.velocity) <= still);
+}
+
 /// Counts the step that an open section's joint has committed; true where it closes.
 [[nodiscard]] inline bool closes(SectionState& section, const ActiveSections& rule = {}) noexcept {
     constexpr int few_alarms = 8, most_doublings = 10;
-    if (section.joint.flowing || section.joint.broken) {
+    if (!rests(section)) {
         section.held = section.alarms = 0;
         return false;
     }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ductile/member/member_course.hpp"
+#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 #include "ductile/world/joint_report.hpp"
 
@@ -121,6 +122,10 @@ class DividedMember {
     [[nodiscard]] double absorbed_energy() const {
         double sum = course_.closed_work() - vibration();
         for (const OpenSection& open : joints_) sum += open.hinge->absorbed_energy();
+        if (!joints_.empty()) return sum;
+        for (const SectionState& section : course_.state()) { // of one that left its world
+            if (section.open) sum += section.joint.plastic_work;
+        }
         return sum;
     }
     /// What an elastic member gives back of what its sections took (member/blow.hpp) [J].
@@ -174,6 +179,13 @@ class DividedMember {
             if (!open.hinge->is_awake_member()) section.joint.flowing = false; // not any more
             section.bend = open.hinge->rotation();
         }
+    }
+    /// @throws std::invalid_argument where the place is beyond the ends, the force not finite.
+    [[nodiscard]] Force force_at(const Vector3<double>& force, double place) const {
+        if (!are_finite(norm(force))) {
+            check::fail("Member.apply_force.force", norm(force), "N", "finite");
+        }
+        return {force, description().on_axis("Member.apply_force.place", place)};
     }
     /// Of its forces, as a piece that is at `pose` has them in a step of `dt` [s].
     [[nodiscard]] MemberLoad load(const Force& force, const JointFrame<double>& pose,

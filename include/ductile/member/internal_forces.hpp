@@ -13,7 +13,8 @@
 // One rigid body is the exact solution of the always-jointed member where no section is beyond what
 // it can carry: sections that hold are rows within their bounds, and the velocities of such a
 // system are unique. Where what holds a piece is redundant the impulses are not unique, and a
-// section may be opened that holds then: at the cost of another solve, without an error.
+// section may be opened that holds then: at the cost of another solve, without an error
+// (redundant_forces.hpp).
 //
 // Symbols, all in world axes
 //   J, N, p   impulse, its moment, where it acts         [N s], [N m s], [m]
@@ -22,6 +23,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -36,6 +38,10 @@ struct MemberLoad {
     Vector3<double> point = Vector3<double>::Zero();   ///< p [m]
     Vector3<double> impulse = Vector3<double>::Zero(); ///< J [N s]
     Vector3<double> moment = Vector3<double>::Zero();  ///< N [N m s]
+    const void* support = nullptr; ///< the joint with what cannot move, whatever pushes it
+    Vector3<double> held_at = Vector3<double>::Zero(); ///< by that, in the segment [m]
+    /// Whether its kind bears a force along y and z of the segment, a moment about x, either way.
+    std::array<bool, 3> bears{};
 };
 
 /// How a piece went through a step. Plain value.
@@ -80,11 +86,13 @@ inline void internal_forces(const Member& member, const MemberPiece& piece, cons
     Vector3<double> about = placed(step.pose, piece.section(member, piece.run.last, true)).origin;
     const auto add = [&](const Vector3<double>& at, const Vector3<double>& impulse,
                          const Vector3<double>& alone, double sign) {
-        const Vector3<double> turned = sum(cross(difference(at, about), impulse), alone);
+        const Vector3<double> arm = difference(at, about);
+        const Vector3<double> turned = sum(cross(arm, impulse), alone);
         force = sum(force, scaled(sign, impulse));
         moment = sum(moment, scaled(sign, turned));
         result.largest_force = std::max(result.largest_force, norm(impulse));
-        result.largest_moment = std::max(result.largest_moment, norm(turned));
+        result.largest_moment =
+            std::max(result.largest_moment, norm(arm) * norm(impulse) + norm(alone));
     };
     const auto move_to = [&](const Vector3<double>& point) {
         moment = sum(moment, cross(difference(about, point), force));

@@ -20,6 +20,8 @@
 //   EI      bending stiffness            [N m²]
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <string>
@@ -30,6 +32,7 @@
 #include "ductile/member/section_joint.hpp"
 #include "ductile/section/section.hpp"
 #include "ductile/vocabulary/check.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
@@ -196,6 +199,11 @@ requires std::same_as<typename T::Scalar, double>
     }
     const double area = section.area(), x = section.second_moment(SectionAxis::x) / area,
                  y = section.second_moment(SectionAxis::y) / area;
+    if (!(parameters.length * parameters.length > std::max(x, y))) { // metres and millimetres
+        check::fail("Beam.length", parameters.length, "m",
+                    "more than its section's radius of gyration, " +
+                        number_text(std::sqrt(std::max(x, y)), 3) + " m");
+    }
     MemberParameters member;
     member.segments =
         lumped_segments(parameters.length, material.density() * area * parameters.length,

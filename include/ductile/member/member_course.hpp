@@ -21,8 +21,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/member/active_sections.hpp"
 #include "ductile/member/blow.hpp"
+#include "ductile/member/redundant_forces.hpp"
 
 namespace ductile {
 
@@ -79,6 +79,9 @@ class MemberCourse {
     /// What blows leave in vibration of an elastic member, of what its sections did.
     [[nodiscard]] const MemberVibration& vibration() const noexcept { return vibration_; }
     void restore(const MemberVibration& vibration) noexcept { vibration_ = vibration; }
+    /// What it carries beside what its motion says.
+    [[nodiscard]] const RedundantForces& redundant() const noexcept { return redundant_; }
+    void restore(const RedundantForces& redundant) { redundant_ = redundant; }
     /// To be called where a step stands, `state` being of then; what it left in vibration [J].
     double count_vibration() noexcept {
         if (!(vibration_.ahead > 0)) return 0;
@@ -105,11 +108,18 @@ class MemberCourse {
             const int worst = worst_section(member_, state_, forces_, dt, rule_);
             if (worst != no_section) found_.push_back(worst);
         }
+        if (whole()) {
+            is_opened_ = !found_.empty() && !is_borne(steps, loads, dt);
+            if (!is_opened_) found_.clear();
+        } else {
+            is_opened_ = is_opened_ && dt == closed_dt_;
+            if (is_opened_) list_supports(member_, pieces_, steps, loads, dt, supports_);
+        }
         return found_;
     }
 
     /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { struck_ = yields_ = false; }
+    void begin_blow() noexcept { struck_ = yields_ = is_opened_ = false; }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                              const MemberStrike& strike) {
@@ -119,8 +129,8 @@ class MemberCourse {
         const bool first = !std::exchange(struck_, true);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
-            const MemberBlow blow =
-                member_blow(member_, state_, forces_, strike.energy, strike.speed, strike.segment);
+            const MemberBlow blow = member_blow(member_, state_, elastic_forces(steps, loads),
+                                                strike.energy, strike.speed, strike.segment);
             utilisation = std::max(utilisation, blow.in_all);
             yields_ = yields_ || blow.yields();
             for (const SectionForce& carried : forces_.sections) {
@@ -147,37 +157,73 @@ class MemberCourse {
         }
         return rearrange(bodies);
     }
-    /// Counts a step that stands, and says which open sections it would close.
-    [[nodiscard]] const std::vector<int>& held() {
+    /// Open sections to close. After a step, which stands: it is counted. Before a blow: all that
+    /// do not move, as it is to be taken as the whole member takes it, whether they were opened
+    /// long before or in a part that was put back.
+    [[nodiscard]] const std::vector<int>& held(Closing when) {
         found_.clear();
+        const bool step = when == Closing::after_step;
+        const bool all = step && std::exchange(is_opened_, false) && is_proved();
         for (int i = 0; i < member_.sections(); ++i) {
-            if (section(i).open && closes(section(i), rule_)) found_.push_back(i);
-        }
-        return found_;
-    }
-    /// Open sections that do not move: closed they take a blow as the whole member does, whether
-    /// they were opened long before it or in a part that was put back.
-    [[nodiscard]] const std::vector<int>& holding() {
-        found_.clear();
-        for (int i = 0; i < member_.sections(); ++i) {
-            const SectionState& of = section(i);
-            if (of.open && !of.joint.flowing && !of.joint.broken) found_.push_back(i);
+            SectionState& of = section(i);
+            if (all) of.alarms = 0;
+            if (!of.open) continue;
+            if (all || (step ? closes(of, rule_) : rests(of))) found_.push_back(i);
         }
         return found_;
     }
     /// As it was; the bodies have to be those of `state`.
     void restore(const MemberState& state) {
         state_ = state;
+        is_opened_ = false;
         make_pieces();
     }
     /// Closes sections, `bend` of their states being what they are bent by now.
     std::vector<PlacedPiece> close(std::span<const int> sections,
                                    std::span<const PlacedPiece> bodies) {
         for (const int i : sections) section(i).open = false;
-        return rearrange(bodies);
+        std::vector<PlacedPiece> placed = rearrange(bodies);
+        if (whole()) redundant_.become(member_, pieces_.front());
+        return placed;
     }
 
   private:
+    /// Of a whole member, whose forces were just found.
+    [[nodiscard]] bool is_borne(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
+                                double dt) {
+        closed_dt_ = dt;
+        find_supports(steps, loads, dt);
+        if (closed_supports_.empty()) return false;
+        closed_forces_ = forces_;
+        return redundant_.bear(member_, state_, forces_, closed_supports_, dt, rule_);
+    }
+    /// Of a blow, whose forces of a piece were just found.
+    [[nodiscard]] const InternalForces& elastic_forces(std::span<const PieceStep> steps,
+                                                       std::span<const MemberLoad> loads) {
+        if (!whole() || !(member_.bending_stiffness() < std::numeric_limits<double>::infinity())) {
+            return forces_;
+        }
+        find_supports(steps, loads, 1);
+        closed_forces_ = forces_;
+        redundant_.relax(member_, closed_forces_);
+        return closed_forces_;
+    }
+    /// Of the whole member; what those that are new bear by their kind.
+    void find_supports(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
+                       double dt) {
+        list_supports(member_, pieces_, steps, loads, dt, closed_supports_);
+        if (redundant_.knows(closed_supports_)) return;
+        redundant_.learn(closed_supports_);
+        redundant_.become(member_, pieces_.front());
+    }
+    /// Whether what supports carry now, that it is open, shows that the whole member would hold.
+    [[nodiscard]] bool is_proved() {
+        if (supports_.empty()) return false;
+        redundant_.learn(supports_);
+        redundant_.become(member_, make_piece(member_, state_, {0, member_.segments() - 1}));
+        return redundant_.bear(member_, state_, closed_forces_, closed_supports_, closed_dt_,
+                               rule_);
+    }
     [[nodiscard]] double all_work() const noexcept {
         double sum = 0;
         for (const SectionState& section : state_) sum += section.joint.plastic_work;
@@ -224,6 +270,11 @@ class MemberCourse {
     InternalForces forces_;
     double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
     MemberVibration vibration_;
+    RedundantForces redundant_;
+    bool is_opened_ = false;                                ///< the whole member, by the step
+    InternalForces closed_forces_;                          ///< of that, solved when it was whole
+    std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
+    double closed_dt_ = 0;
     bool struck_ = false; ///< this blow was looked at
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };

@@ -41,7 +41,7 @@ class IslandSystem {
         bool rigid = false;    ///< C is least_softness, for the factors' sake
         double kept = 0;       ///< x' of a rigid row: impulse at which it gives nothing
         double metric = 0;     ///< own + C
-        double shift = 0;      ///< taken from b: the slip of a contact, see friction_cone.hpp
+        double shift = 0;      ///< taken from b: the slip of a contact, see contact_form.hpp
         double residual = 0;   ///< b - shift - J v - C (x - x')
         double weight = 0;     ///< W
         double factored = 0;   ///< that of the last factors

@@ -41,6 +41,12 @@ inline const JointFrame<double>& require_frame(const std::string& field,
     return frame;
 }
 
+/// Whether the rigid axes of the bodies have to meet where these are.
+enum class Meeting {
+    required,   ///< to within what a sloppy assembly leaves
+    as_they_are ///< of a joint that is made anew for what has moved: the rows pull them together
+};
+
 /// Of a link where its bodies are now: its rigid axes have to meet, all but what a sloppy assembly
 /// leaves: a twentieth of the arms, and 0.1 rad.
 /// @throws std::invalid_argument, naming the axis and what it is off by.

@@ -41,6 +41,36 @@ inline Member heavy_post(int segments = 10, double strength = 500) {
     return Member(p);
 }
 
+/// 2 m, 24 kg in ten segments of some width, clamped.
+inline Member cantilever(double strength) {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-2, 1e-2, 2e-2});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = strength})));
+    return Member(p);
+}
+
+/// P11: 4 m, 400 kg, M_p = 50 kN m, clamped, a stub at its end that cannot turn where it is held.
+inline Member beam_to_hold(int segments) {
+    MemberParameters p;
+    p.segments = lumped_segments(4, 400, segments, {1e-5, 1e-5, 1e-3});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.segments.push_back({.length = 1e-6, .mass = 1, .inertia = {1, 1, 1}});
+    p.sections.assign(p.segments.size() - 1, UsualAxisJoint(Perfect<double>({.strength = 50e3})));
+    return Member(p);
+}
+
+/// 4 m, 0.4 kg, M_p = 5 kN m, EI = 1 MN m², else as beam_to_hold: a wave is next to nothing.
+inline Member elastic_beam_to_hold() {
+    MemberParameters p;
+    p.segments = lumped_segments(4, 0.4, 16, {1e-4, 1e-4, 1e-3});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.segments.push_back({.length = 1e-6, .mass = 1, .inertia = {1, 1, 1}});
+    p.sections.assign(p.segments.size() - 1, UsualAxisJoint(Perfect<double>({.strength = 5e3})));
+    p.bending_stiffness = 1e6;
+    return Member(p);
+}
+
 /// 2 m, 24 kg in ten segments; its fifth section breaks at 0.05 rad, all others are strong.
 inline Member post_that_breaks() {
     MemberParameters p;

@@ -16,11 +16,21 @@
 
 namespace ductile::bullet {
 
-/// Of a body that moves and is awake, beside what gravity and its damping gave it.
+/// Of a body that moves and is awake, beside what gravity, its damping and Bullet's gyroscopic
+/// moment gave it.
 struct BodyChange {
-    BodyMotion change;
-    Vector3<double> spin = Vector3<double>::Zero(); ///< before [rad/s]
-    bool turns = false;                             ///< Bullet had its gyroscopic moments act
+    Vector3<double> velocity = Vector3<double>::Zero(); ///< [m/s]
+    Vector3<double> turned = Vector3<double>::Zero();   ///< of the angular momentum [N m s]
+    Vector3<double> spin = Vector3<double>::Zero();     ///< before [rad/s]
+    double dt = 0; ///< in which it turned [s]; 0: Bullet has no gyroscopic moment of it
+
+    /// Of a body with `inertia` along `axes` that had the same, as internal_forces.hpp wants it.
+    [[nodiscard]] BodyMotion of(const Vector3<double>& inertia, const Matrix3<double>& axes) const {
+        const Vector3<double> momentum = times(along_axes(inertia, axes), spin);
+        const Vector3<double> rest = difference(turned, scaled(dt, cross(spin, momentum)));
+        const Vector3<double> inverse{1 / inertia[0], 1 / inertia[1], 1 / inertia[2]};
+        return {velocity, times(along_axes(inverse, axes), rest)};
+    }
 };
 
 [[nodiscard]] inline BodyChange body_change(const btRigidBody& body, const BodyBefore& was,
@@ -30,10 +40,16 @@ struct BodyChange {
     const Vector3<double> free =
         sum(scaled(keeps, to_core(was.velocity)), scaled(dt, to_core(body.getGravity())));
     BodyChange result;
+    result.velocity = difference(to_core(body.getLinearVelocity()), free);
     result.spin = scaled(keeps_spin, to_core(was.spin));
-    result.change = {difference(to_core(body.getLinearVelocity()), free),
-                     difference(to_core(body.getAngularVelocity()), result.spin)};
-    result.turns = (body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) != 0;
+    const btVector3& least = body.getInvInertiaDiagLocal();
+    const Matrix3<double> inertia =
+        along_axes({1 / double(least.x()), 1 / double(least.y()), 1 / double(least.z())},
+                   to_core(was.pose.getBasis()));
+    const Vector3<double> turned =
+        times(inertia, difference(to_core(body.getAngularVelocity()), result.spin));
+    result.turned = difference(turned, gyroscopic_impulse(body, inertia, result.spin, dt));
+    if ((body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) != 0) result.dt = dt;
     return result;
 }
 

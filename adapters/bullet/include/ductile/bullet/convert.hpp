@@ -11,6 +11,7 @@
 
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
+#include "ductile/numeric/lu.hpp"
 
 namespace ductile::bullet {
 
@@ -90,6 +91,22 @@ namespace ductile::bullet {
             sum(state.spin, to_core(body.computeGyroscopicImpulseImplicit_World(btScalar(dt))));
     }
     return state;
+}
+
+/// What Bullet's gyroscopic moment changes of the angular momentum in a tick, by its implicit rule:
+/// one Newton step on I(ω' - ω) + dt ω' × Iω' = 0.
+[[nodiscard]] inline Vector3<double> gyroscopic_impulse(const btRigidBody& body,
+                                                        const Matrix3<double>& inertia,
+                                                        const Vector3<double>& spin,
+                                                        double dt) noexcept {
+    if ((body.getFlags() & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) == 0) {
+        return Vector3<double>::Zero();
+    }
+    const Vector3<double> momentum = times(inertia, spin);
+    const Matrix3<double> turned = times(skew(spin), inertia);
+    const Matrix3<double> jacobian = sum(inertia, scaled(dt, difference(turned, skew(momentum))));
+    const Vector3<double> wanted = scaled(dt, cross(spin, momentum));
+    return scaled(-1, times(inertia, numeric::Lu<double, 3>(jacobian).solve(wanted)));
 }
 
 inline void apply(btRigidBody& body, const VelocityChange<double>& change) noexcept {

@@ -10,7 +10,6 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
-#include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
@@ -135,19 +134,10 @@ DUCTILE_INLINE void EnergyMeter::list_contacts_of(const btPersistentManifold& ma
     }
 }
 
-/// By the implicit rule in body axes: one Newton step on I(ω' - ω) + dt ω' × Iω' = 0, as Bullet
-/// takes it.
 DUCTILE_INLINE Vector3<double> EnergyMeter::gyroscopic_impulse(const MeteredBody& body,
                                                                double dt) const {
-    const int flags = static_cast<const btRigidBody*>(body.body)->getFlags();
-    if ((flags & BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY) == 0) return Vector3<double>::Zero();
-    const Vector3<double> momentum = times(body.inertia, body.spin);
-    const Matrix3<double> turned = times(skew(body.spin), body.inertia);
-    const Matrix3<double> jacobian =
-        sum(body.inertia, scaled(dt, difference(turned, skew(momentum))));
-    const Vector3<double> wanted = scaled(dt, cross(body.spin, momentum));
-    const Vector3<double> change = numeric::Lu<double, 3>(jacobian).solve(wanted);
-    return scaled(-1, times(body.inertia, change));
+    return bullet::gyroscopic_impulse(*static_cast<const btRigidBody*>(body.body), body.inertia,
+                                      body.spin, dt);
 }
 
 DUCTILE_INLINE void EnergyMeter::damp(MeteredBody& body, double dt) const {

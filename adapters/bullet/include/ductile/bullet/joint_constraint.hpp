@@ -45,12 +45,6 @@ enum class Feedback {
     all_rows     ///< of all six, by joint feedback: the user's where there is one, else its own
 };
 
-/// Whether the rigid axes of the bodies have to meet where these are.
-enum class Meeting {
-    required,   ///< to within what a sloppy assembly leaves
-    as_they_are ///< of a joint that is made anew for what has moved: the rows pull them together
-};
-
 class JointConstraint : public PlasticConstraint, public LinkQueries {
   public:
     [[nodiscard]] const PairQueries& queries() const noexcept override { return *this; }

@@ -81,6 +81,7 @@ class Member : public DividedMember<OpenSection> {
     /// std::logic_error once it is in a World.
     void attach(double place, Maker maker);
     /// `force` [N] at `place` [m] along the member, world axes, for the next step.
+    /// @throws std::invalid_argument where the place is beyond the ends or the force not finite.
     void apply_force(const btVector3& force, double place);
 
   private:
@@ -88,12 +89,12 @@ class Member : public DividedMember<OpenSection> {
     friend class MemberSnapshot;
     friend class MemberTick;
     struct Attachment {
-        double place;
-        int segment;
+        MemberPlace at;
         Maker maker;
         std::unique_ptr<btTypedConstraint> constraint;
         std::unique_ptr<btJointFeedback> feedback;
-        const btRigidBody* body = nullptr; ///< of the constraint
+        btJointFeedback told = btJointFeedback(); ///< when it was last solved
+        const btRigidBody* body = nullptr;        ///< of the constraint
     };
     [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;

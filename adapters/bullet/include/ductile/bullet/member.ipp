@@ -75,16 +75,15 @@ DUCTILE_INLINE void Member::attach(double place, Maker maker) {
     if (world_ != nullptr) {
         throw std::logic_error("Member.attach: must be called before the member is in a World");
     }
-    const int segment = description().on_axis("Member.attach.place", place).segment;
-    attachments_.push_back(
-        {place, segment, std::move(maker), nullptr, std::make_unique<btJointFeedback>()});
+    const MemberPlace at = description().on_axis("Member.attach.place", place);
+    attachments_.push_back({at, std::move(maker), nullptr, std::make_unique<btJointFeedback>()});
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
-    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
+    const Force applied = force_at(to_core(force), place);
     if (forces_.empty() && pushed_) pushed_();
-    forces_.push_back({to_core(force), at});
-    body_of(at.segment).activate();
+    forces_.push_back(applied);
+    body_of(applied.at.segment).activate();
 }
 
 DUCTILE_INLINE void Member::require_possible() const {

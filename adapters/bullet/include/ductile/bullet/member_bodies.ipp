@@ -39,7 +39,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
         return !stays;
     });
     for (Attachment& attachment : attachments_) {
-        if (pieces_[course_.piece_of(attachment.segment)].body != attachment.body) {
+        if (pieces_[course_.piece_of(attachment.at.segment)].body != attachment.body) {
             drop_attachment(attachment);
         }
     }
@@ -111,12 +111,10 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
 DUCTILE_INLINE void Member::make_attachments() {
     for (Attachment& attachment : attachments_) {
         if (attachment.constraint != nullptr) continue;
-        const std::size_t piece = course_.piece_of(attachment.segment);
+        const std::size_t piece = course_.piece_of(attachment.at.segment);
         const MemberPiece& of = course_.pieces()[piece];
-        const double start =
-            attachment.segment > 0 ? description().place(attachment.segment - 1) : 0;
-        JointFrame<double> place = placed(of.section(description(), attachment.segment, false),
-                                          {.origin = {0, 0, attachment.place - start}});
+        JointFrame<double> place =
+            placed(of.segment(attachment.at.segment), {.origin = attachment.at.in_segment});
         if (pieces_[piece].body == &user_) {
             place = placed(maker_->whole_in_body(), place);
         } else if (pieces_[piece].own == nullptr) {
@@ -127,6 +125,7 @@ DUCTILE_INLINE void Member::make_attachments() {
         if (attachment.constraint == nullptr) {
             throw std::invalid_argument("Member.attach.maker: must make a constraint");
         }
+        attachment.told = btJointFeedback(); // was of another body
         attachment.constraint->setJointFeedback(attachment.feedback.get());
         world_->addConstraint(attachment.constraint.get());
     }

@@ -34,6 +34,7 @@ class MemberSnapshot {
     };
     MemberState state_;
     MemberVibration vibration_;
+    RedundantForces redundant_;
     std::vector<Body> bodies_;                                ///< by piece
     std::vector<PlasticHinge<UsualAxisJoint>::State> joints_; ///< of open sections, from the start
 };

@@ -13,7 +13,9 @@
 namespace ductile::bullet {
 
 DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
-    : state_(member.state()), vibration_(member.course_.vibration()) {
+    : state_(member.state()),
+      vibration_(member.course_.vibration()),
+      redundant_(member.course_.redundant()) {
     for (const PieceBody& piece : member.pieces_) {
         bodies_.push_back({piece.body->getCenterOfMassTransform(), piece.body->getLinearVelocity(),
                            piece.body->getAngularVelocity()});
@@ -37,6 +39,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     MemberCourse& course = member.course_;
     course.restore(state_);
     course.restore(vibration_);
+    course.restore(redundant_);
     std::vector<PlacedPiece> pieces;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         const MemberPiece& piece = course.pieces()[i];

@@ -9,6 +9,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <LinearMath/btVector3.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,8 @@ class MemberTick final : public Divisible {
 
   private:
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
+    [[nodiscard]] static std::array<bool, 3> borne_by(btTypedConstraint& constraint,
+                                                      const btTransform& pose);
     /// Sums what acted, and lists it where `lists`.
     void read_constraints(double dt, bool lists);
     void read_forces(double dt, bool lists);

@@ -3,7 +3,11 @@
 // Bodies of member_tick.hpp.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -67,8 +71,7 @@ DUCTILE_INLINE bool MemberTick::close_held(Closing when, bool ahead,
                                            std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;
     member_.note_sections();
-    const std::vector<int> held =
-        when == Closing::before_blow ? member_.course_.holding() : member_.course_.held();
+    const std::vector<int> held = member_.course_.held(when);
     if (held.empty()) {
         member_.note_broken();
         return false;
@@ -224,12 +227,38 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
     }
 }
 
+/// What a constraint locks of a force along y and z of the segment at `pose`, a moment about x.
+DUCTILE_INLINE std::array<bool, 3> MemberTick::borne_by(btTypedConstraint& constraint,
+                                                        const btTransform& pose) {
+    if (const auto* point = dynamic_cast<const btPoint2PointConstraint*>(&constraint)) {
+        const bool rigid = point->m_setting.m_impulseClamp == 0;
+        return {rigid, rigid, false};
+    }
+    auto* axes = dynamic_cast<btGeneric6DofSpring2Constraint*>(&constraint);
+    if (axes == nullptr) return {};
+    axes->calculateTransforms();
+    const btMatrix3x3 &frame = axes->getCalculatedTransformA().getBasis(), &own = pose.getBasis();
+    const btTranslationalLimitMotor2& move = *axes->getTranslationalLimitMotor();
+    const auto locks = [&](bool turns, int along) {
+        constexpr double aligned = 1 - 1e-6;
+        for (int i = 0; i < 3; ++i) {
+            const btRotationalLimitMotor2& turn = *axes->getRotationalLimitMotor(i);
+            const bool locked = turns ? turn.m_loLimit == turn.m_hiLimit
+                                      : move.m_lowerLimit[i] == move.m_upperLimit[i];
+            const double share = std::abs(double(frame.getColumn(i).dot(own.getColumn(along))));
+            if (locked && share > aligned) return true;
+        }
+        return false;
+    };
+    return {locks(false, 1), locks(false, 2), locks(true, 0)};
+}
+
 /// Of attachments and of its own joints.
 DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
-    const Member& member = member_;
-    const auto add = [&](const btTypedConstraint& constraint, std::size_t piece, int segment) {
+    Member& member = member_;
+    const auto add = [&](const btTypedConstraint& constraint, const btJointFeedback& told,
+                         std::size_t piece, int segment) {
         const btRigidBody* body = member.pieces_[piece].body;
-        const btJointFeedback& told = *constraint.getJointFeedback();
         const bool of_a = &constraint.getRigidBodyA() == body;
         const btVector3 force = of_a ? told.m_appliedForceBodyA : told.m_appliedForceBodyB;
         const btVector3 torque = of_a ? told.m_appliedTorqueBodyA : told.m_appliedTorqueBodyB;
@@ -242,19 +271,31 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         loads_.push_back(
             {segment, pose.origin, scaled(dt, to_core(force)), scaled(dt, to_core(torque))});
     };
-    for (const Member::Attachment& attachment : member.attachments_) {
+    const auto moves = [](const btRigidBody& body) {
+        return body.isActive() && !body.isStaticOrKinematicObject();
+    };
+    for (Member::Attachment& attachment : member.attachments_) {
         const btTypedConstraint& constraint = *attachment.constraint;
         if (!constraint.isEnabled()) continue;
-        const bool solved =
-            constraint.getRigidBodyA().isActive() || constraint.getRigidBodyB().isActive();
-        if (!solved) continue;
-        add(constraint, member.course_.piece_of(attachment.segment), attachment.segment);
+        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+        // what sleeps carries on as when it was solved; between what cannot move nothing is
+        if (moves(a) || moves(b)) attachment.told = *attachment.feedback;
+        const int segment = attachment.at.segment;
+        add(constraint, attachment.told, member.course_.piece_of(segment), segment);
+        const bool support = (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
+                             constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
+        if (!lists || !support) continue;
+        loads_.back().support = &attachment;
+        loads_.back().held_at = attachment.at.in_segment;
+        loads_.back().bears = borne_by(*attachment.constraint, member.pose(segment));
     }
     for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;
         const std::size_t lower = member.course_.piece_of(open.section);
-        if (member.pieces_[lower].own != nullptr) add(*open.hinge, lower, open.section);
-        add(*open.hinge, lower + 1, open.section + 1);
+        if (member.pieces_[lower].own != nullptr) {
+            add(*open.hinge, *open.feedback, lower, open.section);
+        }
+        add(*open.hinge, *open.feedback, lower + 1, open.section + 1);
     }
 }
 
@@ -284,15 +325,9 @@ DUCTILE_INLINE void MemberTick::finish_steps(double dt, std::span<const BodyBefo
         }
         const BodyChange went =
             body_change(body, before[std::size_t(body.getWorldArrayIndex())], dt);
-        step.change = went.change;
+        step.change = went.of(piece.inertia, step.pose.axes);
         step.spin = went.spin;
-        if (went.turns) step.dt = dt;
-        if (&body == &member.user_) {
-            // its inertia is the user's
-            const Vector3<double> about =
-                times(to_core(body.getInvInertiaTensorWorld().inverse()), step.change.spin);
-            step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);
-        }
+        step.dt = went.dt;
     }
 }
 

@@ -14,8 +14,8 @@
 // open nothing.
 //
 // Read are the impulses of contact points, the joint feedback of what holds on to a member, its own
-// forces and gravity. What sleeps on a clamped member presses on it as it did when it was last
-// solved. A member that these could not load beyond its strength with the largest arms
+// forces and gravity. What sleeps on a clamped member, or hangs on it, acts on it as it did when it
+// was last solved. A member that these could not load beyond its strength with the largest arms
 // that they can have is not looked at more closely. A clamped one that is whole is not looked at at
 // all where nothing touched it, once gravity alone did not yield it.
 //

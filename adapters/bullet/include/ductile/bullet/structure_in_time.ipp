@@ -358,9 +358,9 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         }
         const BodyChange went =
             body_change(body, before[std::size_t(body.getWorldArrayIndex())], dt);
-        step.change = went.change;
+        step.change = went.of(course_.clusters()[c].inertia, step.pose.axes);
         step.spin = went.spin;
-        if (went.turns) step.dt = dt;
+        step.dt = went.dt;
     }
     proved_.reset();
     proved_touches_ = touches_.size();

@@ -212,7 +212,8 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const auto look = [&] {
         if (members_.empty()) return false;
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
-        if (is_put_back(closing_.closed_early(world_, h, apart_), h)) return false;
+        motion_.closed = closing_.closed_early(world_, h, apart_);
+        if (is_put_back(motion_.closed, h)) return false;
         const auto length = double(btScalar(h));
         return instant ? members_.look_blow(length) : members_.look(length);
     };
@@ -222,7 +223,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
     motion_.contact_work = metered ? meter_.step_of_contacts() : 0;
-    motion_.closed = closing_.closed_early(world_, h, apart_);
+    if (members_.empty()) motion_.closed = closing_.closed_early(world_, h, apart_);
     look_at_pushes(h);
     return motion_;
 }

@@ -84,6 +84,14 @@ struct AttachedBodies {
     return body != nullptr && dBodyIsKinematic(body) == 0;
 }
 
+/// Both its bodies: ODE wakes what is attached to what is awake, but not for longer than a step.
+inline void wake(dJointID joint) noexcept {
+    const AttachedBodies bodies = attached_bodies(joint);
+    for (dBodyID body : {bodies.a, bodies.b}) {
+        if (can_move(body)) dBodyEnable(body);
+    }
+}
+
 /// Place and velocities of a body as a link sees it, without its mass; null: the static world.
 [[nodiscard]] inline BodyState<double> body_motion(dBodyID body) noexcept {
     if (body == nullptr) return {};

@@ -49,6 +49,7 @@
 #include "ductile/ode/world.hpp"
 #include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/joint_checks.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
 
@@ -103,7 +104,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     using Frame = JointFrame<double>;
 
     /// The plastic axes start unstrained where the bodies are now.
-    JointConstraint(AnyLink<double>& link, dWorldID world, dBodyID a, dBodyID b);
+    JointConstraint(AnyLink<double>& link, dWorldID world, dBodyID a, dBodyID b,
+                    Meeting meeting = Meeting::required);
     DUCTILE_INLINE ~JointConstraint() override;
 
     /// The link was given a saved state.

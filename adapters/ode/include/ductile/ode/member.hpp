@@ -78,7 +78,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     /// @throws std::invalid_argument where the place is beyond the ends or the joint null.
     void attach(double place, dJointID joint);
     /// `force` [N] at `place` [m] along the member, world axes, for the next step.
-    /// @throws std::invalid_argument where the place is beyond the ends.
+    /// @throws std::invalid_argument where the place is beyond the ends or the force not finite.
     void apply_force(const Vector3<double>& force, double place);
 
   private:
@@ -88,12 +88,24 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         MemberRun run{};
         bool own = false; ///< else the user's
     };
+    /// What acts on a body, about its centre of mass [N], [N m].
+    struct Wrench {
+        Vector3<double> force = Vector3<double>::Zero(), torque = force;
+    };
     /// A joint of the user's on a body of the member.
     struct Hold {
         dJointID joint;
         dBodyID body;
-        int segment;
-        bool acts; ///< it is enabled
+        MemberPlace at;
+        bool acts;            ///< it is enabled
+        bool support = false; ///< by what cannot move
+        Wrench wrench{};      ///< when it was last solved; the ledger may have lent its feedback
+    };
+    /// By a body that touches a clamped member.
+    struct Pressed {
+        dBodyID body;
+        Vector3<double> point; ///< [m]
+        Vector3<double> force; ///< [N]
     };
     /// Of a piece, where the step solves it.
     struct Before {
@@ -101,11 +113,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         BodyMotion motion, after;
         bool solved = false;
     };
-    /// What acts on a body, about its centre of mass [N], [N m].
-    struct Wrench {
-        Vector3<double> force, torque;
-    };
-
     // ---- what the World asks
 
     DUCTILE_INLINE void enter(World& world) override;
@@ -147,10 +154,11 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void put_geoms();
     void make_joints(bool ahead);
     void find_holds();
-    [[nodiscard]] int segment_of(dJointID joint, std::size_t piece) const;
+    [[nodiscard]] MemberPlace place_of(dJointID joint, std::size_t piece) const;
 
     // ---- a step
 
+    void find_asleep(std::span<const Touch> touches);
     [[nodiscard]] double sum_of_impulses(double dt, std::span<const Touch> touches) const;
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
@@ -168,8 +176,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     bool is_missing_ = false; ///< the World does not have its body
     std::vector<PieceBody> pieces_;
     std::vector<Hold> holds_;
-    std::vector<std::pair<dJointID, int>> told_; ///< which segments joints hold
-    std::vector<Before> before_;                 ///< by piece
+    std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
+    std::vector<Before> before_;                         ///< by piece
+    std::vector<Pressed> pressed_, asleep_; ///< when it was last solved; of these, what sleeps
     std::vector<PieceStep> steps_;
     std::vector<MemberLoad> loads_;
 };

@@ -110,14 +110,14 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
 DUCTILE_INLINE void Member::attach(double place, dJointID joint) {
     if (joint == nullptr)
         throw std::invalid_argument("Member.attach.joint = null: must be a joint");
-    const int segment = description().on_axis("Member.attach.place", place).segment;
+    const MemberPlace at = description().on_axis("Member.attach.place", place);
     std::erase_if(told_, [joint](const auto& told) { return told.first == joint; });
-    told_.emplace_back(joint, segment);
+    told_.emplace_back(joint, at);
 }
 DUCTILE_INLINE void Member::apply_force(const Vector3<double>& force, double place) {
-    const MemberPlace at = description().on_axis("Member.apply_force.place", place);
-    forces_.push_back({force, at});
-    if (can_move(body_of(at.segment))) dBodyEnable(body_of(at.segment));
+    forces_.push_back(force_at(force, place));
+    const dBodyID body = body_of(forces_.back().at.segment);
+    if (can_move(body)) dBodyEnable(body);
 }
 
 DUCTILE_INLINE void Member::enter(World& world) {
@@ -158,16 +158,16 @@ DUCTILE_INLINE void Member::require_possible() {
     find_holds();
 }
 
-/// The segment that a joint on a piece holds.
-DUCTILE_INLINE int Member::segment_of(dJointID joint, std::size_t piece) const {
+/// Where a joint on a piece holds.
+DUCTILE_INLINE MemberPlace Member::place_of(dJointID joint, std::size_t piece) const {
     const dJointType type = dJointGetType(joint);
     if (type != dJointTypeBall && type != dJointTypeHinge && type != dJointTypeFixed) {
         throw std::invalid_argument(
             "World.add.member: joints of its body must be balls, hinges or fixed: others, also "
             "plastic ones, cannot go to another body as they are");
     }
-    for (const auto& [told, segment] : told_) {
-        if (told == joint) return segment;
+    for (const auto& [told, at] : told_) {
+        if (told == joint) return at;
     }
     if (type == dJointTypeFixed) {
         throw std::invalid_argument(
@@ -176,11 +176,14 @@ DUCTILE_INLINE int Member::segment_of(dJointID joint, std::size_t piece) const {
     }
     dVector3 anchor;
     (type == dJointTypeBall ? dJointGetBallAnchor : dJointGetHingeAnchor)(joint, anchor);
-    return nearest_segment(description(), course_.pieces()[piece], frame_of(piece),
-                           to_core(anchor));
+    const MemberPiece& of = course_.pieces()[piece];
+    const JointFrame<double> frame = frame_of(piece);
+    const int segment = nearest_segment(description(), of, frame, to_core(anchor));
+    const JointFrame<double> at = placed(frame, of.segment(segment));
+    return {segment, transposed_times(at.axes, difference(to_core(anchor), at.origin))};
 }
 DUCTILE_INLINE void Member::find_holds() {
-    holds_.clear();
+    const std::vector<Hold> before = std::exchange(holds_, {});
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
         const dBodyID body = pieces_[i].body;
         for (int k = 0, count = dBodyGetNumJoints(body); k < count; ++k) {
@@ -189,7 +192,11 @@ DUCTILE_INLINE void Member::find_holds() {
                 std::any_of(joints_.begin(), joints_.end(),
                             [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
-            holds_.push_back({joint, body, segment_of(joint, i), dJointIsEnabled(joint) != 0});
+            Hold& hold = holds_.emplace_back(
+                Hold{joint, body, place_of(joint, i), dJointIsEnabled(joint) != 0});
+            for (const Hold& was : before) {
+                if (was.joint == joint && was.body == body) hold.wrench = was.wrench;
+            }
         }
     }
 }
@@ -206,7 +213,7 @@ DUCTILE_INLINE double Member::count_vibration() {
 DUCTILE_INLINE std::vector<int> Member::close_held(Closing when, bool ahead) {
     if (joints_.empty()) return {};
     note_sections();
-    const std::vector<int> held = when == Closing::before_blow ? course_.holding() : course_.held();
+    const std::vector<int> held = course_.held(when);
     if (!held.empty()) become(course_.close(held, placed_pieces()), ahead);
     return held;
 }

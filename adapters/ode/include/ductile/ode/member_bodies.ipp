@@ -159,8 +159,9 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     }
     put_geoms();
     for (Hold& hold : holds_) {
-        const dBodyID from = std::exchange(hold.body, body_of(hold.segment));
+        const dBodyID from = std::exchange(hold.body, body_of(hold.at.segment));
         detail::hand_over(hold.joint, from, hold.body);
+        wake(hold.joint);
     }
     // joints end before their bodies
     std::erase_if(joints_, [this](const OpenSection& open) {
@@ -244,7 +245,7 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
             dBodyGetWorld(user_), pieces_[i + 1].body, held ? nullptr : pieces_[i].body,
             hinge_frame(upper.section(description(), section + 1, false)),
             hinge_frame(held ? placed(frame_of(i), in_lower) : in_lower),
-            description().section(section));
+            description().section(section), Meeting::as_they_are);
         go_on(*open.hinge, course_.section(section));
         world_->take_in(*open.hinge);
         if (ahead) open.hinge->begin_frame();

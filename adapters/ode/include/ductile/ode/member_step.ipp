@@ -21,6 +21,10 @@ namespace detail {
     return share > 0 && share < 1 && norm(before) > threshold ? before : velocity;
 }
 
+[[nodiscard]] DUCTILE_INLINE bool is_solved(dBodyID body) {
+    return can_move(body) && dBodyIsEnabled(body) != 0;
+}
+
 } // namespace detail
 
 DUCTILE_INLINE void Member::apply_forces() {
@@ -40,16 +44,25 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
     for (const PieceBody& piece : pieces_) {
         Before& before = before_.emplace_back();
         before.pose = detail::frame_of(piece.body);
-        before.solved = can_move(piece.body) && dBodyIsEnabled(piece.body) != 0;
+        before.solved = detail::is_solved(piece.body);
         if (!before.solved) continue;
         before.motion = detail::motion_of(piece.body);
     }
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
+    for (Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        const bool of_a = bodies.a == hold.body;
+        hold.support = !can_move(of_a ? bodies.b : bodies.a);
+        // what sleeps carries on as when it was solved; between what cannot move nothing is
+        if (!detail::is_solved(bodies.a) && !detail::is_solved(bodies.b)) continue;
+        hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
+    }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
         const dBodyID body = pieces_[i].body;
-        before_[i].solved = can_move(body) && dBodyIsEnabled(body) != 0;
+        before_[i].solved = detail::is_solved(body);
         before_[i].after = {
             detail::undamped(linear_velocity(body), double(dBodyGetLinearDamping(body)),
                              double(dBodyGetLinearDampingThreshold(body))),
@@ -83,9 +96,9 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
     for (const Touch& touch : touches) {
         all += dt * norm(wrench_of(*touch.feedback, touch.of_a).force);
     }
+    for (const Pressed& asleep : asleep_) all += dt * norm(asleep.force);
     for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
-        add(wrench_of(*dJointGetFeedback(hold.joint), attached_bodies(hold.joint).a == hold.body));
+        if (hold.acts) add(hold.wrench);
     }
     for (const OpenSection& open : joints_) {
         for (const bool of_upper : {true, false}) add(wrench_of(open, of_upper));
@@ -132,10 +145,21 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
                                         touch.point);
         add_load(wrench_of(*touch.feedback, touch.of_a), touch.segment, dt);
     }
+    for (const Pressed& asleep : asleep_) {
+        const auto piece = std::size_t(&piece_on(user_) - pieces_.data());
+        const int segment = nearest_segment(description(), course_.pieces()[piece],
+                                            steps_[piece].pose, asleep.point);
+        loads_.push_back({segment, asleep.point, scaled(dt, asleep.force)});
+    }
     for (const Hold& hold : holds_) {
         if (!hold.acts) continue;
-        const bool of_a = attached_bodies(hold.joint).a == hold.body;
-        add_load(wrench_of(*dJointGetFeedback(hold.joint), of_a), hold.segment, dt);
+        add_load(hold.wrench, hold.at.segment, dt);
+        if (!hold.support) continue;
+        loads_.back().support = hold.joint;
+        loads_.back().held_at = hold.at.in_segment;
+        // a hinge may turn, or has stops
+        const dJointType type = dJointGetType(hold.joint);
+        loads_.back().bears = {true, true, type == dJointTypeFixed};
     }
     for (const OpenSection& open : joints_) {
         if (!open.hinge->is_awake_member()) continue;
@@ -191,8 +215,33 @@ DUCTILE_INLINE void Member::read_steps(double dt) {
     }
 }
 
+/// Of a clamped member that is whole: what touches it and sleeps presses as when it was solved.
+DUCTILE_INLINE void Member::find_asleep(std::span<const Touch> touches) {
+    asleep_.clear();
+    if (!description().clamped() || !whole()) {
+        pressed_.clear();
+        return;
+    }
+    const auto other_of = [](const Touch& touch) {
+        return touch.of_a ? touch.bodies.b : touch.bodies.a;
+    };
+    std::erase_if(pressed_, [&](const Pressed& was) {
+        const auto touch = std::find_if(touches.begin(), touches.end(), [&](const Touch& each) {
+            return other_of(each) == was.body;
+        });
+        return touch == touches.end() || detail::is_solved(was.body);
+    });
+    asleep_.assign(pressed_.begin(), pressed_.end());
+    for (const Touch& touch : touches) {
+        if (!detail::is_solved(other_of(touch))) continue;
+        pressed_.push_back(
+            {other_of(touch), touch.point, wrench_of(*touch.feedback, touch.of_a).force});
+    }
+}
+
 DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
+    find_asleep(touches);
     if (!may_be_beyond(dt, touches)) return;
     read(dt, touches);
     sections = course_.beyond(steps_, loads_, dt);

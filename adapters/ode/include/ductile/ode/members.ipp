@@ -185,6 +185,7 @@ DUCTILE_INLINE void Members::open_found(bool ahead) {
             const bool first = touch.of_a != touch.bodies.reversed;
             (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
             dJointAttach(touch.joint, attached[i].a, attached[i].b);
+            wake(touch.joint);
         }
         for (const int section : course.found) {
             happened_.push_back({course.of, section, EventKind::split});

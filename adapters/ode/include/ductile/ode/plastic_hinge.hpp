@@ -48,10 +48,10 @@ class PlasticHinge final : public LinkJoint<Joint, JointConstraint> {
     /// hinge.
     /// @throws std::invalid_argument as above, and where the frames do not meet (joint_checks.hpp).
     PlasticHinge(dWorldID world, dBodyID a, dBodyID b, const JointFrame<double>& in_a,
-                 const JointFrame<double>& in_b, Joint joint)
+                 const JointFrame<double>& in_b, Joint joint, Meeting meeting = Meeting::required)
         : Base(Link<Joint>(std::move(joint), {axis}, Base::require_frame("in_a", in_a),
                            Base::require_frame("in_b", in_b)),
-               world, Base::require_bodies("PlasticHinge", world, a, b), b) {}
+               world, Base::require_bodies("PlasticHinge", world, a, b), b, meeting) {}
 
     /// Angle of A relative to B about the axis, not wrapped [rad].
     [[nodiscard]] double rotation() const { return Base::position(axis); }
