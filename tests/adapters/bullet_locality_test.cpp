@@ -291,14 +291,14 @@ struct Nothing final : btActionInterface {
 };
 
 /// A bar that turns about z on a weak hinge and meets a box late in a frame, among others.
-struct Meeting : Site {
+struct MeetingSites : Site {
     Nothing nothing;
     btRigidBody* beside = nullptr;
     std::vector<btRigidBody*> others;
     int events = 0;
 
     /// `speed`: of the box, against the bar [m/s].
-    Meeting(bool local, bool asleep, double speed) {
+    MeetingSites(bool local, bool asleep, double speed) {
         engine.setGravity({0, 0, 0});
         if (!local) engine.addAction(&nothing);
         const auto block = [this](const btVector3& place) {
@@ -326,7 +326,7 @@ struct Meeting : Site {
         bar.setLinearVelocity({0, 5, 0});
         for (int i = 0; i < 10; ++i) world->step(frame);
     }
-    ~Meeting() { engine.removeAction(&nothing); }
+    ~MeetingSites() { engine.removeAction(&nothing); }
 };
 
 } // namespace
@@ -336,7 +336,7 @@ TEST_CASE("Locality: islands that meet are one from then on", "[frame]") {
         for (const bool asleep : {false, true}) {
             if (asleep && speed != 0) continue;
             CAPTURE(speed, asleep);
-            const Meeting local(true, asleep, speed), all(false, asleep, speed);
+            const MeetingSites local(true, asleep, speed), all(false, asleep, speed);
             CHECK(all.work() > 4);
             CHECK(local.work() == Approx(all.work()).epsilon(rough ? 1e-2 : 1e-3));
             CHECK(double(all.beside->getLinearVelocity().y()) + speed > 1);
