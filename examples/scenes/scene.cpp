@@ -34,6 +34,16 @@ void Stage::remove(std::string_view member) {
     structure().remove(member);
 }
 
+std::string why_doubted(const RunReport& report) {
+    const double work = report.plastic_work;
+    std::string why = replay::quantity(report.left.energy, "J") + " of " +
+                      replay::quantity(work, "J") + " unresolved";
+    if (report.unreliable > 0) {
+        why += ", joints unsolved in " + std::to_string(report.unreliable) + " parts of frames";
+    }
+    return why;
+}
+
 Take::Take(Run& run, std::string name, std::string about, StageParameters parameters)
     : run_(run), name_(std::move(name)), about_(std::move(about)) {
     parameters.tolerance = parameters.plain ? 0 : run.options().tolerance;
@@ -45,8 +55,11 @@ Take::Take(Run& run, std::string name, std::string about, StageParameters parame
 }
 
 Take::~Take() {
-    const bool framed = stage_->keeps_tolerance();
-    if (framed ? !stage_->world().run().believed() : unsolved_) run_.doubt(name_);
+    if (!stage_->keeps_tolerance()) {
+        if (unsolved_) run_.doubt(name_ + " (a joint was left unsolved)");
+    } else if (const RunReport& report = stage_->world().run(); !report.believed()) {
+        run_.doubt(name_ + " (" + why_doubted(report) + ")");
+    }
 }
 
 double Take::frame() const { return run_.options().frame; }

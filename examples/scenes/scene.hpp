@@ -36,6 +36,10 @@ struct RunOptions {
     std::function<void(const replay::Recorder&)> grows;
 };
 
+/// Why a World with such frames does not vouch for them: of which plastic work how much it left
+/// unresolved, and in how many parts joints unsolved, each counted by itself.
+[[nodiscard]] std::string why_doubted(const RunReport& report);
+
 /// A number of a scene that a user may change.
 struct Option {
     std::string name, about, unit;
@@ -94,8 +98,8 @@ class Run {
     void spent(double seconds) { times_.push_back(seconds); }
     [[nodiscard]] const std::vector<double>& times() const { return times_; }
     [[nodiscard]] bool right() const;
-    /// Takes whose World does not vouch for them: more was left unresolved than the tolerance, or a
-    /// joint unsolved.
+    /// Takes whose World does not vouch for them, each with the reason: more was left unresolved
+    /// than the tolerance, or a joint unsolved.
     [[nodiscard]] const std::vector<std::string>& doubted() const { return doubted_; }
     void doubt(std::string take) { doubted_.push_back(std::move(take)); }
     /// Where somebody keeps recordings.

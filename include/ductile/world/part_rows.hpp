@@ -22,7 +22,9 @@ inline constexpr double resting_share = 0.01;
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
     const double share = acts ? link.utilisation() : 0;
-    const bool yielded = !link.all_rigid() && link.totals().plastic_work > 0;
+    // waves along the axes of a section are for its dampers to end
+    const bool yielded =
+        link.axes().size() == 1 && !link.all_rigid() && link.totals().plastic_work > 0;
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
