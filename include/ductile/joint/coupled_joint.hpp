@@ -91,7 +91,10 @@ class CoupledJoint {
           parameters_(std::move(parameters)),
           lives_(parameters_.largest_travel) {
         parameters_.validate();
-        for (int i = 0; i < dimension; ++i) all_rigid_ = all_rigid_ && rigid(i);
+        for (int i = 0; i < dimension; ++i) {
+            all_rigid_ = all_rigid_ && rigid(i);
+            holds_strain_ = holds_strain_ && std::isfinite(parameters_.section_stiffness[i]);
+        }
         first_strength_ = check::positive("CoupledJoint.law.value(0)", law_.value(0), "N or N m");
     }
 
@@ -162,6 +165,10 @@ class CoupledJoint {
     static constexpr Scalar bound_tolerance = Scalar(4e-6); // as OneAxisJoint
 
     [[nodiscard]] bool rigid(int i) const noexcept { return std::isinf(parameters_.stiffness[i]); }
+
+    [[nodiscard]] Scalar rigid_stiffness_of(int i) const noexcept {
+        return rigid_stiffness<Scalar> * parameters_.section_stiffness[i];
+    }
 
     /// R/R(0) of a step of the travel `ahead`, or of what is left of it, softened by the criterion.
     [[nodiscard]] Scalar growth(Scalar ahead) const noexcept {
@@ -245,6 +252,7 @@ class CoupledJoint {
                 .share = share_,
                 .tolerance = tolerance_,
                 .stiffness = parameters_.stiffness[i],
+                .rigid_stiffness = rigid_stiffness_of(i),
                 .implicit = implicit_[i],
                 .start = start_[i],
                 .drift = drift_[i],
@@ -257,6 +265,9 @@ class CoupledJoint {
                             std::abs(start_[i]) > parameters_.absolute_residual};
     }
 
+    /// True of a rigid joint of a known section that what it moved strains, and no more.
+    [[nodiscard]] bool stands(const Reaction& reaction, Scalar dt) const noexcept;
+
     /// Of the velocities beyond u' + C f dt = b: where the joint flows, what is not along the
     /// normal.
     [[nodiscard]] Vector off_normal(const Reaction& reaction, bool flows,
@@ -264,7 +275,8 @@ class CoupledJoint {
         Vector excess;
         for (int i = 0; i < dimension; ++i) {
             const RowLimits<Scalar>& row = rows_[std::size_t(i)];
-            excess[i] = reaction.velocity[i] + row.compliance * reaction.force[i] * dt - row.bias;
+            const Scalar compliance = std::max(row.compliance, row.softness);
+            excess[i] = reaction.velocity[i] + compliance * reaction.force[i] * dt - row.bias;
         }
         if (flows) {
             const Vector normal = surface_.normal(reaction.force);
@@ -373,6 +385,7 @@ class CoupledJoint {
     AxisLife<Scalar, dimension> lives_;
     Scalar first_strength_ = 0; ///< R(0)
     bool all_rigid_ = true;     ///< no row is elastic
+    bool holds_strain_ = true;  ///< the section's stiffness is known of all rows
     State state_;
 
     // between prepare and commit

@@ -31,9 +31,10 @@ template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::row(int i, Scalar dt) const noexcept
     -> RowLimits<Scalar> {
-    RowLimits<Scalar> limits =
-        rigid(i) ? rigid_row(elastic_[i], lower_[i], upper_[i], parameters_.drift_time, dt)
-                 : spring(i, dt).limits(lower_[i], upper_[i], dt);
+    RowLimits<Scalar> limits = rigid(i)
+                                   ? rigid_row(elastic_[i], lower_[i], upper_[i],
+                                               parameters_.drift_time, dt, rigid_stiffness_of(i))
+                                   : spring(i, dt).limits(lower_[i], upper_[i], dt);
     limits.bias += drift_[i];
     return limits;
 }
@@ -64,6 +65,21 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     return rows_;
 }
 
+// on the surface; where a section is known what it moved may only strain it
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+bool CoupledJoint<Surface, Law, Criterion>::stands(const Reaction& reaction,
+                                                   Scalar dt) const noexcept {
+    if (!all_rigid_ || !holds_strain_) return false;
+    Scalar work = 0;
+    for (int i = 0; i < dimension; ++i) {
+        const Scalar travel = (start_[i] + reaction.velocity[i]) / 2 * dt;
+        const Scalar strain = elastic_[i] + reaction.force[i] / rigid_stiffness_of(i);
+        work -= reaction.force[i] * (strain + travel);
+    }
+    return !(work > 0);
+}
+
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
@@ -80,12 +96,13 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     const bool flows = surface_.value(reaction.force) >= reach() * (1 - bound_tolerance);
     const Vector off = reaction.on_surface ? off_normal(reaction, flows, dt) : Vector::Zero();
     std::array<RowBooking<Scalar>, std::size_t(dimension)> rows;
+    const bool slips = flows && !stands(reaction, dt);
     for (int i = 0; i < dimension; ++i) {
         const OpenRow<Scalar> open = open_row(i, jump, dt);
         const ductile::Reaction<Scalar> of_row{reaction.force[i], reaction.velocity[i],
                                                reaction.position[i]};
         RowBooking<Scalar>& booked = rows[std::size_t(i)];
-        booked = reaction.on_surface ? open.book_on_surface(of_row, dt, flows, off[i])
+        booked = reaction.on_surface ? open.book_on_surface(of_row, dt, flows, slips, off[i])
                                      : open.book(of_row, dt);
         step.residual = worse(step.residual, booked.residual);
         // stopped after all, it was thrown back
@@ -113,7 +130,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
         step.direction[i] = share * booked.travel;
         taken.error += booked.error;
         taken.at_bound[i] = booked.at_bound;
-        if (booked.moved) state_.plastic_offset[i] = reaction.position[i];
+        if (booked.moved) state_.plastic_offset[i] = reaction.position[i] - booked.strained;
     }
     if (!ahead_) { // else the frame judges its parts
         const Scalar misdirected =

@@ -23,7 +23,8 @@ struct RowBooking {
     S flow = 0, elastic = 0, damped = 0, other = 0, residual = 0, travel = 0;
     StepError<S> error{};
     bool at_bound = false;
-    bool moved = false; ///< a rigid row that goes on from where it is
+    bool moved = false; ///< a rigid row that goes on from where it is, strained by `strained`
+    S strained = 0;     ///< of a rigid row that moved [m | rad]
 };
 
 /// A row as its step began.
@@ -34,6 +35,7 @@ struct OpenRow {
     S share;             ///< of the strength that the bounds allow
     S tolerance;         ///< a force this close to its bound is at it [N | N m]
     S stiffness;         ///< k; infinite: rigid [N/m | N m/rad]
+    S rigid_stiffness;   ///< of a rigid row (elastic_row.hpp) [N/m | N m/rad]
     S implicit;          ///< θ of an elastic row
     S start;             ///< u [m/s | rad/s]
     S drift;             ///< as Motion's [m/s | rad/s]
@@ -62,16 +64,9 @@ struct OpenRow {
                                                    : std::abs(excess);
         }
         if (rigid) {
-            const bool slips = (at_lower && travel > 0) || (at_upper && travel < 0);
-            // a row that stood does not stop: round-off must not decide where it rests
-            const bool stops = !booked.at_bound && work > 0 && may_stop;
-            // a row may also be driven by the flow of the others
-            (slips || stops ? booked.flow : booked.other) = work;
-            booked.travel = slips || stops ? travel : S(0);
-            booked.moved = booked.at_bound || stops;
-            // one that holds misplaces nothing
-            if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
-            return booked;
+            const S slip = slip_of(f, travel);
+            const bool slips = (at_lower && slip > 0) || (at_upper && slip < 0);
+            return book_rigid(booked, f, travel, slips, dt);
         }
         const S trial = reaction.position - offset;
         S strained = std::clamp(trial, -upper / (share * stiffness), -lower / (share * stiffness));
@@ -93,10 +88,11 @@ struct OpenRow {
         return booked;
     }
 
-    /// The same where the solver met the surface. `flows`: the forces are on it; `residual`: of the
-    /// velocity beyond u' + C f dt = b, what is not along the normal [m/s | rad/s].
+    /// The same where the solver met the surface. `flows`: the forces are on it; `slips`: and what
+    /// is rigid flows with them; `residual`: of the velocity beyond u' + C f dt = b, what is not
+    /// along the normal [m/s | rad/s].
     [[nodiscard]] RowBooking<S> book_on_surface(const Reaction<S>& reaction, S dt, bool flows,
-                                                S residual) const noexcept {
+                                                bool slips, S residual) const noexcept {
         const S f = reaction.force;
         const S travel = (start + reaction.velocity) / 2 * dt;
         const S work = -f * travel;
@@ -104,12 +100,7 @@ struct OpenRow {
         booked.at_bound = flows;
         booked.residual = residual;
         if (stiffness == std::numeric_limits<S>::infinity()) {
-            const bool stops = !flows && work > 0 && may_stop;
-            (flows || stops ? booked.flow : booked.other) = work;
-            booked.travel = flows || stops ? travel : S(0);
-            booked.moved = flows || stops;
-            if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
-            return booked;
+            return book_rigid(booked, f, travel, slips, dt);
         }
         const S trial = reaction.position - offset;
         booked.travel = flows ? spring.flow(f, reaction.velocity - drift) : S(0);
@@ -127,7 +118,39 @@ struct OpenRow {
         return booked;
     }
 
+    /// Plastic travel of a rigid row that flows under `force`: of what it moved, what does not
+    /// strain it [m | rad].
+    [[nodiscard]] S slip_of(S force, S travel) const noexcept {
+        return holds_strain() ? elastic + travel + force / rigid_stiffness : travel;
+    }
+
   private:
+    [[nodiscard]] bool holds_strain() const noexcept {
+        return rigid_stiffness < std::numeric_limits<S>::infinity();
+    }
+
+    /// `slips`: at its bound, and moving the way that resists.
+    [[nodiscard]] RowBooking<S> book_rigid(RowBooking<S> booked, S f, S travel, bool slips,
+                                           S dt) const noexcept {
+        const S work = -f * travel;
+        // a row that stood does not stop: round-off must not decide where it rests
+        const bool stops = !booked.at_bound && work > 0 && may_stop;
+        // one that turned round within the step moved as it liked
+        const bool turned =
+            booked.at_bound && !(std::abs(travel) <= 2 * std::abs(f / rigid_stiffness));
+        booked.moved = slips || stops || turned;
+        booked.at_bound = booked.at_bound && (booked.moved || !holds_strain());
+        if (slips || stops) {
+            booked.travel = slip_of(f, travel);
+            booked.flow = -f * booked.travel;
+            // one that holds misplaces nothing
+            if (booked.travel != 0) booked.error = error_of(booked, f, travel, dt);
+        }
+        booked.other = work - booked.flow; // a row may also be driven by the flow of the others
+        booked.strained = -f / rigid_stiffness;
+        return booked;
+    }
+
     [[nodiscard]] StepError<S> error_of(const RowBooking<S>& booked, S force, S moved,
                                         S dt) const noexcept {
         if (ahead) return {}; // the frame judges its parts

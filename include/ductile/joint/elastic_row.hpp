@@ -40,13 +40,27 @@ template <std::floating_point S>
     return std::clamp((a - resolved) / (stiff - resolved), S(0), S(1));
 }
 
-/// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or
-/// within five steps where that is longer.
+/// Stiffness of a rigid axis in that of the section that it stands for: by it the joints of a
+/// redundant structure share their forces as their sections do, and hold them without creep [-].
 template <std::floating_point S>
-[[nodiscard]] constexpr RowLimits<S> rigid_row(S elastic, S lower, S upper, S drift_time,
-                                               S dt) noexcept {
-    return {.lower = lower, .upper = upper, .bias = -elastic / std::max(drift_time, 5 * dt)};
+inline constexpr S rigid_stiffness = S(2e6);
+
+/// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or
+/// within five steps where that is longer: that is the τ of a damper beside the spring
+/// `stiffness` [N/m | N m/rad], infinite where no section is known.
+template <std::floating_point S>
+[[nodiscard]] constexpr RowLimits<S> rigid_row(S elastic, S lower, S upper, S drift_time, S dt,
+                                               S stiffness) noexcept {
+    const S time = std::max(drift_time, 5 * dt);
+    return {.lower = lower,
+            .upper = upper,
+            .bias = -elastic / time,
+            .softness = 1 / (stiffness * time * dt)};
 }
+
+/// Softness of an elastic row, of what it gives itself: far below what its section strains [-].
+template <std::floating_point S>
+inline constexpr S elastic_softness = S(1e-6);
 
 /// Share of its end in the mean force of a spring whose bodies are half a step ahead [-].
 template <std::floating_point S>
@@ -93,7 +107,9 @@ struct SpringRow {
         return {.lower = lower,
                 .upper = upper,
                 .bias = -reach / lead,
-                .compliance = 1 / (lead * stiffness * dt)};
+                .compliance = 1 / (lead * stiffness * dt),
+                // in a blow a damper gives far less than its section
+                .softness = elastic_softness<S> / (stiffness * dt * std::max(lead, dt))};
     }
     /// Δ of a row that ended at `velocity` with `force`.
     [[nodiscard]] constexpr S flow(S force, S velocity) const noexcept {

@@ -51,7 +51,8 @@ struct LinkRow {
                 {.lower = limits.lower * length,
                  .upper = limits.upper * length,
                  .bias = limits.bias / length,
-                 .compliance = limits.compliance / (length * length)}};
+                 .compliance = limits.compliance / (length * length),
+                 .softness = limits.softness / (length * length)}};
     }
 };
 

@@ -26,7 +26,8 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
     bound(dt);
     RowLimits<Scalar> row{.lower = lower_, .upper = upper_};
     if (rigid()) {
-        row = rigid_row(elastic_, lower_, upper_, parameters_.drift_time, dt);
+        row =
+            rigid_row(elastic_, lower_, upper_, parameters_.drift_time, dt, parameters_.stiffness);
     } else {
         using Spring = SpringRow<Scalar>;
         const Scalar k = parameters_.stiffness;

@@ -33,6 +33,9 @@ struct RowLimits {
     Scalar upper = std::numeric_limits<Scalar>::infinity();  ///< largest force [N | N m]
     Scalar bias = 0;                                         ///< target velocity b [m/s | rad/s]
     Scalar compliance = 0;                                   ///< C [1/kg | 1/(kg m²)]
+    /// Least C for a solver of rows that repeat each other, as those of a beam held at both ends:
+    /// by it they share their forces; 0: not known [1/kg | 1/(kg m²)].
+    Scalar softness = 0;
 
     bool operator==(const RowLimits&) const = default;
 };

@@ -20,15 +20,6 @@
 
 namespace ductile {
 
-/// Compliance that a joint's rigid row has at least, of its section's own: far below what that
-/// strains [-].
-inline constexpr double section_softness = 1e-6;
-
-/// That of a row: of what its section gives in the step, and of what an elastic row itself gives,
-/// which in a blow is far less where it is damped [1/kg | 1/(kg m²)].
-[[nodiscard]] double softness_of(const RowLimits<double>& limits, double stiffness,
-                                 double dt) noexcept;
-
 /// A body of a row: its number in the island, solve::immovable for what rows cannot move, and its
 /// velocities without them [m/s], [rad/s], world axes.
 struct IslandSeat {

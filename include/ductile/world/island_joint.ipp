@@ -34,10 +34,9 @@ DUCTILE_INLINE void add_ellipsoid(solve::Island& island, solve::IslandBlock bloc
 }
 
 /// Compliance and bounds of a row [N s | N m s].
-DUCTILE_INLINE void rule(solve::IslandRow& row, const RowLimits<double>& limits, double stiffness,
-                         double dt) {
+DUCTILE_INLINE void rule(solve::IslandRow& row, const RowLimits<double>& limits, double dt) {
     row.compliance = limits.compliance;
-    row.softness = softness_of(limits, stiffness, dt);
+    row.softness = limits.softness;
     row.lower = limits.lower * dt;
     row.upper = limits.upper * dt;
 }
@@ -53,7 +52,7 @@ DUCTILE_INLINE bool passes(const solve::Island& island, const solve::IslandBlock
     return square > 1;
 }
 
-/// Rows that flowed in the last step.
+/// Rows that flowed in the last step, or stood at their bounds.
 DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link, int first) {
     for (const JointAxis axis : link.axes()) {
         const RowLimits<double>& limits = link.limits()[index(axis)];
@@ -82,19 +81,11 @@ DUCTILE_INLINE solve::IslandRow& add_row(solve::Island& island, const IslandSeat
     return row;
 }
 
-DUCTILE_INLINE double softness_of(const RowLimits<double>& limits, double stiffness,
-                                  double dt) noexcept {
-    const double section = 1 / (stiffness * dt * dt);
-    const bool elastic = limits.compliance > 0;
-    return section_softness * (elastic ? std::min(section, limits.compliance) : section);
-}
-
 DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a,
                             const IslandSeat& b, double dt) {
     const int first = int(island.rows.size());
     const LinkPose<double>& pose = link.pose();
     const Vector3<double> none = Vector3<double>::Zero();
-    const Vector6<double> stiffness = link.section_stiffness();
     for (const JointAxis axis : all_joint_axes) {
         const auto i = Eigen::Index(index(axis));
         const RowLimits<double>& limits = link.limits()[index(axis)];
@@ -104,20 +95,22 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
             turns(axis)
                 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
                 : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
-        detail::rule(row, limits, stiffness[i], dt);
+        detail::rule(row, limits, dt);
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
     const solve::IslandBlock block = detail::ellipsoid_of(link, first, dt);
     const AnyLink<double>::Limits alone = link.limits();
+    // one that stands may have reached it too
+    const bool reached = link.totals().flowing || link.utilisation() >= detail::at_bound;
     if (block.count > 0 && link.meet_surface(dt, detail::passes(island, block))) {
         for (const JointAxis axis : link.axes()) {
             solve::IslandRow& row = island.rows[std::size_t(first) + index(axis)];
             const RowLimits<double>& limits = link.limits()[index(axis)];
             row.target += limits.bias - alone[index(axis)].bias;
-            detail::rule(row, limits, stiffness[Eigen::Index(index(axis))], dt);
+            detail::rule(row, limits, dt);
         }
-        detail::add_ellipsoid(island, block, link.totals().flowing);
-    } else if (link.totals().flowing) {
+        detail::add_ellipsoid(island, block, reached);
+    } else if (reached) {
         detail::begin_at_bounds(island, link, first);
     }
     return first;

@@ -191,15 +191,12 @@ DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, dou
 DUCTILE_INLINE void JointConstraint::make_rows(double dt) {
     const BodyState<double> a = body_state(a_), b = body_state(b_);
     std::array<PointRow, 3> force_rows, moment_rows;
-    const Vector6<double> stiffness = link_.section_stiffness();
     bool out_of_scale = false; // a moment's row
     for (const JointAxis axis : all_joint_axes) {
         const LinkRow<double> row = link_.row(axis).along_unit();
         SymmetricRow symmetric = symmetric_row(row.limits, dt);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
-        const double of_section = stiffness[Eigen::Index(index(axis))];
-        symmetric.cfm +=
-            std::max(detail::softness * dt * moved, softness_of(row.limits, of_section, dt) * dt);
+        symmetric.cfm += std::max(detail::softness * moved, row.limits.softness) * dt;
         Vector3<double>& centre = row.turns ? centre_.moment : centre_.force;
         centre = sum(centre, scaled(symmetric.centre, row.direction));
         const double scale = row_scale(moved + symmetric.cfm / dt);
