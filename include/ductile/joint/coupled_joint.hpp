@@ -270,21 +270,7 @@ class CoupledJoint {
 
     /// Of the velocities beyond u' + C f dt = b: where the joint flows, what is not along the
     /// normal.
-    [[nodiscard]] Vector off_normal(const Reaction& reaction, bool flows,
-                                    Scalar dt) const noexcept {
-        Vector excess;
-        for (int i = 0; i < dimension; ++i) {
-            const RowLimits<Scalar>& row = rows_[std::size_t(i)];
-            const Scalar compliance = std::max(row.compliance, row.softness);
-            excess[i] = reaction.velocity[i] + compliance * reaction.force[i] * dt - row.bias;
-        }
-        if (flows) {
-            const Vector normal = surface_.normal(reaction.force);
-            const Scalar along = numeric::dot(excess, normal) / numeric::dot(normal, normal);
-            if (along < 0) excess -= along * normal; // against the force
-        }
-        return excess.cwiseAbs();
-    }
+    [[nodiscard]] Vector off_normal(const Reaction& reaction, bool flows, Scalar dt) const noexcept;
 
     [[nodiscard]] Scalar allowed_residual(const Vector& velocity) const noexcept {
         const Scalar speed = std::max(numeric::largest(start_), numeric::largest(velocity));

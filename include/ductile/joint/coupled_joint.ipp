@@ -65,6 +65,24 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     return rows_;
 }
 
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::off_normal(const Reaction& reaction, bool flows,
+                                                       Scalar dt) const noexcept -> Vector {
+    Vector excess;
+    for (int i = 0; i < dimension; ++i) {
+        const RowLimits<Scalar>& row = rows_[std::size_t(i)];
+        const Scalar compliance = std::max(row.compliance, row.softness);
+        excess[i] = reaction.velocity[i] + compliance * reaction.force[i] * dt - row.bias;
+    }
+    if (flows) {
+        const Vector normal = surface_.normal(reaction.force);
+        const Scalar along = numeric::dot(excess, normal) / numeric::dot(normal, normal);
+        if (along < 0) excess -= along * normal; // against the force
+    }
+    return excess.cwiseAbs();
+}
+
 // on the surface; where a section is known what it moved may only strain it
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
