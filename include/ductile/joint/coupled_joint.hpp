@@ -19,6 +19,8 @@
 // Rows. The surface is mapped onto a box of independent bounds around the force predicted for this
 // step (row_box.hpp, where the error is measured); it grows with the law, γ(f) R(0)/R(p) <= 1. Each
 // row is rigid or elastic as that of a one-axis joint, whose account and certificate these are.
+// Where the section's stiffness is known a rigid row is a spring a million times as stiff, with a
+// damper: what strains it is no flow, and near its limit load a redundant structure does not creep.
 //
 // Finite rotation: angular entries of q are sums of rotation increments (rotation.hpp), without
 // wrap.

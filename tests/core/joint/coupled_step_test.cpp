@@ -207,3 +207,48 @@ TEST_CASE("a spring met on its surface breaks with the work of its largest trave
         CHECK(state.plastic_work == Approx(strength * largest).epsilon(3e-4));
     }
 }
+
+TEST_CASE("a rigid joint of a known section stands at its strength: what strains it is no flow",
+          "[coupled_joint]") {
+    constexpr double strength = 100, k = 1e6, h = 1e-3;
+    const bool on_surface = GENERATE(false, true);
+    CAPTURE(on_surface);
+    CoupledJoint joint(Ellipse({.capacity = V2(strength, strength)}),
+                       Perfect<double>({.strength = strength}), TravelLimit<double>(),
+                       {.section_stiffness = V2::Constant(k)});
+    double position = 0, speed = 0;
+    // what a solver leaves of the row, which carries the strength
+    const auto row = [&](double dt) {
+        auto rows =
+            joint.prepare({V2(position, 0), V2(speed, 0), 2 * Eigen::Matrix2d::Identity()}, dt);
+        if (on_surface) rows = *joint.meet_surface(dt);
+        return rows[0];
+    };
+    const auto commit = [&](double dt) {
+        position += speed * dt;
+        return joint.commit({V2(-strength, 0), V2(speed, 0), V2(position, 0), on_surface}, dt);
+    };
+    for (const double dt : {h, 10 * h, h / 20}) { // other steps hold the same
+        for (int i = 0; i < 2000; ++i) {
+            const RowLimits<double> limits = row(dt);
+            REQUIRE(limits.softness > 0);
+            speed = limits.bias + limits.softness * strength * dt;
+            REQUIRE(commit(dt).outcome == Outcome::elastic);
+        }
+        CAPTURE(dt);
+        CHECK(joint.state().plastic_work == 0);
+        CHECK_FALSE(joint.state().flowing);
+        CHECK(std::abs(speed) < 1e-3 * strength / k);
+        CHECK(position == Approx(strength / (rigid_stiffness<double> * k)).epsilon(1e-3));
+    }
+    // then it flows, by all that it moves
+    const double stood = position;
+    for (const double u : {0.2, 0.4, 0.4}) {
+        row(h);
+        speed = u;
+        CHECK(commit(h).outcome == Outcome::yielding);
+    }
+    const double travel = position - stood - 0.2 * h; // of the mean velocities
+    CHECK(joint.state().plastic_work == Approx(strength * travel).epsilon(1e-9));
+    CHECK(joint.state().plastic_offset[0] == Approx(position - stood).epsilon(1e-9));
+}

@@ -16,9 +16,10 @@
 // on both bodies at one point, so what one loses in momentum the other gains.
 //
 // Ties. Where rows repeat each other, as in a beam that is clamped at both ends, the direct solver
-// would divide by zero. Every row therefore yields a little: by `section_softness` of what its
-// section would, so that forces are shared out as in the elastic structure, and by `softness` of
-// the velocity that its own force gives to the two bodies in the step where nobody named a section.
+// would divide by zero. Every row therefore yields a little: by RowLimits::softness, far less than
+// its section would, so that forces are shared out as in the elastic structure, and by `softness`
+// of the velocity that its own force gives to the two bodies in the step where nobody named a
+// section.
 //
 // Rigid axes are pulled together by the world's ERP a step, as ODE's own joints are.
 //
