@@ -8,6 +8,7 @@
 #include "adapters/portal.hpp"
 
 #include <catch2/catch.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -118,7 +119,7 @@ TEST_CASE("at P30's collapse factors a frame stays one body or falls where the p
                 CHECK(scene.frame->whole());
                 CHECK(scene.frame->bodies().size() == 1);
                 CHECK(scene.frame->sag("beam 20") < 1e-4);
-                CHECK(work <= of_always);
+                CHECK(std::max(work, of_always) < 0.2); // as loads are shared out anew
                 if (loss.name != "cut") CHECK(scene.most_bodies == 1);
                 continue;
             }

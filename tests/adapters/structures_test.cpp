@@ -88,13 +88,14 @@ TEST_CASE("A frame that loses a column or a foot comes to rest where P29 says", 
     }
 }
 
-TEST_CASE("The frame without a column stands at 0.999 of P30's collapse load and falls at 1.001",
+TEST_CASE("A frame stands at 0.999 of P30's collapse load, without creep, and falls at 1.001",
           "[structures]") {
-    if (single) return; // the margin is round-off's
-    constexpr double collapse = 2.2772731;
+    if (single) return;                          // the margin is round-off's
     const bool contacts = GENERATE(false, true); // open ones, of the feet with the ground
+    const bool whole_column = GENERATE(true, false);
+    const double collapse = whole_column ? 2.2772731 : 2.5887097;
     for (const double factor : {0.999, 1.001}) {
-        CAPTURE(contacts, factor);
+        CAPTURE(contacts, whole_column, factor);
         FrameSettings settings;
         settings.elastic = false;
         settings.contacts = contacts;
@@ -102,14 +103,23 @@ TEST_CASE("The frame without a column stands at 0.999 of P30's collapse load and
         frame.structure->scale_weights(factor * collapse);
         frame.rig.run(0.5, dt);
         frame.rig.keep_awake();
-        frame.structure->remove("column 00");
+        if (whole_column) {
+            frame.structure->remove("column 00");
+        } else {
+            frame.structure->cut("column 00", start);
+        }
         frame.rig.run(2, dt);
+        const double work = frame.structure->absorbed_energy();
         if (factor < 1) {
             CHECK(frame.rig.speed() < 1e-9);
-            CHECK(frame.structure->absorbed_energy() < 0.1);
-        } else {
+            CHECK(work < (whole_column ? 0.003 : 0.2)); // as loads are shared out anew
+            frame.rig.run(8, dt);
+            CHECK(frame.structure->absorbed_energy() <= work + 1e-5);
+        } else if (whole_column) {
             CHECK(frame.rig.speed() > 0.02);
             CHECK(frame.utilisation_of("beam 00", end) == Approx(1).epsilon(1e-5));
+        } else {
+            CHECK(work > 10); // it comes to hang from its beams
         }
     }
 }

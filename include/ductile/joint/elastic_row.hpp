@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 #include "ductile/law/cyclic.hpp"
 #include "ductile/law/root.hpp"
@@ -47,13 +48,14 @@ inline constexpr S rigid_stiffness = S(2e6);
 
 /// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or
 /// within five steps where that is longer: that is the τ of a damper beside the spring
-/// `stiffness` [N/m | N m/rad], infinite where no section is known. In parts and blows that are
-/// shorter than most it gives no more than in those, and holds what it held.
+/// `stiffness` [N/m | N m/rad], infinite where no section is known. With that spring it gives no
+/// more in a blow than in a short part, and holds what it held.
 template <std::floating_point S>
 [[nodiscard]] constexpr RowLimits<S> rigid_row(S elastic, S lower, S upper, S drift_time, S dt,
                                                S stiffness) noexcept {
-    constexpr S short_part = S(1e-4); // [s]
-    const S time = std::max(drift_time * std::max(S(1), short_part / dt), 5 * dt);
+    constexpr S short_part = S(1e-4), infinity = std::numeric_limits<S>::infinity(); // [s]
+    const bool sprung = stiffness < infinity && dt < short_part;
+    const S time = sprung ? drift_time * short_part / dt : std::max(drift_time, 5 * dt);
     return {.lower = lower,
             .upper = upper,
             .bias = -elastic / time,
