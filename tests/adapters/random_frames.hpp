@@ -75,7 +75,7 @@ class RandomFrame {
     };
     // the library's distributions differ from one to the other
     double between(double low, double high) {
-        return low + (high - low) * (next_() / 4294967296.0);
+        return low + (high - low) * (double(next_()) / 4294967296.0);
     }
     int one_of(int count) { return int(between(0, count)); }
 
