@@ -346,6 +346,28 @@ TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about"
     }
 }
 
+TEST_CASE("Frames: what contacts bring in is said, what a driven body brings is not", "[frame]") {
+    // beside two boxes a disc of 1 kg m² is stopped: 2 J by its hinge of 4 N m
+    const bool overlap = GENERATE(true, false), driven = GENERATE(true, false);
+    CAPTURE(overlap, driven);
+    Rig rig;
+    rig.set_gravity(0);
+    const dBodyID left = rig.body(1, V3(1, 1, 1), {0, 0, 0}, rig.box(0.5, 0.5, 0.5), 1, 2);
+    const dBodyID right =
+        rig.body(1, V3(1, 1, 1), {overlap ? 0.8 : 1.01, 0, 0}, rig.box(0.5, 0.5, 0.5), 2, 1);
+    if (driven) dBodySetKinematic(left);
+    dBodySetLinearVel(left, driven || !overlap ? 1 : 0, 0, 0);
+    const dBodyID disc = rig.body(1, V3(1, 1, 1), {0, 5, 0});
+    dBodySetAngularVel(disc, 0, 0, 2);
+    const Hinge& hinge = rig.hinge(disc, nullptr, {0, 5, 0}, 4);
+    rig.run(1, 1.0 / 60);
+    CHECK(hinge.absorbed_energy() == Approx(2).epsilon(1e-6));
+    CHECK(double(dBodyGetLinearVel(right)[0]) > 0.4); // was pushed
+    const RunReport& run = rig.world.run();
+    CHECK((run.brought_in > 0.02) == (overlap && !driven));
+    CHECK(run.believed() == !(overlap && !driven));
+}
+
 TEST_CASE("Frames: damping is that of frames, however many parts they have", "[frame]") {
     // ODE takes a share of the velocity in each step; the ball meets nothing, the rotor yields
     const auto left = [](double tolerance) {

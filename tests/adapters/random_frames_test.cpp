@@ -58,7 +58,7 @@ TEST_CASE("P43 random frames stand below their limit load and fall above it", "[
                 CHECK(rig.speed() < 1e-6);
                 CHECK(work < 2e-3 * beyond); // as loads are shared out anew
                 rig.run(4, dt);
-                CHECK(frame->absorbed_energy() <= 1.05 * work + 1e-6);
+                CHECK(frame->absorbed_energy() < 2e-3 * beyond);
             }
             rig.forget();
         }

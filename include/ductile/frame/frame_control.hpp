@@ -41,6 +41,7 @@
 // in README.md.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <vector>
@@ -81,6 +82,9 @@ class FrameControl {
         run_.unreliable += joints;
     }
 
+    /// What contacts that nobody drives took so far [J].
+    void tell_contacts(double took) noexcept { run_.brought_in = std::max(0.0, -took); }
+
     /// Somebody changed the bodies: what the last parts say of the next one is forgotten.
     void forget() noexcept;
 
@@ -93,6 +97,7 @@ class FrameControl {
         double most = 0;      ///< that those can have taken: R x speed x length
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
+        double least = 0;     ///< strength x travel that nobody misses, of all rows
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         double turned = 0;   ///< of turns that were too far, in those that a part may have; 0: none

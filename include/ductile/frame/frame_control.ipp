@@ -174,6 +174,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         const double early = judged.closed;
         if (tries >= detail::tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
+        run_.least = judged.least;
         // of one that turned too far it says nothing, and such a part is no way out
         if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
         const bool good =
@@ -224,10 +225,11 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    double ahead = 0, largest = 0, unmissed = motion.closed_work * detail::unmissed;
+    double ahead = 0, largest = 0;
+    judged.least = motion.closed_work;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
-        unmissed += row.strength * row.least * detail::unmissed;
+        judged.least += row.strength * row.least;
         judged.turned =
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
@@ -261,7 +263,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
     const double share = tolerated_share();
-    judged.tolerated = share * (motion.plastic_work + ahead + unmissed);
+    judged.tolerated = share * (motion.plastic_work + ahead + judged.least * detail::unmissed);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;

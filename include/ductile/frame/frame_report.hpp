@@ -55,11 +55,17 @@ struct RunReport {
     double tolerance = 0;    ///< that was asked for [-]
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
+    /// By contacts that nobody drives, beyond what they took; 0 where no ledger is kept [J].
+    double brought_in = 0;
+    double least = 0; ///< strength × travel that nobody misses, of all joints [J]
 
-    /// Whether what the parts could not resolve is within the tolerance of the plastic work, and no
-    /// joint was unreliable. False too where an estimate is no number.
+    /// Whether what the parts could not resolve, and what contacts brought in beside what nobody
+    /// misses, is within the tolerance of the plastic work, and no joint was unreliable. False too
+    /// where an estimate is no number.
     [[nodiscard]] bool believed() const noexcept {
-        return left.energy <= tolerance * plastic_work && error < unlimited && unreliable == 0;
+        return left.energy <= tolerance * plastic_work &&
+               brought_in <= tolerance * (plastic_work + least) && error < unlimited &&
+               unreliable == 0;
     }
     void add(const FrameReport& frame, double work);
 

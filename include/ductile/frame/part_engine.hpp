@@ -11,6 +11,7 @@
 // A blow is impulses alone: contacts that touch are closed, all others are open, no time passes.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct PartMotion {
     /// of members; 0: there are none.
     double closed_work = 0;
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
-    double contact_work = 0;   ///< that contacts took, either sign [J]
+    double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing
     /// that matters [rad].
@@ -34,6 +35,11 @@ struct PartMotion {
     /// When a gap closed that was not foreseen, so that the contact pushed before it touched [s];
     /// 0: none that matters.
     double closed = 0;
+
+    [[nodiscard]] bool flows() const noexcept {
+        return std::any_of(rows.begin(), rows.end(),
+                           [](const PartRow& row) { return row.moves(); });
+    }
 };
 
 /// Contacts that close.

@@ -49,6 +49,7 @@ struct PartRow {
     double start = 0;      ///< u [m/s | rad/s]
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
+    double own_share = 1;  ///< |f|/R of its axis alone: a strong one of a surface hardly flows [-]
     double strength = 0;   ///< R; 0 where broken [N | N m]
     double below = 0;      ///< share of R by which it flows below it, where its force was foretold
     bool pushes = false;   ///< the force went with u: it is that of a flow the other way
@@ -64,8 +65,9 @@ struct PartRow {
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
     /// Negated so that a speed that is no number moves.
     [[nodiscard]] bool moves() const noexcept {
-        constexpr double holds = 1 - 1e-6;
-        const double rest = share < holds ? std::max(noise, turning) : noise;
+        constexpr double holds = 1 - 1e-6, least_own = 0.1;
+        const bool flows = share >= holds && own_share >= least_own;
+        const double rest = flows ? noise : std::max(noise, turning);
         return strength > 0 && !(std::abs(start) <= rest && std::abs(end) <= rest);
     }
 };

@@ -44,7 +44,7 @@ template <std::floating_point S>
 /// Stiffness of a rigid axis in that of the section that it stands for: by it the joints of a
 /// redundant structure share their forces as their sections do, and hold them without creep [-].
 template <std::floating_point S>
-inline constexpr S rigid_stiffness = S(2e6);
+inline constexpr S rigid_stiffness = S(1e6);
 
 /// The row of a rigid axis that is off by `elastic` [m | rad], removed within `drift_time` [s], or
 /// within five steps where that is longer: that is the τ of a damper beside the spring

@@ -9,7 +9,8 @@
 //   change_over where it belongs; true where that is another state than before
 //   off         how far it is from its own optimum, as a velocity
 //   project     x into the set
-//   open, set_cone_tangent, tell    and for interior_cone.hpp
+//   and for interior_point.hpp, with the set as f(x) <= 0, f convex:
+//   open, slack, gradient, hessian, set_interior_tangent, reach
 //
 // Symbols as in island.hpp, active_set.hpp and interior_point.hpp.
 #pragma once

@@ -21,6 +21,9 @@
 // Closest point in the metric (d_n, d): inside where |y| <= n; the apex where d |y| <= -d_n n; else
 // n' = (d_n n + d |y|)/(d_n + d), y' = n' ŷ.
 //
+// Interior: f = |y|²/n - n <= 0, ∇f = (-|y|²/n² - 1; 2 y/n), ∇²f = 2/n (-y/n; 1)(-y/n; 1)ᵀ on (n;
+// y).
+//
 // Source: de Saxcé & Feng (1998), doi:10.1016/S0895-7177(98)00119-8; the convex problem inside a
 // fixed point: Acary, Cadoux, Lemaréchal & Malick (2011), doi:10.1002/zamm.201000073.
 #pragma once
@@ -65,7 +68,7 @@ struct ContactForm {
         if (!v.on_surface()) return;
         const double length = shear(v), c = compliance(v), normal = v.work[0].compliance;
         const double a = 1 / (c + v.block.multiplier / length);
-        set_terms(v, direction(v, length), a, 1 / (normal + c), 1, -a);
+        set_terms(v, length, a, 1 / (normal + c), 1, -a);
         v.work[0].weight = 0;
     }
 
@@ -174,24 +177,68 @@ struct ContactForm {
         for (int i = 1; i < v.count(); ++i) v.row[i].impulse = 0;
         return scale;
     }
-    /// `a`: 1/η², `w`: of the scaling (interior_cone.hpp).
-    static void set_cone_tangent(const BlockView& v, double a, const double* w) noexcept {
+    static double slack(const BlockView& v) noexcept {
+        const double length = shear(v), n = v.row[0].impulse;
+        return n - length * length / n;
+    }
+    static double gradient(const BlockView& v, int i) noexcept {
+        const double n = v.row[0].impulse;
+        if (i == 0) return -std::pow(shear(v) / n, 2) - 1;
+        return v.live(i) ? 2 * v.row[i].impulse / (n * v.size(i) * v.size(i)) : 0;
+    }
+    static Vector6<double> hessian(const BlockView& v, const Vector6<double>& dx) noexcept {
+        Vector6<double> result = Vector6<double>::Zero();
+        const double n = v.row[0].impulse;
+        for (int i = 1; i < v.count(); ++i) {
+            if (!v.live(i)) continue;
+            const double y = v.row[i].impulse / v.size(i);
+            const double part = 2 / n * (dx[i] / v.size(i) - y / n * dx[0]);
+            result[i] = part / v.size(i);
+            result[0] -= part * y / n;
+        }
+        return result;
+    }
+    static void set_interior_tangent(const BlockView& v, double multiplier, double slack) noexcept {
         v.clear_terms();
-        double square = 0;
-        for (int i = 1; i < v.count(); ++i) square += w[i] * w[i];
-        const double length = std::sqrt(square), c = compliance(v);
-        // C + H on (n, ŵ), inverted
-        const double nn = v.work[0].compliance + a * (2 * w[0] * w[0] - 1);
-        const double ny = -2 * a * w[0] * length, yy = c + a * (1 + 2 * square);
-        const double by = 1 / (nn * yy - ny * ny), alone = 1 / (c + a);
-        Vector6<double> unit = Vector6<double>::Zero();
-        for (int i = 1; i < v.count(); ++i) unit[i] = length > 0 ? w[i] / length : 0;
-        set_terms(v, unit, alone, yy * by, -ny / yy, 1 / yy - alone);
+        const double n = v.row[0].impulse, length = shear(v), share = length / n;
+        const double c = compliance(v), q = multiplier / slack, h = 2 * multiplier / n;
+        // C + λ∇²f + λ/s ∇f∇fᵀ on (n, ŷ), inverted
+        const double g_n = -share * share - 1, g_y = 2 * share;
+        const double nn = v.work[0].compliance + h * share * share + q * g_n * g_n;
+        const double ny = -h * share + q * g_n * g_y, yy = c + h + q * g_y * g_y;
+        const double by = 1 / (nn * yy - ny * ny);
+        const double a = 1 / (c + h);
+        for (int i = 1; i < v.count(); ++i) v.release(i, v.live(i));
+        set_terms(v, length, a, yy * by, -ny / yy, 1 / yy - a);
         v.work[0].weight = 0;
     }
-    static void tell(const BlockView& v, bool open, double multiplier) noexcept {
+    static double reach(const BlockView& v) noexcept {
+        // |y + t dy|² - (n + t dn)² = square t² + 2 half t - room
+        const double n = v.row[0].impulse, dn = v.work[0].change;
+        double square = -dn * dn, half = -n * dn, room = n * n;
+        for (int i = 1; i < v.count(); ++i) {
+            if (!v.live(i)) continue;
+            const double y = v.row[i].impulse / v.size(i), dy = v.work[i].change / v.size(i);
+            square += dy * dy;
+            half += y * dy;
+            room -= y * y;
+        }
+        room = std::max(room, 0.0);
+        const double inside = half * half + square * room;
+        double share = std::numeric_limits<double>::infinity();
+        if (inside >= 0) {
+            const double root = std::sqrt(inside);
+            if (half + root > 0)
+                share = room / (half + root);
+            else if (square > 0)
+                share = (root - half) / square;
+        }
+        return dn < 0 ? std::min(share, n / -dn) : share;
+    }
+    /// λ ∇f on the cone is κ (-1; ŷ) with κ = 2λ.
+    static void tell(const BlockView& v, bool open, double multiplier, double) noexcept {
         v.block.state = open ? aim_of(v).closest() : BlockState::apex;
-        v.block.multiplier = v.on_surface() ? BlockView::known(multiplier) : 0;
+        v.block.multiplier = v.on_surface() ? BlockView::known(2 * multiplier) : 0;
     }
 
   private:
@@ -245,17 +292,9 @@ struct ContactForm {
             if (!v.live(i)) v.row[i].impulse = 0;
         }
     }
-    /// ŷ.
-    static Vector6<double> direction(const BlockView& v, double length) noexcept {
-        Vector6<double> result = Vector6<double>::Zero();
-        for (int i = 1; i < v.count(); ++i) {
-            if (v.live(i) && length > 0) result[i] = v.row[i].impulse / (v.size(i) * length);
-        }
-        return result;
-    }
     /// D = a on the friction rows + `both` (1; s ŷ)(1; s ŷ)ᵀ + `along` ŷ ŷᵀ, in shares.
-    static void set_terms(const BlockView& v, const Vector6<double>& unit, double a, double both,
-                          double s, double along) noexcept {
+    static void set_terms(const BlockView& v, double length, double a, double both, double s,
+                          double along) noexcept {
         auto& [first, second] = v.tangent.terms;
         first.coefficient = both;
         second.coefficient = along;
@@ -265,8 +304,9 @@ struct ContactForm {
         for (int i = 1; i < v.count(); ++i) {
             const bool live = v.live(i);
             v.work[i].weight = live ? a * v.size(i) * v.size(i) : 0;
-            first.direction[i] = live ? s * unit[i] * v.size(i) : 0;
-            second.direction[i] = live ? unit[i] * v.size(i) : 0;
+            const double unit = live && length > 0 ? v.row[i].impulse / (v.size(i) * length) : 0;
+            first.direction[i] = s * unit * v.size(i);
+            second.direction[i] = unit * v.size(i);
         }
     }
 };

@@ -7,6 +7,10 @@
 //   (C + μ/P²) dx + n dμ = r' - J dv,   n·dx = (1 - |x/P|²)/2 = g
 //   W = 1/(C + μ/P²),  D = W - (W n)(W n)ᵀ/(n·W n),  e = W n g/(n·W n)
 //
+// Interior, with ∇f = 2 n and multiplier λ:
+//
+//   D = (C + 2λ/P² + (4λ/s) n nᵀ)⁻¹ = W - q/(1 + q n·W n) (W n)(W n)ᵀ,  q = 4λ/s
+//
 // Source: closest-point return with its consistent tangent, Simo & Hughes (1998), section 3.6.
 #pragma once
 
@@ -132,7 +136,7 @@ struct EllipsoidForm {
 
     // ---- interior
 
-    /// Starts in the middle. μ; 0 where the set is too small to matter.
+    /// Starts in the middle. λ; 0 where the set is too small to matter.
     static double open(const BlockView& v, double scale) noexcept {
         constexpr double narrow = 1e-9;
         double power = 0, widest = 0;
@@ -142,31 +146,47 @@ struct EllipsoidForm {
             widest = std::max(widest, v.size(i) * v.work[i].own);
         }
         if (!(widest > narrow * scale)) return 0;
-        return std::max(std::sqrt(power), 0.1 * scale * widest / most_own(v));
+        return std::max(std::sqrt(power) / 2, 0.05 * scale * widest / most_own(v));
     }
-    /// `a`: 1/η², `w`: of the scaling (interior_cone.hpp).
-    static void set_cone_tangent(const BlockView& v, double a, const double* w) noexcept {
-        v.clear_terms();
-        double along = 0;
+    static double slack(const BlockView& v) noexcept { return 1 - square_gauge(v); }
+    static double gradient(const BlockView& v, int i) noexcept {
+        return v.live(i) ? 2 * v.row[i].impulse / (v.size(i) * v.size(i)) : 0;
+    }
+    /// ∇²f dx.
+    static Vector6<double> hessian(const BlockView& v, const Vector6<double>& dx) noexcept {
+        Vector6<double> result = Vector6<double>::Zero();
         for (int i = 0; i < v.count(); ++i) {
-            const bool live = v.live(i);
-            const double p2 = v.size(i) * v.size(i);
-            v.work[i].weight = live ? p2 / (v.work[i].compliance * p2 + a) : 0;
-            const double n = live ? w[i + 1] / v.size(i) : 0;
-            v.tangent.terms[0].direction[i] = v.work[i].weight * n;
-            along += v.work[i].weight * n * n;
+            if (v.live(i)) result[i] = 2 * dx[i] / (v.size(i) * v.size(i));
         }
-        v.tangent.terms[0].coefficient = -2 * a / (1 + 2 * a * along);
+        return result;
     }
-    /// Whether the surface is reached.
-    static void tell(const BlockView& v, bool open, double multiplier) noexcept {
+    static void set_interior_tangent(const BlockView& v, double multiplier, double slack) noexcept {
+        v.clear_terms();
+        const double along = set_weights(v, 2 * multiplier), q = 4 * multiplier / slack;
+        v.tangent.terms[0].coefficient = -q / (1 + q * along);
+    }
+    /// Share of dx that stays in the set.
+    static double reach(const BlockView& v) noexcept {
+        double square = 0, half = 0; // |x + t dx|² = |x|² + 2 half t + square t², in shares of P
+        for (int i = 0; i < v.count(); ++i) {
+            if (!v.live(i)) continue;
+            const double dx = v.work[i].change / v.size(i);
+            square += dx * dx;
+            half += v.row[i].impulse / v.size(i) * dx;
+        }
+        if (!(square > 0)) return std::numeric_limits<double>::infinity();
+        const double room = std::max(slack(v), 0.0), root = std::sqrt(half * half + square * room);
+        return half > 0 ? room / (half + root) : (root - half) / square;
+    }
+    /// Whether the surface is reached, of λ and s.
+    static void tell(const BlockView& v, bool open, double multiplier, double slack) noexcept {
         double stiffest = 0; // d P², what a slack of 1 is worth
         for (int i = 0; i < v.count(); ++i) {
             stiffest = std::max(stiffest, v.work[i].metric * v.size(i) * v.size(i));
         }
-        const bool flows = !open || multiplier > (1 - square_gauge(v)) * stiffest;
+        const bool flows = !open || 2 * multiplier > slack * stiffest;
         v.block.state = flows ? BlockState::surface : BlockState::inside;
-        v.block.multiplier = flows ? BlockView::known(multiplier) : 0;
+        v.block.multiplier = flows ? BlockView::known(2 * multiplier) : 0;
     }
 
   private:

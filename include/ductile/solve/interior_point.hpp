@@ -4,7 +4,7 @@
 // whatever the stiffness and from whatever start; it cannot go in circles.
 //
 //   rows     r + z_l - z_u = 0,   z_l (x - l) = τ c,  z_u (u - x) = τ c
-//   blocks   cones, see interior_cone.hpp
+//   blocks   r - λ ∇f = 0,        λ s = τ c,          s = -f(x),  f <= 0 the block's set, convex
 //
 // with r = b - J v - C x and v = M⁻¹ Jᵀ x at all times, and τ -> 0 by Mehrotra's predictor and
 // corrector. c puts all products on one scale, that of a velocity: the width of a row's bounds, for
@@ -12,6 +12,7 @@
 // underflow.
 //
 //   row      D = 1/(C + z_l/(x - l) + z_u/(u - x))
+//   block    D = (C + λ ∇²f + (λ/s) ∇f ∇fᵀ)⁻¹, by its form (ellipsoid_form.hpp, contact_form.hpp)
 //
 // The shifts of contacts are those in the system; following the slips is the caller's loop.
 //
@@ -20,7 +21,6 @@
 
 #include <vector>
 
-#include "ductile/solve/interior_cone.hpp"
 #include "ductile/solve/island_system.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -44,6 +44,13 @@ class InteriorPoint {
         double to_lower = 1, to_upper = 1; ///< x - l, u - x
         double change_lower = 0, change_upper = 0;
         double first_change = 0, first_lower = 0, first_upper = 0; ///< of the predictor
+    };
+    struct Block {
+        bool open = false;
+        double cap = 1;                   ///< c
+        double multiplier = 0, slack = 1; ///< λ, s
+        double change = 0;                ///< of λ
+        double first_change = 0, first_slack = 0;
     };
     /// What is left of the optimality conditions, of the largest velocity.
     struct Left {
@@ -69,7 +76,7 @@ class InteriorPoint {
 
     IslandSystem* system_ = nullptr;
     std::vector<Row> rows_;
-    std::vector<InteriorCone> cones_; ///< of the blocks
+    std::vector<Block> blocks_;
     std::vector<double> best_;
     int iterations_ = 0;
     bool contacts_held_ = false;

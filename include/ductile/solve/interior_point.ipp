@@ -14,8 +14,8 @@ namespace ductile::solve {
 
 DUCTILE_INLINE void InteriorPoint::solve(IslandSystem& system, bool contacts_held) {
     constexpr int most = 60;
-    // of residual and gap: as far as it goes, for what stiff rows share has few digits
-    constexpr double enough = 1e-14;
+    // of residual and gap; where no active set polishes it, as far as it goes
+    const double enough = contacts_held ? 1e-12 : 1e-10;
     constexpr double least_share = 1e-10; // of a step: no more is to be had
     system_ = &system;
     contacts_held_ = contacts_held;
@@ -36,7 +36,7 @@ DUCTILE_INLINE void InteriorPoint::solve(IslandSystem& system, bool contacts_hel
             best = merit;
             keep();
             worse = 0;
-        } else if (++worse >= (best < 1e-9 ? 2 : 15)) {
+        } else if (++worse >= (best < 1e-6 ? 2 : 10)) {
             break;
         }
         if (merit <= enough) break;
@@ -66,7 +66,7 @@ DUCTILE_INLINE void InteriorPoint::start() {
     Island& island = system_->island();
     const double scale = system_->scale();
     rows_.assign(island.rows.size(), {});
-    cones_.assign(island.blocks.size(), {});
+    blocks_.assign(island.blocks.size(), {});
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
@@ -90,9 +90,15 @@ DUCTILE_INLINE void InteriorPoint::start() {
         row.z_lower = row.below ? scale : 0;
         row.z_upper = row.above ? scale : 0;
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (!held(view.block)) cones_[k].open(view, scale);
+        if (held(view.block)) continue;
+        Block& block = blocks_[k];
+        block.multiplier = with_form(view, [&](auto form) { return form.open(view, scale); });
+        block.open = block.multiplier > 0;
+        if (!block.open) continue;
+        block.slack = with_form(view, [&](auto form) { return form.slack(view); });
+        block.cap = block.multiplier * block.slack / scale;
     }
 }
 
@@ -123,13 +129,18 @@ DUCTILE_INLINE auto InteriorPoint::look() -> Left {
         if (row.below) see_product(row.z_lower * row.to_lower / row.cap);
         if (row.above) see_product(row.z_upper * row.to_upper / row.cap);
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
-        InteriorCone& cone = cones_[k];
-        if (!cone.is_open()) continue;
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        Block& block = blocks_[k];
+        if (!block.open) continue;
         const BlockView view = view_of(*system_, k);
-        cone.look(view);
-        for (int i = 0; i < view.count(); ++i) see_residual(cone.left(view, i));
-        see_product(cone.product());
+        with_form(view, [&](auto form) {
+            for (int i = 0; i < view.count(); ++i) {
+                if (view.work[i].weight == 0 && !view.live(i) && i > 0) continue;
+                see_residual(view.work[i].residual - block.multiplier * form.gradient(view, i));
+            }
+            block.slack = std::max(form.slack(view), 1e-14 * block.cap);
+        });
+        see_product(block.multiplier * block.slack / block.cap);
     }
     left.mean = left.products > 0 ? sum / left.products : 0;
     return left;
@@ -146,14 +157,17 @@ DUCTILE_INLINE void InteriorPoint::set_weights() {
         if (row.above) theta += row.z_upper / row.to_upper;
         work.weight = 1 / theta;
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const Block& block = blocks_[k];
         const BlockView view = view_of(*system_, k);
-        if (cones_[k].is_open()) {
-            cones_[k].set_tangent(view);
-            continue;
+        if (block.open) {
+            with_form(view, [&](auto form) {
+                form.set_interior_tangent(view, block.multiplier, block.slack);
+            });
+        } else {
+            view.clear_terms();
+            for (int i = 0; i < view.count(); ++i) view.work[i].weight = 0;
         }
-        view.clear_terms();
-        for (int i = 0; i < view.count(); ++i) view.work[i].weight = 0;
     }
 }
 
@@ -176,20 +190,42 @@ DUCTILE_INLINE void InteriorPoint::set_right_sides(double target, bool second) {
         }
         work.right += row.z_lower + row.change_lower - row.z_upper - row.change_upper;
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        Block& block = blocks_[k];
         const BlockView view = view_of(*system_, k);
-        if (cones_[k].is_open()) {
-            cones_[k].set_right(view, target, second);
+        if (!block.open) {
+            for (int i = 0; i < view.count(); ++i) view.work[i].right = 0;
             continue;
         }
-        for (int i = 0; i < view.count(); ++i) view.work[i].right = 0;
+        with_form(view, [&](auto form) {
+            double product = target * block.cap - block.multiplier * block.slack;
+            Vector6<double> curved = Vector6<double>::Zero(); // ∇²f dx of the predictor
+            if (second) {
+                Vector6<double> dx = Vector6<double>::Zero();
+                for (int i = 0; i < view.count(); ++i) {
+                    dx[i] = rows_[std::size_t(view.block.first + i)].first_change;
+                }
+                curved = form.hessian(view, dx);
+                product -=
+                    block.first_change * block.first_slack - block.multiplier * curved.dot(dx) / 2;
+            }
+            block.change = product / block.slack;
+            for (int i = 0; i < view.count(); ++i) {
+                double& right = view.work[i].right;
+                if (!view.live(i) && i > 0) {
+                    right = 0;
+                    continue;
+                }
+                right -= (block.multiplier + block.change) * form.gradient(view, i);
+                if (second) right -= block.first_change * curved[i];
+            }
+        });
     }
 }
 
 DUCTILE_INLINE double InteriorPoint::direct(double target, bool second) {
     set_right_sides(target, second);
     system_->step();
-    system_->refine();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         Row& row = rows_[i];
         if (!row.open) continue;
@@ -197,8 +233,16 @@ DUCTILE_INLINE double InteriorPoint::direct(double target, bool second) {
         if (row.below) row.change_lower -= row.z_lower * dx / row.to_lower;
         if (row.above) row.change_upper += row.z_upper * dx / row.to_upper;
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
-        if (cones_[k].is_open()) cones_[k].follow(view_of(*system_, k));
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        Block& block = blocks_[k];
+        if (!block.open) continue;
+        const BlockView view = view_of(*system_, k);
+        with_form(view, [&](auto form) {
+            for (int i = 0; i < view.count(); ++i) {
+                block.change +=
+                    block.multiplier / block.slack * form.gradient(view, i) * view.work[i].change;
+            }
+        });
     }
     return reach();
 }
@@ -217,8 +261,12 @@ DUCTILE_INLINE double InteriorPoint::reach() {
         if (row.above) see(row.to_upper, -dx);
         if (row.above) see(row.z_upper, row.change_upper);
     }
-    for (const InteriorCone& cone : cones_) {
-        if (cone.is_open()) share = std::min(share, cone.reach());
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const Block& block = blocks_[k];
+        if (!block.open) continue;
+        see(block.multiplier, block.change);
+        const BlockView view = view_of(*system_, k);
+        share = std::min(share, with_form(view, [&](auto form) { return form.reach(view); }));
     }
     return share;
 }
@@ -235,8 +283,20 @@ DUCTILE_INLINE double InteriorPoint::mean_after(double share, int products) cons
         if (row.above)
             sum += (row.z_upper + share * row.change_upper) * (row.to_upper - dx) / row.cap;
     }
-    for (const InteriorCone& cone : cones_) {
-        if (cone.is_open()) sum += cone.product_after(share) / cone.cap();
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const Block& block = blocks_[k];
+        if (!block.open) continue;
+        const BlockView view = view_of(*system_, k);
+        const auto slack = [&](auto form) { // there, and back again
+            for (int i = 0; i < view.count(); ++i)
+                view.row[i].impulse += share * view.work[i].change;
+            const double result = form.slack(view);
+            for (int i = 0; i < view.count(); ++i)
+                view.row[i].impulse -= share * view.work[i].change;
+            return std::max(0.0, result);
+        };
+        sum += std::max(0.0, block.multiplier + share * block.change) * with_form(view, slack) /
+               block.cap;
     }
     return sum / products;
 }
@@ -248,7 +308,18 @@ DUCTILE_INLINE void InteriorPoint::keep_predictor() {
         row.first_lower = row.change_lower;
         row.first_upper = row.change_upper;
     }
-    for (InteriorCone& cone : cones_) cone.keep_predictor();
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        Block& block = blocks_[k];
+        if (!block.open) continue;
+        const BlockView view = view_of(*system_, k);
+        block.first_change = block.change;
+        block.first_slack = 0;
+        with_form(view, [&](auto form) {
+            for (int i = 0; i < view.count(); ++i) {
+                block.first_slack -= form.gradient(view, i) * view.work[i].change;
+            }
+        });
+    }
 }
 
 DUCTILE_INLINE void InteriorPoint::move(double share) {
@@ -259,8 +330,8 @@ DUCTILE_INLINE void InteriorPoint::move(double share) {
         row.z_lower += share * row.change_lower;
         row.z_upper += share * row.change_upper;
     }
-    for (InteriorCone& cone : cones_) {
-        if (cone.is_open()) cone.move(share);
+    for (Block& block : blocks_) {
+        if (block.open) block.multiplier += share * block.change;
     }
 }
 
@@ -276,9 +347,12 @@ DUCTILE_INLINE void InteriorPoint::tell_sides() {
         if (row.open && row.below && row.z_lower > metric * row.to_lower) given.side = Side::lower;
         if (row.open && row.above && row.z_upper > metric * row.to_upper) given.side = Side::upper;
     }
-    for (std::size_t k = 0; k < cones_.size(); ++k) {
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const Block& block = blocks_[k];
         const BlockView view = view_of(*system_, k);
-        if (!held(view.block)) cones_[k].tell(view);
+        if (held(view.block)) continue;
+        with_form(view,
+                  [&](auto form) { form.tell(view, block.open, block.multiplier, block.slack); });
     }
 }
 

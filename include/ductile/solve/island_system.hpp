@@ -91,8 +91,6 @@ class IslandSystem {
     [[nodiscard]] bool factor() noexcept;
     /// dx from `right` and `extra`, with the last factors.
     void step() noexcept;
-    /// dv and dx once more: where D is large the digits of J dv are lost in it.
-    void refine() noexcept;
     /// Change of the bodies' velocities for an impulse of one in `row`, with the last factors: what
     /// is free answers. Valid until the next call.
     [[nodiscard]] const std::vector<Vector6<double>>& response(std::size_t row) noexcept;
@@ -117,9 +115,6 @@ class IslandSystem {
         void add(double weight, const Vector6<double>& of_a, const Vector6<double>& of_b) noexcept;
     };
     bool update(Run& run) noexcept;
-    void follow() noexcept;
-    void apply_tangent(double Row::*from, double Row::*to) noexcept;
-    void gather(double Row::*impulse, std::vector<Vector6<double>>& bodies) const noexcept;
     void make_isotropic(const IslandBlock& block) noexcept;
     void find_runs();
     void find_pattern();
@@ -131,7 +126,7 @@ class IslandSystem {
     std::vector<Run> runs_;
     std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
     numeric::BlockLdlt factors_;
-    std::vector<Vector6<double>> change_, moved_; ///< dv; of dx
+    std::vector<Vector6<double>> change_; ///< dv
     double scale_ = 0, noise_ = 0;
     int factorisations_ = 0;
     bool current_ = false; ///< the factors are those of the rows' weights alone

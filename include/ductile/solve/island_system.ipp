@@ -251,59 +251,35 @@ DUCTILE_INLINE bool IslandSystem::factor() noexcept {
     return definite;
 }
 
-/// D x + e.
-DUCTILE_INLINE void IslandSystem::apply_tangent(double Row::*from, double Row::*to) noexcept {
-    for (Row& row : rows_) row.*to = row.weight * (row.*from) + row.extra;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        const IslandBlock& given = island_->blocks[k];
-        for (const Block::Term& term : blocks_[k].terms) {
-            if (term.coefficient == 0) continue;
-            double along = 0;
-            for (int i = 0; i < given.count; ++i) {
-                along += term.direction[i] * (rows_[std::size_t(given.first + i)].*from);
-            }
-            along *= term.coefficient;
-            for (int i = 0; i < given.count; ++i) {
-                rows_[std::size_t(given.first + i)].*to += along * term.direction[i];
+DUCTILE_INLINE void IslandSystem::step() noexcept {
+    // D g + e, and later D (g - J dv) + e: the same map
+    const auto apply = [this](double Row::*from, double Row::*to) {
+        for (Row& row : rows_) row.*to = row.weight * (row.*from) + row.extra;
+        for (std::size_t k = 0; k < blocks_.size(); ++k) {
+            const IslandBlock& given = island_->blocks[k];
+            for (const Block::Term& term : blocks_[k].terms) {
+                if (term.coefficient == 0) continue;
+                double along = 0;
+                for (int i = 0; i < given.count; ++i) {
+                    along += term.direction[i] * (rows_[std::size_t(given.first + i)].*from);
+                }
+                along *= term.coefficient;
+                for (int i = 0; i < given.count; ++i) {
+                    rows_[std::size_t(given.first + i)].*to += along * term.direction[i];
+                }
             }
         }
-    }
-}
-
-/// Jᵀ of the rows' `impulse`.
-DUCTILE_INLINE void IslandSystem::gather(double Row::*impulse,
-                                         std::vector<Vector6<double>>& bodies) const noexcept {
-    for (Vector6<double>& body : bodies) body.setZero();
+    };
+    apply(&Row::right, &Row::change);
+    for (Vector6<double>& change : change_) change.setZero();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const double of_row = rows_[i].*impulse;
-        if (of_row == 0) continue;
+        const double impulse = rows_[i].change;
+        if (impulse == 0) continue;
         const IslandRow& row = island_->rows[i];
-        if (row.a >= 0) bodies[std::size_t(row.a)] += of_row * row.on_a;
-        if (row.b >= 0) bodies[std::size_t(row.b)] += of_row * row.on_b;
+        if (row.a >= 0) change_[std::size_t(row.a)] += impulse * row.on_a;
+        if (row.b >= 0) change_[std::size_t(row.b)] += impulse * row.on_b;
     }
-}
-
-DUCTILE_INLINE void IslandSystem::step() noexcept {
-    apply_tangent(&Row::right, &Row::change);
-    gather(&Row::change, change_);
     factors_.solve(change_);
-    follow();
-}
-
-DUCTILE_INLINE void IslandSystem::refine() noexcept {
-    moved_.resize(change_.size());
-    gather(&Row::change, moved_);
-    for (std::size_t k = 0; k < moved_.size(); ++k) { // M dv - Jᵀ dx
-        const Vector6<double> impulse = moved_[k];
-        moved_[k] = island_->bodies[k].mass * change_[k] - impulse;
-    }
-    factors_.solve(moved_);
-    for (std::size_t k = 0; k < moved_.size(); ++k) change_[k] -= moved_[k];
-    follow();
-}
-
-/// dx = D (g - J dv) + e.
-DUCTILE_INLINE void IslandSystem::follow() noexcept {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         const IslandRow& row = island_->rows[i];
         double rest = rows_[i].right;
@@ -311,7 +287,7 @@ DUCTILE_INLINE void IslandSystem::follow() noexcept {
         if (row.b >= 0) rest -= row.on_b.dot(change_[std::size_t(row.b)]);
         rows_[i].rest = rest;
     }
-    apply_tangent(&Row::rest, &Row::change);
+    apply(&Row::rest, &Row::change);
 }
 
 DUCTILE_INLINE const std::vector<Vector6<double>>& IslandSystem::response(std::size_t i) noexcept {

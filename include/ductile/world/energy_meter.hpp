@@ -23,6 +23,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -75,6 +76,8 @@ struct MeteredContact {
     Vector3<double> point_b{0, 0, 0};
     Vector3<double> normal{0, 0, 0};     ///< impulse on A [N s]
     Vector3<double> tangential{0, 0, 0}; ///< [N s]
+    bool driven = false;                 ///< by a body whose motion is prescribed
+    double taken = 0;                    ///< what the normal force took, once it is booked [J]
 };
 
 namespace detail {
@@ -129,9 +132,9 @@ class EnergyMeter {
     /// They were put elsewhere, by what is no step.
     void moved_back();
     /// Of the last step alone: what plastic joints took beside their flow, damping and what they
-    /// store, but for driven ones, and what contacts took [J].
+    /// store, but for driven ones, and what contacts of bodies took that count [J].
     [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
-    [[nodiscard]] double step_of_contacts() const noexcept { return step_contact_; }
+    [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;
 
@@ -193,7 +196,7 @@ class EnergyMeter {
     [[nodiscard]] double work(const void* body, const Vector3<double>& force,
                               const Vector3<double>& torque, double dt);
     void book_joint(const MeteredJoint& joint, double dt);
-    void book_contact(const MeteredContact& contact);
+    void book_contact(MeteredContact& contact);
     /// Sum of the velocities before and after the step at a world point of the body [m/s].
     [[nodiscard]] Vector3<double> velocity_sum(const void* body, const Vector3<double>& point);
 
@@ -209,7 +212,7 @@ class EnergyMeter {
     double sign_ = 1;            ///< -1: what is booked is taken back
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
-    double step_plastic_ = 0, step_contact_ = 0; ///< [J]
+    double step_plastic_ = 0; ///< [J]
     HeldEnergy<double> last_;
     detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;

@@ -51,7 +51,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 }
 
 DUCTILE_INLINE void EnergyMeter::before_step() {
-    step_plastic_ = step_contact_ = 0;
+    step_plastic_ = 0;
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
     course_numbers_.clear();
@@ -142,7 +142,7 @@ DUCTILE_INLINE void EnergyMeter::book_lists(double dt) {
     for (const MeteredJoint& joint : joints_) book_joint(joint, dt);
     contacts_.clear();
     list_contacts(dt, contacts_);
-    for (const MeteredContact& contact : contacts_) book_contact(contact);
+    for (MeteredContact& contact : contacts_) book_contact(contact);
 }
 
 // ---- a step of some of the bodies
@@ -273,13 +273,21 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
     taken_[number] += sign_ * taken;
 }
 
-DUCTILE_INLINE void EnergyMeter::book_contact(const MeteredContact& contact) {
+DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
                                              velocity_sum(contact.b, contact.point_b));
-    const double taken = -dot(contact.normal, twice) / 2;
-    add(Account::contact, taken);
-    step_contact_ += taken;
+    contact.taken = -dot(contact.normal, twice) / 2;
+    ledger_.book_contact(sign_ * contact.taken, contact.driven);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
+}
+
+DUCTILE_INLINE double EnergyMeter::step_of_contacts(
+    const std::function<bool(const void*)>& counts) const {
+    double sum = 0;
+    for (const MeteredContact& contact : contacts_) {
+        if (counts(contact.a) || counts(contact.b)) sum += contact.taken;
+    }
+    return sum;
 }
 
 DUCTILE_INLINE Vector3<double> EnergyMeter::velocity_sum(const void* body,

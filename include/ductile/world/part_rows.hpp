@@ -43,6 +43,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.below = link.totals().flowing ? std::max(0.0, 1 - share) : 0;
         row.pushes = link.force(axis) * row.start > 0;
         row.strength = link.strength(axis);
+        row.own_share = std::abs(link.force(axis)) / row.strength;
         row.given = std::exchange(given, 0);
     }
 }

@@ -152,6 +152,9 @@ class SteppedWorld : private JointKeeper {
             end_frame();
         }
         frames_->count_unreliable(supervisor_.watch().unreliable());
+        if (const Ledger<double>* kept = kept_ledger()) {
+            frames_->tell_contacts(kept->undriven_contact());
+        }
         supervisor_.set_time(end);
         supervisor_.close();
         tell_of_forgotten();

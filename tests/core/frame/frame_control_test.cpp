@@ -79,7 +79,8 @@ TEST_CASE("A mass that slides on a plastic row rests where it should, at any fra
     }
 }
 
-TEST_CASE("A load that turns a row round leaves it the speed that it should go back with", "[frame]") {
+TEST_CASE("A load that turns a row round leaves it the speed that it should go back with",
+          "[frame]") {
     // 2 kg under ±30 N of 4/30 s each on a row of 20 N: stops by 25 m/s², goes back by 5 m/s²
     constexpr double half = 4.0 / 30, stops = 25, goes = 5;
     for (const double length : {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30}) {
@@ -376,10 +377,8 @@ TEST_CASE("A frame in which a part that ended at a stop did not do tries that no
     engine.tell = [&](double h, ductile::PartMotion& motion) {
         // stops half way, and again half way when it is cut there; short parts do not move
         constexpr double shortest = 2e-5 * frame;
-        motion.rows = {ductile::PartRow{.joint = joint,
-                                        .start = h > shortest ? 1.0 : 0.0,
-                                        .share = 0.5,
-                                        .strength = 1}};
+        motion.rows = {ductile::PartRow{
+            .joint = joint, .start = h > shortest ? 1.0 : 0.0, .share = 0.5, .strength = 1}};
     };
     FrameControl control;
     for (int i = 0; i < 2; ++i) {
@@ -500,4 +499,20 @@ TEST_CASE("A frame and its tolerance are checked by name", "[frame]") {
                Contains("FrameParameters.tolerance"));
     CHECK_THAT(message_of([] { FrameControl({.budget = 3}); }),
                Contains("FrameParameters.budget = 3 solves: must be at least 4"));
+}
+
+TEST_CASE("a strong axis of a surface that flows may turn with its bodies", "[frame]") {
+    ductile::PartRow row{.start = 0.003,
+                         .end = 0.003,
+                         .share = 1,
+                         .own_share = 0.003,
+                         .strength = 1e7,
+                         .noise = 1e-5,
+                         .turning = 0.0031};
+    CHECK_FALSE(row.moves());
+    row.end = 0.0032;
+    CHECK(row.moves());
+    row.end = 0.003;
+    row.own_share = 0.5; // it flows itself
+    CHECK(row.moves());
 }

@@ -130,7 +130,8 @@ DUCTILE_INLINE void EnergyMeter::list_contacts_of(const btPersistentManifold& ma
             {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
              to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
              scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
-             to_core(lateral)});
+             to_core(lateral),
+             manifold.getBody0()->isKinematicObject() || manifold.getBody1()->isKinematicObject()});
     }
 }
 

@@ -222,7 +222,12 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
-    motion_.contact_work = metered ? meter_.step_of_contacts() : 0;
+    motion_.contact_work = 0;
+    if (metered && motion_.flows()) {
+        motion_.contact_work = meter_.step_of_contacts([this](const void* body) {
+            return body != nullptr && concerns(*static_cast<const btRigidBody*>(body));
+        });
+    }
     if (members_.empty()) motion_.closed = closing_.closed_early(world_, h, apart_);
     look_at_pushes(h);
     return motion_;

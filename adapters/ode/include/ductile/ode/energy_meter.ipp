@@ -84,8 +84,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
                  scaled(-1, outside.force),
                  outside.torque_b,
                  &constraint->queries(),
-                 (a != nullptr && dBodyIsKinematic(a) != 0) ||
-                     (b != nullptr && dBodyIsKinematic(b) != 0)};
+                 DrivenPair::is_driven(a) || DrivenPair::is_driven(b)};
         // all motors of one of ODE's joints share its feedback: the first has it
         const dJointFeedback* feedback = std::exchange(found->second, nullptr);
         if (feedback == nullptr) continue;
@@ -106,7 +105,8 @@ DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
         const Vector3<double> normal = to_core(contact->second.normal);
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
         const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
-        contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed)});
+        contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed),
+                            DrivenPair::is_driven(a) || DrivenPair::is_driven(b)});
     }
 }
 

@@ -232,7 +232,6 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     for (tick(h, false); beyond(); tick(h, false)) do_again();
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
-    motion_.contact_work = of_.meter.step_of_contacts();
     motion_.contact_lost = false;
     motion_.turned = 0;
     if (closing_.any_plastic() && of_.maker) {
@@ -241,6 +240,13 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         closed_ = std::min(closed_, closing_.closed(h, h / 2, apart_));
         if (may_misplace(motion_, h, apart_)) motion_.turned = closing_.turn(h);
         motion_.contact_lost = closing_.lost();
+    }
+    motion_.contact_work = 0;
+    if (motion_.flows()) {
+        motion_.contact_work = of_.meter.step_of_contacts([this](const void* body) {
+            return body != nullptr &&
+                   closing_.is_plastic(static_cast<dBodyID>(const_cast<void*>(body)));
+        });
     }
     motion_.closed = closed_ < h ? closed_ : 0;
     return motion_;
