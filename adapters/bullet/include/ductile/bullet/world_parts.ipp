@@ -183,6 +183,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         }
         half_ahead_.move(local_ ? scope_.bodies() : MovingBodies::all(world_), btScalar(h), ways_,
                          btScalar(time_));
+        held_.let_go(manifolds(), half_ + h / 2,
+                     [this](const auto& body) { return concerns(body); });
         time_ += h;
         if (metered) meter_.bodies_ahead();
     }
