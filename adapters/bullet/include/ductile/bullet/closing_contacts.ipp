@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/falling_groups.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/sharp_boxes.hpp"
@@ -166,7 +167,8 @@ DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
 }
 
 /// Many of Bullet's algorithms see no contact before shapes overlap: what was just put down on
-/// something falls for a part, and then strikes it.
+/// something falls for a part, and then strikes it. What hangs together falls if nothing holds any
+/// of it.
 DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld& world,
                                                         btScalar h) {
     falling_.clear();
@@ -174,25 +176,27 @@ DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld&
     std::vector<const btRigidBody*> slow;
     for (const btRigidBody* body : bodies(world)) {
         const btScalar gain = body->getGravity().length() * h;
-        if (body->isActive() && body->getNumConstraintRefs() == 0 && body->getInvMass() > 0 &&
+        if (body->isActive() && body->getInvMass() > 0 &&
             body->getLinearVelocity().length2() < gain * gain) {
             slow.push_back(body);
         }
     }
     if (slow.empty()) return;
-    std::vector<char> touched(std::size_t(world.getNumCollisionObjects()));
+    FallingGroups groups(world.getNumCollisionObjects(), slow);
+    // not by their constraint references, which only those have whose bodies do not collide
+    for (int i = 0; i < world.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world.getConstraint(i);
+        if (!constraint.isEnabled()) continue;
+        groups.join(constraint.getRigidBodyA(), constraint.getRigidBodyB());
+    }
     btDispatcher& dispatcher = *world.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
         const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
         if (manifold.getNumContacts() == 0) continue;
-        for (const btCollisionObject* object : {manifold.getBody0(), manifold.getBody1()}) {
-            const int place = object->getWorldArrayIndex();
-            if (place >= 0) touched[std::size_t(place)] = 1;
-        }
+        groups.hold(*manifold.getBody0());
+        groups.hold(*manifold.getBody1());
     }
-    std::erase_if(slow, [&touched](const btRigidBody* body) {
-        return touched[std::size_t(body->getWorldArrayIndex())] != 0;
-    });
+    std::erase_if(slow, [&groups](const btRigidBody* body) { return groups.is_held(*body); });
     falling_ = std::move(slow);
     std::sort(falling_.begin(), falling_.end());
 }

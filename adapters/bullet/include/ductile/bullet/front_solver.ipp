@@ -119,6 +119,34 @@ class HalfwayContacts {
     int count_;
 };
 
+/// While this lives contacts that are open do not rebound: Bullet asks e v - d/h of them before
+/// they touch, and no cut of the part ends that. They close in it, and rebound in the blow that
+/// follows.
+class OpenContacts {
+  public:
+    OpenContacts(btPersistentManifold** manifolds, int count) {
+        for (int i = 0; i < count; ++i) {
+            for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
+                btManifoldPoint& point = manifolds[i]->getContactPoint(k);
+                const bool is_open = double(point.getDistance()) > closed_gap;
+                if (!is_open || !(point.m_combinedRestitution > 0)) continue;
+                rebounds_.emplace_back(&point, point.m_combinedRestitution);
+                point.m_combinedRestitution = 0;
+            }
+        }
+    }
+    ~OpenContacts() {
+        for (const auto& [point, restitution] : rebounds_) {
+            point->m_combinedRestitution = restitution;
+        }
+    }
+    OpenContacts(const OpenContacts&) = delete;
+    OpenContacts& operator=(const OpenContacts&) = delete;
+
+  private:
+    std::vector<std::pair<btManifoldPoint*, btScalar>> rebounds_;
+};
+
 } // namespace detail
 
 DUCTILE_INLINE FrontHold::FrontHold(btDiscreteDynamicsWorld& world) : world_(world) {
@@ -153,6 +181,8 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                                                btIDebugDraw* drawer, btDispatcher* dispatcher) {
     const detail::StruckContacts struck(island.manifolds.data(),
                                         kind_ == TickKind::blow ? int(island.manifolds.size()) : 0);
+    const detail::OpenContacts open(island.manifolds.data(),
+                                    kind_ == TickKind::part ? int(island.manifolds.size()) : 0);
     const auto first =
         std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
     const void* key = first != island.constraints.end()
@@ -233,8 +263,7 @@ DUCTILE_INLINE void FrontSolver::give_back(std::unique_ptr<Room> room) {
     idle_.push_back(std::move(room));
 }
 
-DUCTILE_INLINE auto FrontSolver::solver_of(const void* first)
-    -> std::shared_ptr<Kept> {
+DUCTILE_INLINE auto FrontSolver::solver_of(const void* first) -> std::shared_ptr<Kept> {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<Kept>& kept = kept_[first];
     if (kept == nullptr) kept = std::make_shared<Kept>();

@@ -4,6 +4,11 @@
 // next one: how they turned since (world/turned_contact.hpp), and which of them are gone, as one
 // body slid off the other.
 //
+// Bullet lets a point go that slid farther than 2 % of the smaller body's reach, but only after it
+// has looked for new ones, for which the old ones left no room: what slides fast then stands on one
+// or two corners for a part, sinks, and strikes with the others in the next one. `let_go` is before
+// that look.
+//
 // Not thread-safe, but for `turned`.
 #pragma once
 
@@ -29,6 +34,9 @@ class HeldContacts {
     /// bodies that `concerns`.
     void see(std::span<btPersistentManifold* const> manifolds, double ago,
              const Concerns& concerns);
+    /// Lets points go that slid too far, as bodies are now, `time` [s] after they were looked for.
+    static void let_go(std::span<btPersistentManifold* const> manifolds, double time,
+                       const Concerns& concerns);
     /// w of a point in the middle of a part of `h` [s], as its bodies are there, not yet solved
     /// [m/s].
     [[nodiscard]] double turned(const btPersistentManifold& manifold, const btManifoldPoint& point,

@@ -50,6 +50,18 @@ namespace detail {
     return impulse;
 }
 
+/// Whether points may have slid as far as Bullet keeps them; what stands is told at once.
+[[nodiscard]] DUCTILE_INLINE bool slides_far(const btPersistentManifold& manifold, double time) {
+    if (manifold.getNumContacts() == 0) return false;
+    const double most = double(manifold.getContactBreakingThreshold());
+    const ContactBody a = contact_body(*manifold.getBody0()),
+                      b = contact_body(*manifold.getBody1());
+    constexpr double share = 0.25, reach = 50; // of bodies, in thresholds
+    const double way = norm(difference(a.velocity, b.velocity)) * time,
+                 turn = (norm(a.spin) + norm(b.spin)) * time;
+    return way + turn * reach * most > share * most;
+}
+
 /// Whether two bodies have a point nearer than the threshold.
 struct AnyContact final : btCollisionWorld::ContactResultCallback {
     bool found = false;
@@ -86,6 +98,16 @@ DUCTILE_INLINE void HeldContacts::see(std::span<btPersistentManifold* const> man
     }
     std::stable_sort(seen_.begin(), seen_.end(),
                      [](const Seen& x, const Seen& y) { return x.bodies < y.bodies; });
+}
+
+DUCTILE_INLINE void HeldContacts::let_go(std::span<btPersistentManifold* const> manifolds,
+                                         double time, const Concerns& concerns) {
+    for (btPersistentManifold* manifold : manifolds) {
+        if (!detail::slides_far(*manifold, time)) continue;
+        const btCollisionObject &a = *manifold->getBody0(), &b = *manifold->getBody1();
+        if (!concerns(a) && !concerns(b)) continue;
+        manifold->refreshContactPoints(a.getWorldTransform(), b.getWorldTransform());
+    }
 }
 
 DUCTILE_INLINE double HeldContacts::turned(const btPersistentManifold& manifold,

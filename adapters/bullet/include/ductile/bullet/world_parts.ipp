@@ -36,6 +36,29 @@ struct SingleTick : btDiscreteDynamicsWorld {
     }
 };
 
+/// Of what moves in `h` [s] and was put elsewhere since the last tick: the look for gaps, before
+/// the first one, asks the broadphase, which is told of it by a tick alone.
+DUCTILE_INLINE void tell_broadphase(btDiscreteDynamicsWorld& world, btScalar h) {
+    constexpr btScalar noticed = btScalar(1e-3); // [m | rad]
+    for (btRigidBody* body : MovingBodies::all(world)) {
+        const btBroadphaseProxy* proxy = body->getBroadphaseHandle();
+        const bool goes = body->getLinearVelocity().length2() * h * h > noticed * noticed ||
+                          body->getAngularVelocity().length2() * h * h > noticed * noticed;
+        if (proxy == nullptr || !goes || !body->isActive() || body->isStaticOrKinematicObject()) {
+            continue;
+        }
+        btVector3 low, high;
+        body->getAabb(low, high);
+        low += btVector3(noticed, noticed, noticed);
+        high -= btVector3(noticed, noticed, noticed);
+        bool known = true;
+        for (int k = 0; k < 3; ++k) {
+            known = known && proxy->m_aabbMin[k] <= low[k] && proxy->m_aabbMax[k] >= high[k];
+        }
+        if (!known) world.updateSingleAabb(body);
+    }
+}
+
 } // namespace detail
 
 /// The solver's settings of a part or a blow while this lives.
@@ -94,6 +117,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     same_forces_ = forces_.hold(world_);
     forces_act_ = true;
     ways_.begin(world_, btScalar(length));
+    detail::tell_broadphase(world_, btScalar(length));
     time_ = 0;
     length_ = length;
     looked_ = decided_ = local_ = closes_ = at_risk_ = false;
@@ -183,6 +207,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         }
         half_ahead_.move(local_ ? scope_.bodies() : MovingBodies::all(world_), btScalar(h), ways_,
                          btScalar(time_));
+        held_.let_go(manifolds(), half_ + h / 2,
+                     [this](const auto& body) { return concerns(body); });
         time_ += h;
         if (metered) meter_.bodies_ahead();
     }
