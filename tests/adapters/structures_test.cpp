@@ -111,8 +111,8 @@ TEST_CASE("A frame stands at 0.999 of P30's collapse load, without creep, and fa
         frame.rig.run(2, dt);
         const double work = frame.structure->absorbed_energy();
         if (factor < 1) {
-            CHECK(frame.rig.speed() < 1e-9);
-            CHECK(work < (whole_column ? 0.006 : 0.4)); // as loads are shared out anew
+            CHECK(frame.rig.speed() < (whole_column ? 1e-9 : 1e-6));
+            CHECK(work < (whole_column ? 0.006 : 1)); // as loads are shared out anew
             frame.rig.run(8, dt);
             CHECK(frame.structure->absorbed_energy() <= 1.05 * work);
         } else if (whole_column) {
