@@ -20,7 +20,7 @@ ALLOWED = {
     "surface": {"vocabulary", "numeric"},
     "fracture": {"vocabulary"},
     "joint": {"vocabulary", "numeric", "law", "surface", "fracture"},
-    "solve": {"vocabulary", "numeric"},
+    "solve": {"vocabulary", "numeric", "surface"},
     "frame": {"vocabulary"},
     "batch": {"vocabulary", "law", "fracture", "joint"},
     "member": {"vocabulary", "material", "section", "law", "surface", "fracture", "joint", "world"},

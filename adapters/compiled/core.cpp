@@ -9,11 +9,11 @@
 #include <ductile/solve/active_set.ipp>
 #include <ductile/solve/certificate.ipp>
 #include <ductile/solve/contact_sweep.ipp>
-#include <ductile/solve/interior_point.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>
 #include <ductile/solve/one_pair.ipp>
+#include <ductile/solve/proximal_newton.ipp>
 #include <ductile/structure/built_structure.ipp>
 #include <ductile/structure/joint_stations.ipp>
 #include <ductile/structure/structure_course.ipp>

@@ -171,6 +171,13 @@ class Plate final : public Scene {
                            .ball = true});
             }
         };
+        if (of.support == Support::loose) { // on balls under its very edge it would slide aside
+            Vector6<double> guide = upright;
+            std::swap(guide[0], guide[1]);
+            guide[2] = very_strong;
+            stage.connect("guide", cast.parts[std::size_t(n * n / 2 - (n % 2 == 0 ? n / 2 : 0))],
+                          Stage::ground, {0, 0, middle}, axes, joint(guide, weak));
+        }
         const double rim = side / 2 - gap;
         for (int i = 0; i < n; ++i) {
             support(i, centre(i), -rim);
@@ -203,9 +210,7 @@ class Plate final : public Scene {
                 stage.push(cast.parts[std::size_t(part)], {0, 0, -load * std::min(i, ramp) / ramp});
             }
             take.step();
-            // once it lies on its supports; on balls without friction it may slide aside, which is
-            // no mechanism of it
-            if (2 * i < ramp) continue;
+            if (2 * i < ramp) continue; // once it lies on its supports
             for (const auto part : cast.parts) {
                 fastest = std::max(fastest, std::abs(stage.velocity(part).z()));
             }

@@ -6,8 +6,8 @@
 //   v' = v + M⁻¹ (load dt + Jᵀ λ),  x' = x + v' dt,  Q' = exp(ω' dt) Q        (symplectic Euler)
 //
 // by the rows' bounds, or on the ellipsoid of six rows: (A + μ P⁻²) λ = -w, |P⁻¹ λ| = 1, by
-// bisection of μ >= 0; without gyroscopic torque: inertias are meant to be spherical, or motions short. Loads act on
-// body A at its centre of mass.
+// bisection of μ >= 0; without gyroscopic torque: inertias are meant to be spherical, or motions
+// short. Loads act on body A at its centre of mass.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -86,7 +86,8 @@ void BodyPair<S>::step(AnyLink<S>& link, S dt, const Vector3<S>& force, const Ve
     link.prepare(a_, b_, dt, rate);
     a_.velocity += dt * a_.inverse_mass * force;
     a_.spin += dt * a_.inverse_inertia * torque;
-    const Vector6<S> semi_axes = link.ellipsoid();
+    const Vector6<S> semi_axes =
+        link.surface() == nullptr ? link.shared_strength() : Vector6<S>(Vector6<S>::Zero());
     const bool on_surface = on_surface_ && semi_axes.minCoeff() > 0 && link.meet_surface(dt, false);
     const Vector3<S> at = link.point();
     Eigen::Matrix<S, 6, 12> jacobian, mobile;

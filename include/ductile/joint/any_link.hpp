@@ -67,6 +67,7 @@
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/rotation.hpp"
 #include "ductile/joint/swing.hpp"
+#include "ductile/surface/any_surface.hpp"
 #include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
@@ -167,10 +168,13 @@ class AnyLink {
     /// Elastic stiffness of the member that the joint stands for, by axis, whether its rows are
     /// elastic or rigid; infinite where nobody said [N/m | N m/rad].
     [[nodiscard]] virtual Vector6<S> section_stiffness() const noexcept = 0;
-    /// Semi-axes of the ellipsoid that the plastic rows share in the step that `prepare` opened;
-    /// zero: they have their bounds alone [N | N m].
-    [[nodiscard]] virtual Vector6<S> ellipsoid() const noexcept = 0;
-    /// Rules the rows of that step anew for a solver that meets the ellipsoid itself, and does not
+    /// Strengths along the axes of the surface that the plastic rows share in the step that
+    /// `prepare` opened; zero: they have their bounds alone [N | N m].
+    [[nodiscard]] virtual Vector6<S> shared_strength() const noexcept = 0;
+    /// That surface in shares of them, its axes in the order of `axes`; nothing where it is an
+    /// ellipsoid and they its semi-axes.
+    [[nodiscard]] virtual const AnySurface* surface() const noexcept = 0;
+    /// Rules the rows of that step anew for a solver that meets the surface itself, and does not
     /// look at the bounds; same `dt` [s]. False where it cannot, as the step gives a row's force.
     /// `passes`: as CoupledJoint's.
     [[nodiscard]] virtual bool meet_surface(S dt, bool passes) noexcept = 0;

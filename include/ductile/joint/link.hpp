@@ -8,16 +8,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "ductile/joint/any_link.hpp"
 #include "ductile/joint/work_share.hpp"
+#include "ductile/surface/any_surface.hpp"
 
 namespace ductile {
 
@@ -31,6 +34,23 @@ inline constexpr std::size_t ruled_axes = [] {
         return std::size_t(1);
     }
 }();
+
+/// The surface of a joint for a solver that meets it by its closest point.
+template <class Joint>
+struct MetSurface {
+    explicit MetSurface(const Joint& /*joint*/) noexcept {}
+    [[nodiscard]] const AnySurface* get() const noexcept { return nullptr; }
+};
+template <class Joint>
+requires requires(const Joint& joint) {
+    AnySurfaceOf(joint.surface());
+    requires !requires { joint.surface().semi_axes(); }; // else the solver knows the ellipsoid
+}
+struct MetSurface<Joint> {
+    explicit MetSurface(const Joint& joint) : surface(joint.surface()) {}
+    [[nodiscard]] const AnySurface* get() const noexcept { return &surface; }
+    AnySurfaceOf<std::remove_cvref_t<decltype(std::declval<const Joint&>().surface())>> surface;
+};
 
 /// Copyable. Not thread-safe. After construction nothing allocates or throws; O(1).
 template <class Joint>
@@ -55,6 +75,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         : AnyLink<S>(in_a, in_b, one_axis, all_rigid(joint),
                      {joint.parameters().absolute_residual, joint.parameters().relative_residual}),
           joint_(std::move(joint)),
+          surface_(joint_),
           axes_(axes) {
         for (std::size_t i = 0; i < axes_.size(); ++i) {
             if (plastic_[index(axes_[i])]) {
@@ -108,13 +129,16 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         }
         return result;
     }
-    [[nodiscard]] Vector6<S> ellipsoid() const noexcept override {
+    [[nodiscard]] Vector6<S> shared_strength() const noexcept override {
+        if (joint_.state().broken) return Vector6<S>::Zero();
         if constexpr (requires { joint_.surface().semi_axes(); }) {
-            if (joint_.state().broken) return Vector6<S>::Zero();
             return from_joint(joint_.surface().semi_axes() * joint_.reach());
+        } else if constexpr (requires { surface_.surface; }) {
+            return from_joint(surface_.surface.strength() * joint_.reach());
         }
         return Vector6<S>::Zero();
     }
+    [[nodiscard]] const AnySurface* surface() const noexcept override { return surface_.get(); }
 
     bool meet_surface(S dt, bool passes) noexcept override {
         if constexpr (!one_axis) {
@@ -138,7 +162,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         if constexpr (one_axis) {
             return joint_.strength(force_[i] > 0 ? -1 : 1);
         } else {
-            const S shared = ellipsoid()[i];
+            const S shared = shared_strength()[i];
             const RowLimits<S>& limits = limits_[index(axis)];
             return shared > 0 ? shared : std::max(limits.upper, -limits.lower);
         }
@@ -254,6 +278,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     }
 
     Joint joint_;
+    MetSurface<Joint> surface_;
     Axes axes_;
     JointMatrix mass_ = JointMatrix::Zero();   ///< M, where it is read
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step

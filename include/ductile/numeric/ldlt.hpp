@@ -61,7 +61,7 @@ template <std::floating_point S, int N>
             std::swap(d[k], d[pivot]);
             for (int j = 0; j < k; ++j) std::swap(l(k, j), l(pivot, j));
         }
-        std::array<S, std::size_t(N)> scaled; // row k of L D
+        std::array<S, std::size_t(N)> scaled{}; // row k of L D
         for (int j = 0; j < k; ++j) scaled[std::size_t(j)] = l(k, j) * d[j];
         inverse[k] = 1 / d[k];
         for (int i = k + 1; i < N; ++i) {

@@ -16,7 +16,7 @@
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
 // where many rows change over together: then those alone that are most wrong do, and where the
-// rounds end without an answer interior_point.hpp has the word.
+// rounds end without an answer proximal_newton.hpp has the word.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once

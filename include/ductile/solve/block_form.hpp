@@ -6,13 +6,21 @@
 #include "ductile/solve/block_view.hpp"
 #include "ductile/solve/contact_form.hpp"
 #include "ductile/solve/ellipsoid_form.hpp"
+#include "ductile/solve/surface_form.hpp"
 
 namespace ductile::solve {
 
-/// What `call(EllipsoidForm())` or `call(ContactForm())` returns.
+/// What `call` of the block's form returns.
 template <class Call>
 decltype(auto) with_form(const BlockView& view, const Call& call) {
-    return view.block.kind == BlockKind::contact ? call(ContactForm()) : call(EllipsoidForm());
+    switch (view.block.kind) {
+        case BlockKind::contact:
+            return call(ContactForm());
+        case BlockKind::surface:
+            return call(SurfaceForm());
+        default:
+            return call(EllipsoidForm());
+    }
 }
 
 } // namespace ductile::solve

@@ -9,10 +9,9 @@
 //   change_over where it belongs; true where that is another state than before
 //   off         how far it is from its own optimum, as a velocity
 //   project     x into the set
-//   and for interior_point.hpp, with the set as f(x) <= 0, f convex:
-//   open, slack, gradient, hessian, set_interior_tangent, reach
+//   respond     x to Π(x + r/d) and its tangent, for proximal_newton.hpp
 //
-// Symbols as in island.hpp, active_set.hpp and interior_point.hpp.
+// Symbols as in island.hpp, active_set.hpp and proximal_newton.hpp.
 #pragma once
 
 #include <limits>

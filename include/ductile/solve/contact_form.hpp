@@ -21,9 +21,6 @@
 // Closest point in the metric (d_n, d): inside where |y| <= n; the apex where d |y| <= -d_n n; else
 // n' = (d_n n + d |y|)/(d_n + d), y' = n' ŷ.
 //
-// Interior: f = |y|²/n - n <= 0, ∇f = (-|y|²/n² - 1; 2 y/n), ∇²f = 2/n (-y/n; 1)(-y/n; 1)ᵀ on (n;
-// y).
-//
 // Source: de Saxcé & Feng (1998), doi:10.1016/S0895-7177(98)00119-8; the convex problem inside a
 // fixed point: Acary, Cadoux, Lemaréchal & Malick (2011), doi:10.1002/zamm.201000073.
 #pragma once
@@ -127,18 +124,26 @@ struct ContactForm {
         }
         if (to == was) return false;
         v.block.state = to;
-        if (to == BlockState::surface) {
-            const double normal =
-                (aim.d_normal * aim.normal + aim.d * aim.length) / (aim.d_normal + aim.d);
-            v.row[0].impulse = normal;
-            for (int i = 1; i < v.count(); ++i) {
-                v.row[i].impulse = v.live(i) ? aim.y[i] / aim.length * normal * v.size(i) : 0;
-            }
-            v.block.multiplier = BlockView::known(aim.d_normal * (normal - aim.normal));
-        } else {
-            v.block.multiplier = 0;
-        }
+        v.block.multiplier = 0;
+        if (to == BlockState::surface) put_on_cone(v, aim);
         return true;
+    }
+
+    /// x(v), and D there: proximal_newton.hpp.
+    static void respond(const BlockView& v) noexcept {
+        const Aim aim = aim_of(v);
+        v.block.state = v.work[0].own > 0 ? aim.closest() : BlockState::apex;
+        v.block.multiplier = 0;
+        if (v.on_surface()) {
+            put_on_cone(v, aim);
+        } else {
+            const bool open = v.block.state == BlockState::apex;
+            v.row[0].impulse = open ? 0 : aim.normal;
+            for (int i = 1; i < v.count(); ++i) {
+                v.row[i].impulse = open || !v.live(i) ? 0 : aim.y[i] * v.size(i);
+            }
+        }
+        set_tangent(v);
     }
 
     /// Of Coulomb's law itself, without the shift.
@@ -166,81 +171,6 @@ struct ContactForm {
         for (int i = 1; i < v.count(); ++i) v.row[i].impulse *= v.row[0].impulse / length;
     }
 
-    // ---- interior
-
-    static double open(const BlockView& v, double scale) noexcept {
-        if (!(v.work[0].own > 0)) {
-            for (int i = 0; i < v.count(); ++i) v.row[i].impulse = 0;
-            return 0;
-        }
-        v.row[0].impulse = std::max(v.row[0].impulse, scale / v.work[0].own);
-        for (int i = 1; i < v.count(); ++i) v.row[i].impulse = 0;
-        return scale;
-    }
-    static double slack(const BlockView& v) noexcept {
-        const double length = shear(v), n = v.row[0].impulse;
-        return n - length * length / n;
-    }
-    static double gradient(const BlockView& v, int i) noexcept {
-        const double n = v.row[0].impulse;
-        if (i == 0) return -std::pow(shear(v) / n, 2) - 1;
-        return v.live(i) ? 2 * v.row[i].impulse / (n * v.size(i) * v.size(i)) : 0;
-    }
-    static Vector6<double> hessian(const BlockView& v, const Vector6<double>& dx) noexcept {
-        Vector6<double> result = Vector6<double>::Zero();
-        const double n = v.row[0].impulse;
-        for (int i = 1; i < v.count(); ++i) {
-            if (!v.live(i)) continue;
-            const double y = v.row[i].impulse / v.size(i);
-            const double part = 2 / n * (dx[i] / v.size(i) - y / n * dx[0]);
-            result[i] = part / v.size(i);
-            result[0] -= part * y / n;
-        }
-        return result;
-    }
-    static void set_interior_tangent(const BlockView& v, double multiplier, double slack) noexcept {
-        v.clear_terms();
-        const double n = v.row[0].impulse, length = shear(v), share = length / n;
-        const double c = compliance(v), q = multiplier / slack, h = 2 * multiplier / n;
-        // C + λ∇²f + λ/s ∇f∇fᵀ on (n, ŷ), inverted
-        const double g_n = -share * share - 1, g_y = 2 * share;
-        const double nn = v.work[0].compliance + h * share * share + q * g_n * g_n;
-        const double ny = -h * share + q * g_n * g_y, yy = c + h + q * g_y * g_y;
-        const double by = 1 / (nn * yy - ny * ny);
-        const double a = 1 / (c + h);
-        for (int i = 1; i < v.count(); ++i) v.release(i, v.live(i));
-        set_terms(v, length, a, yy * by, -ny / yy, 1 / yy - a);
-        v.work[0].weight = 0;
-    }
-    static double reach(const BlockView& v) noexcept {
-        // |y + t dy|² - (n + t dn)² = square t² + 2 half t - room
-        const double n = v.row[0].impulse, dn = v.work[0].change;
-        double square = -dn * dn, half = -n * dn, room = n * n;
-        for (int i = 1; i < v.count(); ++i) {
-            if (!v.live(i)) continue;
-            const double y = v.row[i].impulse / v.size(i), dy = v.work[i].change / v.size(i);
-            square += dy * dy;
-            half += y * dy;
-            room -= y * y;
-        }
-        room = std::max(room, 0.0);
-        const double inside = half * half + square * room;
-        double share = std::numeric_limits<double>::infinity();
-        if (inside >= 0) {
-            const double root = std::sqrt(inside);
-            if (half + root > 0)
-                share = room / (half + root);
-            else if (square > 0)
-                share = (root - half) / square;
-        }
-        return dn < 0 ? std::min(share, n / -dn) : share;
-    }
-    /// λ ∇f on the cone is κ (-1; ŷ) with κ = 2λ.
-    static void tell(const BlockView& v, bool open, double multiplier, double) noexcept {
-        v.block.state = open ? aim_of(v).closest() : BlockState::apex;
-        v.block.multiplier = v.on_surface() ? BlockView::known(2 * multiplier) : 0;
-    }
-
   private:
     struct Aim {
         double normal = 0, length = 0, d_normal = 1, d = 1;
@@ -264,6 +194,15 @@ struct ContactForm {
         }
         aim.length = std::sqrt(square);
         return aim;
+    }
+    static void put_on_cone(const BlockView& v, const Aim& aim) noexcept {
+        const double normal =
+            (aim.d_normal * aim.normal + aim.d * aim.length) / (aim.d_normal + aim.d);
+        v.row[0].impulse = normal;
+        for (int i = 1; i < v.count(); ++i) {
+            v.row[i].impulse = v.live(i) ? aim.y[i] / aim.length * normal * v.size(i) : 0;
+        }
+        v.block.multiplier = BlockView::known(aim.d_normal * (normal - aim.normal));
     }
     static double speed(const BlockView& v) noexcept {
         double square = 0;

@@ -23,8 +23,8 @@
 
 #include "ductile/numeric/anderson.hpp"
 #include "ductile/solve/active_set.hpp"
-#include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island_system.hpp"
+#include "ductile/solve/proximal_newton.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::solve {
@@ -33,9 +33,9 @@ namespace ductile::solve {
 class ContactSweep {
   public:
     /// From the impulses in the island; leaves impulses and states of its answer there. `joints`:
-    /// what solves them, and `safe` (null: nothing) where that does not; `effort`: products that it
+    /// what solves them, and `safe` where that does not; `effort`: products that it
     /// may still cost, less what it took.
-    void solve(IslandSystem& system, ActiveSet& joints, InteriorPoint* safe, double& effort);
+    void solve(IslandSystem& system, ActiveSet& joints, ProximalNewton& safe, double& effort);
 
     [[nodiscard]] int sweeps() const noexcept { return sweeps_; } ///< of the last solve
 

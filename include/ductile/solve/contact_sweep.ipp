@@ -15,7 +15,7 @@
 namespace ductile::solve {
 
 DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints,
-                                        InteriorPoint* safe, double& effort) {
+                                        ProximalNewton& safe, double& effort) {
     constexpr int most = 20;
     constexpr double enough = solved_residual / 10;
     system_ = &system;
@@ -36,13 +36,12 @@ DUCTILE_INLINE void ContactSweep::solve(IslandSystem& system, ActiveSet& joints,
         const bool settled = joints.solve(system, {.contacts_held = true});
         // without contacts it was asked before
         const bool unsettled = !settled && !contacts_.empty();
-        const bool asked = unsettled && safe != nullptr;
-        if (asked) safe->solve(system, true);
+        if (unsettled) safe.solve(system, true);
         const double before = off;
         off = certificate(system) / system.scale();
-        const bool stalled =
-            round > 0 && ((off <= solved_residual && off > before / 2) ||
-                          (asked && off > 0.99 * before) || (contacts_.empty() && !(off < before)));
+        const bool stalled = round > 0 && ((off <= solved_residual && off > before / 2) ||
+                                           (unsettled && off > 0.99 * before) ||
+                                           (contacts_.empty() && !(off < before)));
         if (off <= enough || stalled || !(effort > 0)) break;
         if (round == 0 || unsettled ||
             joints.rounds() > 1) { // else what contacts do to each other is as it was

@@ -7,10 +7,6 @@
 //   (C + μ/P²) dx + n dμ = r' - J dv,   n·dx = (1 - |x/P|²)/2 = g
 //   W = 1/(C + μ/P²),  D = W - (W n)(W n)ᵀ/(n·W n),  e = W n g/(n·W n)
 //
-// Interior, with ∇f = 2 n and multiplier λ:
-//
-//   D = (C + 2λ/P² + (4λ/s) n nᵀ)⁻¹ = W - q/(1 + q n·W n) (W n)(W n)ᵀ,  q = 4λ/s
-//
 // Source: closest-point return with its consistent tangent, Simo & Hughes (1998), section 3.6.
 #pragma once
 
@@ -111,6 +107,19 @@ struct EllipsoidForm {
         return true;
     }
 
+    /// x(v), and D there: proximal_newton.hpp.
+    static void respond(const BlockView& v) noexcept {
+        Vector6<double> aim, metric;
+        aim_at(v, aim, metric);
+        const EllipsoidReturn to =
+            closest_on_ellipsoid(aim, metric, v.block.size.data(), v.count());
+        const bool inside = to.multiplier == 0;
+        v.block.state = inside ? BlockState::inside : BlockState::surface;
+        v.block.multiplier = to.multiplier;
+        for (int i = 0; i < v.count(); ++i) v.row[i].impulse = v.live(i) ? to.point[i] : 0;
+        set_tangent(v);
+    }
+
     static double off(const BlockView& v) noexcept {
         Vector6<double> aim, metric;
         aim_at(v, aim, metric);
@@ -125,68 +134,17 @@ struct EllipsoidForm {
         return worst;
     }
 
+    /// The closest point: along the ray rows that are strong would give for those that are weak.
     static void project(const BlockView& v) noexcept {
-        for (int i = 0; i < v.count(); ++i) {
-            if (!v.live(i)) v.row[i].impulse = 0;
-        }
-        const double square = square_gauge(v);
-        if (!(square > 1)) return;
-        for (int i = 0; i < v.count(); ++i) v.row[i].impulse /= std::sqrt(square);
-    }
-
-    // ---- interior
-
-    /// Starts in the middle. λ; 0 where the set is too small to matter.
-    static double open(const BlockView& v, double scale) noexcept {
-        constexpr double narrow = 1e-9;
-        double power = 0, widest = 0;
-        for (int i = 0; i < v.count(); ++i) {
-            v.row[i].impulse = 0;
-            power += std::pow(v.size(i) * v.row[i].target, 2);
-            widest = std::max(widest, v.size(i) * v.work[i].own);
-        }
-        if (!(widest > narrow * scale)) return 0;
-        return std::max(std::sqrt(power) / 2, 0.05 * scale * widest / most_own(v));
-    }
-    static double slack(const BlockView& v) noexcept { return 1 - square_gauge(v); }
-    static double gradient(const BlockView& v, int i) noexcept {
-        return v.live(i) ? 2 * v.row[i].impulse / (v.size(i) * v.size(i)) : 0;
-    }
-    /// ∇²f dx.
-    static Vector6<double> hessian(const BlockView& v, const Vector6<double>& dx) noexcept {
-        Vector6<double> result = Vector6<double>::Zero();
-        for (int i = 0; i < v.count(); ++i) {
-            if (v.live(i)) result[i] = 2 * dx[i] / (v.size(i) * v.size(i));
-        }
-        return result;
-    }
-    static void set_interior_tangent(const BlockView& v, double multiplier, double slack) noexcept {
-        v.clear_terms();
-        const double along = set_weights(v, 2 * multiplier), q = 4 * multiplier / slack;
-        v.tangent.terms[0].coefficient = -q / (1 + q * along);
-    }
-    /// Share of dx that stays in the set.
-    static double reach(const BlockView& v) noexcept {
-        double square = 0, half = 0; // |x + t dx|² = |x|² + 2 half t + square t², in shares of P
+        Vector6<double> impulse = Vector6<double>::Zero(), metric = Vector6<double>::Ones();
         for (int i = 0; i < v.count(); ++i) {
             if (!v.live(i)) continue;
-            const double dx = v.work[i].change / v.size(i);
-            square += dx * dx;
-            half += v.row[i].impulse / v.size(i) * dx;
+            impulse[i] = v.row[i].impulse;
+            metric[i] = v.work[i].metric;
         }
-        if (!(square > 0)) return std::numeric_limits<double>::infinity();
-        const double room = std::max(slack(v), 0.0), root = std::sqrt(half * half + square * room);
-        return half > 0 ? room / (half + root) : (root - half) / square;
-    }
-    /// Whether the surface is reached, of λ and s.
-    static void tell(const BlockView& v, bool open, double multiplier, double slack) noexcept {
-        double stiffest = 0; // d P², what a slack of 1 is worth
-        for (int i = 0; i < v.count(); ++i) {
-            stiffest = std::max(stiffest, v.work[i].metric * v.size(i) * v.size(i));
-        }
-        const bool flows = !open || 2 * multiplier > slack * stiffest;
-        v.block.state = flows ? BlockState::surface : BlockState::inside;
-        v.block.multiplier = flows ? BlockView::known(2 * multiplier) : 0;
+        const EllipsoidReturn to =
+            closest_on_ellipsoid(impulse, metric, v.block.size.data(), v.count());
+        for (int i = 0; i < v.count(); ++i) v.row[i].impulse = to.point[i];
     }
 
   private:
@@ -198,11 +156,6 @@ struct EllipsoidForm {
             }
         }
         return square;
-    }
-    static double most_own(const BlockView& v) noexcept {
-        double most = std::numeric_limits<double>::min();
-        for (int i = 0; i < v.count(); ++i) most = std::max(most, v.work[i].own);
-        return most;
     }
     /// W and t = W n; n·W n.
     static double set_weights(const BlockView& v, double multiplier) noexcept {

@@ -6,6 +6,7 @@
 //   w = J v + C x - b,   v = M⁻¹ Jᵀ x
 //   a row alone     lower <= x <= upper,     w >= 0 at lower, <= 0 at upper, 0 between
 //   an ellipsoid    |x/P| <= 1,              w = -μ x/P², μ >= 0, 0 inside
+//   a surface       γ(x/P) <= 1,             w = -μ normal, the same of any curved set
 //   a contact       n >= 0, |t/f| <= n,      w_n >= 0, w_n n = 0;  w_t = -κ (t/f)/(f |t/f|), 0
 //   inside
 //
@@ -38,6 +39,7 @@
 #include <limits>
 #include <vector>
 
+#include "ductile/surface/any_surface.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
@@ -80,7 +82,7 @@ struct IslandRow {
     Side side = Side::free; ///< start and answer; not read in a block
 };
 
-enum class BlockKind : unsigned char { ellipsoid, contact };
+enum class BlockKind : unsigned char { ellipsoid, contact, surface };
 enum class BlockState : unsigned char {
     inside,  ///< holds
     surface, ///< flows, slides
@@ -92,10 +94,12 @@ struct IslandBlock {
     BlockKind kind = BlockKind::ellipsoid;
     BlockState state = BlockState::inside; ///< start and answer
     int first = 0, count = 0;              ///< 1 <= count <= 6
-    /// P >= 0 of an ellipsoid [N s | N m s]; f > 0 of a contact's friction rows [- | m], the entry
-    /// of its normal row is not read. Friction rows of a contact all get the largest f² C of them.
+    /// P >= 0 of an ellipsoid or a surface's axes [N s | N m s]; f > 0 of a contact's friction rows
+    /// [- | m], the entry of its normal row is not read. Friction rows of a contact all get the
+    /// largest f² C of them.
     std::array<double, 6> size{};
     double multiplier = 0; ///< μ or κ on the surface: start and answer; 0: not known
+    const AnySurface* surface = nullptr; ///< of a surface: must live until the answer is read
 };
 
 /// Kept from step to step, so that nothing is allocated once the largest island was seen.

@@ -12,8 +12,8 @@ struct IslandReport {
     double scale = 0;    ///< largest velocity that a row asked for [m/s | rad/s]
     int rounds = 0;      ///< of the active set
     int factorisations = 0;
-    int interior_points = 0; ///< how often the interior point was asked
-    int sweeps = 0;          ///< of contacts one after the other
+    int safe_ways = 0; ///< how often the active set did not settle, and a safe way was asked
+    int sweeps = 0;    ///< of contacts one after the other
 };
 
 /// An answer is solved where its residual is at most this share of `scale` [-].

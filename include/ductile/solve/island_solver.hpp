@@ -14,8 +14,8 @@
 // gives. Among rows that repeat each other the shares stay those of the softness.
 //
 // Friction is more: its slips shift what the normals are asked for (contact_form.hpp). Warm active
-// set first (active_set.hpp); where that does not settle the interior point
-// (interior_point.hpp), polished by the active set. At the end the certificate, of Coulomb's law
+// set first (active_set.hpp); where that does not settle Newton on a convex function
+// (proximal_newton.hpp), polished by the active set. At the end the certificate, of Coulomb's law
 // itself.
 //
 // What is not solved says so, and of the answer, the start and no impulse at all the one is taken
@@ -31,10 +31,10 @@
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/certificate.hpp"
 #include "ductile/solve/contact_sweep.hpp"
-#include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
 #include "ductile/solve/island_system.hpp"
+#include "ductile/solve/proximal_newton.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::solve {
@@ -54,7 +54,7 @@ class IslandSolver {
 
     IslandSystem system_;
     ActiveSet active_set_;
-    InteriorPoint interior_point_;
+    ProximalNewton proximal_newton_;
     ContactSweep contact_sweep_;
     std::vector<double> start_, best_;
 };

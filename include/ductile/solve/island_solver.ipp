@@ -68,15 +68,14 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
     return settled;
 }
 
-/// The interior point, polished by the active set. From there contacts one after the other
-/// (contact_sweep.hpp), and the active set again; each pass goes on from the best so far. In every
-/// second pass joints that the active set leaves between the sweeps are the interior point's: that
-/// alone finds the one half of what is hard, and loses the other.
+/// Proximal Newton, polished by the active set. From there contacts one after the other
+/// (contact_sweep.hpp), and the active set again; each pass goes on from the best so far.
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     constexpr int most = 4;
     double effort = 2e7; // some 20 ms
     double least = std::numeric_limits<double>::infinity();
     const auto keep = [&] {
+        detail::project_impulses(system_);
         system_.update_velocities();
         system_.update_residuals();
         const double off = certificate(system_);
@@ -92,13 +91,12 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
     put(start_);
     for (int pass = 0; pass < most; ++pass) {
-        interior_point_.solve(system_);
-        ++report.interior_points;
+        proximal_newton_.solve(system_);
+        ++report.safe_ways;
         static_cast<void>(keep());
         if (polished(report)) return;
         if (keep() <= well) return;
-        contact_sweep_.solve(system_, active_set_, pass % 2 == 1 ? &interior_point_ : nullptr,
-                             effort);
+        contact_sweep_.solve(system_, active_set_, proximal_newton_, effort);
         report.sweeps += contact_sweep_.sweeps();
         if (keep() <= well) break;
         if (polished(report)) return;

@@ -33,17 +33,30 @@ namespace ductile {
 /// `support_slope(flow)` is the derivative of `support`, symmetric, positive semidefinite.
 template <class T>
 concept CurvedSurface = requires(const T surface, const typename T::Vector& vector) {
-    { surface.value(vector) } noexcept -> std::same_as<typename T::Scalar>;
-    { surface.normal(vector) } noexcept -> std::same_as<typename T::Vector>;
-    { surface.support(vector) } noexcept -> std::same_as<typename T::Vector>;
-    { surface.support_slope(vector) } noexcept -> std::same_as<typename T::Matrix>;
+    { surface.value(vector) }
+    noexcept->std::same_as<typename T::Scalar>;
+    { surface.normal(vector) }
+    noexcept->std::same_as<typename T::Vector>;
+    { surface.support(vector) }
+    noexcept->std::same_as<typename T::Vector>;
+    { surface.support_slope(vector) }
+    noexcept->std::same_as<typename T::Matrix>;
 };
 
-/// `trial` where it is inside, else the closest force on the surface. `stiffness` symmetric,
-/// positive definite.
+/// The closest force and the flow that leads there. Plain value.
+template <class Vector>
+struct ClosestPoint {
+    Vector force;                 ///< [N | N m]
+    Vector flow = Vector::Zero(); ///< e
+    bool inside = false;          ///< the trial itself
+};
+
+/// `trial` where it is inside, else the closest force on the surface, with its flow. `stiffness`
+/// symmetric, positive definite.
 template <CurvedSurface T>
-[[nodiscard]] typename T::Vector closest_point(const T& surface, const typename T::Vector& trial,
-                                               const typename T::Matrix& stiffness) noexcept {
+[[nodiscard]] ClosestPoint<typename T::Vector> find_closest(
+    const T& surface, const typename T::Vector& trial,
+    const typename T::Matrix& stiffness) noexcept {
     using S = typename T::Scalar;
     using Vector = typename T::Vector;
     using Matrix = typename T::Matrix;
@@ -53,7 +66,7 @@ template <CurvedSurface T>
     constexpr int max_halvings = 40;
 
     const S value = surface.value(trial);
-    if (!(value > 1 + on_surface<S>)) return trial;
+    if (!(value > 1 + on_surface<S>)) return {.force = trial, .inside = true};
 
     // a stiffness of order one keeps K e, f and h(e) comparable whatever the units
     S mean = 0;
@@ -80,7 +93,7 @@ template <CurvedSurface T>
     const S size = norm(trial);
     for (int step = 0; step < max_steps; ++step) {
         const Vector downhill = moved(moved(trial, -1, force), -1, numeric::times(k, e)); // -∇φ
-        if (norm(downhill) <= 4 * epsilon * size) return force;
+        if (norm(downhill) <= 4 * epsilon * size) return {force, Vector(e / mean)};
         Matrix hessian = surface.support_slope(e);
         for (int i = 0; i < N; ++i) {
             for (int j = 0; j < N; ++j) hessian(i, j) += k(i, j);
@@ -105,8 +118,16 @@ template <CurvedSurface T>
     }
     // where the surface is curved so sharply that round-off of e moves the support point
     const Vector elastic = moved(trial, -1, numeric::times(k, e));
-    if (!(norm(moved(elastic, -1, force)) > 64 * epsilon * size)) return force;
-    return elastic / surface.value(elastic);
+    if (norm(moved(elastic, -1, force)) > 64 * epsilon * size) {
+        force = elastic / surface.value(elastic);
+    }
+    return {force, Vector(e / mean)};
+}
+
+template <CurvedSurface T>
+[[nodiscard]] typename T::Vector closest_point(const T& surface, const typename T::Vector& trial,
+                                               const typename T::Matrix& stiffness) noexcept {
+    return find_closest(surface, trial, stiffness).force;
 }
 
 } // namespace ductile

@@ -14,6 +14,7 @@
 #include <string>
 #include <utility>
 
+#include "ductile/surface/closest_point.hpp"
 #include "ductile/surface/surface.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -55,9 +56,17 @@ class Scaled {
     [[nodiscard]] Vector support(const Vector& flow) const noexcept {
         return capacity_.cwiseProduct(surface_.support(capacity_.cwiseProduct(flow)));
     }
+    [[nodiscard]] Matrix support_slope(const Vector& flow) const noexcept requires
+        CurvedSurface<Surface> {
+        Matrix slope = surface_.support_slope(capacity_.cwiseProduct(flow));
+        for (int j = 0; j < dimension; ++j) {
+            for (int i = 0; i < dimension; ++i) slope(i, j) *= capacity_[i] * capacity_[j];
+        }
+        return slope;
+    }
     [[nodiscard]] Vector project(const Vector& force, const Matrix& stiffness) const noexcept {
         if (!(value(force) > 1 + on_surface<Scalar>)) return force; // to the bit
-        Matrix shares; // K₁
+        Matrix shares;                                              // K₁
         for (int j = 0; j < dimension; ++j) {
             for (int i = 0; i < dimension; ++i) {
                 shares(i, j) = stiffness(i, j) / (capacity_[i] * capacity_[j]);
@@ -65,9 +74,8 @@ class Scaled {
         }
         return capacity_.cwiseProduct(surface_.project(force.cwiseQuotient(capacity_), shares));
     }
-    [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept
-        requires ChordedSurface<Surface>
-    {
+    [[nodiscard]] Chords<Vector> chords(const Vector& point) const noexcept requires
+        ChordedSurface<Surface> {
         const auto [lower, upper] = surface_.chords(point.cwiseQuotient(capacity_));
         return {capacity_.cwiseProduct(lower), capacity_.cwiseProduct(upper)};
     }

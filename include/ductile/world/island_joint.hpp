@@ -44,8 +44,9 @@ int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a, 
 void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                     const LinkPose<double>& pose, const JointImpulse<double>& impulse);
 
-/// Forces along the axes of the link from six rows that begin with `first` [N | N m].
-[[nodiscard]] Vector6<double> forces_of(const solve::Island& island, int first, double dt) noexcept;
+/// Forces along the axes of the link from its six rows, that begin with `first` [N | N m].
+[[nodiscard]] Vector6<double> forces_of(const solve::Island& island, const AnyLink<double>& link,
+                                        int first, double dt) noexcept;
 
 /// Velocity of a row that a unit impulse of its own gives it, J M⁻¹ Jᵀ [1/kg | 1/(kg m²)].
 [[nodiscard]] double own_effect(const solve::Island& island, const solve::IslandRow& row) noexcept;

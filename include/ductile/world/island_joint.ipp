@@ -12,23 +12,50 @@ namespace ductile {
 
 namespace detail {
 
-/// Of the rows, where all of them share one and follow each other, else of no row.
-DUCTILE_INLINE solve::IslandBlock ellipsoid_of(const AnyLink<double>& link, int first, double dt) {
-    const Vector6<double> semi_axes = link.ellipsoid();
-    int axis = 0;
-    while (axis < 6 && !(semi_axes[axis] > 0)) ++axis;
-    solve::IslandBlock block{.first = first + axis};
-    for (; axis < 6 && semi_axes[axis] > 0; ++axis) {
-        block.size[std::size_t(block.count++)] = semi_axes[axis] * dt;
+/// The six rows of a joint in an island: those that share a surface first, in its order.
+struct RowOrder {
+    std::array<JointAxis, 6> axes = all_joint_axes;
+    std::array<int, 6> place{0, 1, 2, 3, 4, 5}; ///< of each axis
+    int shared = 0;                             ///< rows
+};
+
+DUCTILE_INLINE RowOrder row_order(const AnyLink<double>& link) noexcept {
+    RowOrder order;
+    const Vector6<double> strength = link.shared_strength();
+    int next = 0;
+    const auto put = [&](JointAxis axis) {
+        order.axes[std::size_t(next)] = axis;
+        order.place[index(axis)] = next++;
+    };
+    for (const JointAxis axis : link.axes()) {
+        if (!(strength[Eigen::Index(index(axis))] > 0)) return {};
     }
-    if (std::size_t(block.count) != link.axes().size()) block.count = 0;
+    for (const JointAxis axis : link.axes()) put(axis);
+    order.shared = next;
+    for (const JointAxis axis : all_joint_axes) {
+        if (!link.is_plastic(axis)) put(axis);
+    }
+    return order;
+}
+
+/// Of the rows that share a surface; without a row where none do.
+DUCTILE_INLINE solve::IslandBlock block_of(const AnyLink<double>& link, const RowOrder& order,
+                                           int first, double dt) {
+    solve::IslandBlock block{.first = first, .count = order.shared};
+    block.surface = link.surface();
+    if (block.surface != nullptr) block.kind = solve::BlockKind::surface;
+    const Vector6<double> strength = link.shared_strength();
+    for (int i = 0; i < block.count; ++i) {
+        const auto axis = Eigen::Index(index(order.axes[std::size_t(i)]));
+        block.size[std::size_t(i)] = strength[axis] * dt;
+    }
     return block;
 }
 
 /// Share of a bound from where a row, or a surface, counts as reached.
 inline constexpr double at_bound = 1 - 1e-5;
 
-DUCTILE_INLINE void add_ellipsoid(solve::Island& island, solve::IslandBlock block, bool reached) {
+DUCTILE_INLINE void add_block(solve::Island& island, solve::IslandBlock block, bool reached) {
     if (reached) block.state = solve::BlockState::surface;
     island.blocks.push_back(block);
 }
@@ -41,23 +68,24 @@ DUCTILE_INLINE void rule(solve::IslandRow& row, const RowLimits<double>& limits,
     row.upper = limits.upper * dt;
 }
 
-/// Whether its bodies alone would need more than the ellipsoid has to meet the rows' velocities.
+/// Whether its bodies alone would need more than the surface has to meet the rows' velocities.
 DUCTILE_INLINE bool passes(const solve::Island& island, const solve::IslandBlock& block) {
-    double square = 0;
+    Vector6<double> share = Vector6<double>::Zero();
     for (int i = 0; i < block.count; ++i) {
         const solve::IslandRow& row = island.rows[std::size_t(block.first + i)];
         const double effect = own_effect(island, row) * block.size[std::size_t(i)];
-        if (effect > 0) square += (row.target / effect) * (row.target / effect);
+        if (effect > 0) share[i] = row.target / effect;
     }
-    return square > 1;
+    return block.surface != nullptr ? block.surface->value(share) > 1 : share.squaredNorm() > 1;
 }
 
 /// Rows that flowed in the last step, or stood at their bounds.
-DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link, int first) {
+DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link,
+                                    const RowOrder& order, int first) {
     for (const JointAxis axis : link.axes()) {
         const RowLimits<double>& limits = link.limits()[index(axis)];
         const double force = link.forces()[Eigen::Index(index(axis))];
-        solve::IslandRow& row = island.rows[std::size_t(first) + index(axis)];
+        solve::IslandRow& row = island.rows[std::size_t(first + order.place[index(axis)])];
         if (force < 0 && force <= at_bound * limits.lower) row.side = solve::Side::lower;
         if (force > 0 && force >= at_bound * limits.upper) row.side = solve::Side::upper;
     }
@@ -86,7 +114,8 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
     const int first = int(island.rows.size());
     const LinkPose<double>& pose = link.pose();
     const Vector3<double> none = Vector3<double>::Zero();
-    for (const JointAxis axis : all_joint_axes) {
+    const detail::RowOrder order = detail::row_order(link);
+    for (const JointAxis axis : order.axes) {
         const auto i = Eigen::Index(index(axis));
         const RowLimits<double>& limits = link.limits()[index(axis)];
         const Matrix3<double>& directions = turns(axis) ? pose.moment_axes() : pose.axes();
@@ -98,20 +127,20 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
         detail::rule(row, limits, dt);
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
-    const solve::IslandBlock block = detail::ellipsoid_of(link, first, dt);
+    const solve::IslandBlock block = detail::block_of(link, order, first, dt);
     const AnyLink<double>::Limits alone = link.limits();
     // one that stands may have reached it too
     const bool reached = link.totals().flowing || link.utilisation() >= detail::at_bound;
     if (block.count > 0 && link.meet_surface(dt, detail::passes(island, block))) {
         for (const JointAxis axis : link.axes()) {
-            solve::IslandRow& row = island.rows[std::size_t(first) + index(axis)];
+            solve::IslandRow& row = island.rows[std::size_t(first + order.place[index(axis)])];
             const RowLimits<double>& limits = link.limits()[index(axis)];
             row.target += limits.bias - alone[index(axis)].bias;
             detail::rule(row, limits, dt);
         }
-        detail::add_ellipsoid(island, block, reached);
+        detail::add_block(island, block, reached);
     } else if (reached) {
-        detail::begin_at_bounds(island, link, first);
+        detail::begin_at_bounds(island, link, order, first);
     }
     return first;
 }
@@ -131,10 +160,14 @@ DUCTILE_INLINE void add_given_rows(solve::Island& island, const IslandSeat& a, c
     }
 }
 
-DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, int first,
-                                         double dt) noexcept {
+DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, const AnyLink<double>& link,
+                                         int first, double dt) noexcept {
     Vector6<double> forces;
-    for (int i = 0; i < 6; ++i) forces[i] = island.rows[std::size_t(first + i)].impulse / dt;
+    const detail::RowOrder order = detail::row_order(link);
+    for (int i = 0; i < 6; ++i) {
+        const int row = first + order.place[std::size_t(i)];
+        forces[i] = island.rows[std::size_t(row)].impulse / dt;
+    }
     return forces;
 }
 

@@ -213,13 +213,13 @@ TEST_CASE("only a surface that is an ellipsoid is handed to a solver as one", "[
     using Apart = CoupledJoint<IndependentAxes<double, 6>, Perfect<double>>;
     PairWorld shared(body(2, 0.3), Body{}, Link(six(capacities()), {all_joint_axes}, {}, {}));
     shared.step(1e-3);
-    CHECK((shared.link().ellipsoid() - capacities()).norm() < 1e-9 * capacities().norm());
+    CHECK((shared.link().shared_strength() - capacities()).norm() < 1e-9 * capacities().norm());
     PairWorld apart(body(2, 0.3), Body{},
                     Link(Apart(IndependentAxes<double, 6>({.capacity = capacities()}),
                                Perfect<double>({.strength = 1})),
                          {all_joint_axes}, {}, {}));
     apart.step(1e-3);
-    CHECK(apart.link().ellipsoid().norm() == 0);
+    CHECK(apart.link().shared_strength().norm() == 0);
 }
 
 TEST_CASE("a narrow row is at one bound or the other, and a shut one at both", "[joint][link]") {

@@ -11,6 +11,11 @@
 #include <vector>
 
 #include "ductile/solve/island.hpp"
+#include "ductile/surface/any_surface.hpp"
+#include "ductile/surface/biaxial_rectangle.hpp"
+#include "ductile/surface/i_axial_bending.hpp"
+#include "ductile/surface/rectangle_axial_bending.hpp"
+#include "ductile/surface/tube_axial_bending.hpp"
 
 namespace islands {
 
@@ -83,11 +88,44 @@ inline int add_contact(Island& island, int a, int b, const Vector3<double>& arm_
     return first;
 }
 
+/// Surfaces that are no ellipsoids, in shares of their strengths: those of sections.
+struct SectionSurfaces {
+    ductile::RectangleAxialBending<double> rectangle;
+    ductile::ThinTubeAxialBending<double> tube;
+    ductile::IAxialBending<double> flanged{
+        {.height = 0.2, .width = 0.2, .web_thickness = 0.009, .flange_thickness = 0.015},
+        ductile::BendingAxis::strong};
+    ductile::BiaxialRectangle<double> biaxial;
+    ductile::AnySurfaceOf<ductile::RectangleAxialBending<double>> any_rectangle{rectangle};
+    ductile::AnySurfaceOf<ductile::ThinTubeAxialBending<double>> any_tube{tube};
+    ductile::AnySurfaceOf<ductile::IAxialBending<double>> any_flanged{flanged};
+    ductile::AnySurfaceOf<ductile::BiaxialRectangle<double>> any_biaxial{biaxial};
+
+    [[nodiscard]] const ductile::AnySurface* at(int kind) const {
+        const ductile::AnySurface* all[] = {&any_rectangle, &any_tube, &any_flanged, &any_biaxial};
+        return all[kind];
+    }
+    /// Most work that the surface can do against `flow`, both in shares, from its closed form.
+    [[nodiscard]] double dissipation(const ductile::AnySurface* surface,
+                                     const Vector3<double>& flow) const {
+        const Eigen::Vector2d two = flow.head<2>();
+        if (surface == &any_rectangle) return rectangle.support(two).dot(two);
+        if (surface == &any_tube) return tube.support(two).dot(two);
+        if (surface == &any_flanged) return flanged.support(two).dot(two);
+        return biaxial.support(flow).dot(flow);
+    }
+};
+inline const SectionSurfaces& section_surfaces() {
+    static const SectionSurfaces surfaces;
+    return surfaces;
+}
+
 /// Chains with loops of six-axis joints on ellipsoids, and boxed and one-sided rows between.
 struct Random {
     std::mt19937 random;
     double compliance = 1e-6; ///< of a row's own effect
     double strength = 1;      ///< [N s]
+    bool sections = false;    ///< two or three rows of a joint share a section's surface
 
     double uniform() { return std::uniform_real_distribution<double>(0, 1)(random); }
     double normal() { return std::normal_distribution<double>()(random); }
@@ -110,6 +148,16 @@ struct Random {
                 const double cap = strength * decades(-1, 1);
                 block.size[std::size_t(k)] = cap;
                 if (!surfaces) row.lower = -(row.upper = cap);
+            }
+            if (surfaces && sections) {
+                const int kind = int(4 * uniform());
+                block.kind = BlockKind::surface;
+                block.surface = section_surfaces().at(kind);
+                block.count = kind < 3 ? 2 : 3;
+                for (int k = block.count; k < 6; ++k) {
+                    IslandRow& row = result.rows[std::size_t(first + k)];
+                    row.lower = -(row.upper = block.size[std::size_t(k)]);
+                }
             }
             if (surfaces) result.blocks.push_back(block);
         };
@@ -225,6 +273,8 @@ inline double violation(const Island& island, const Eigen::MatrixXd& a) {
     for (const IslandBlock& block : island.blocks) {
         const bool contact = block.kind == BlockKind::contact;
         const double normal = contact ? x[block.first] : 1;
+        Vector6<double> share = Vector6<double>::Zero();
+        Vector3<double> flow = Vector3<double>::Zero(); // of a surface, in shares [J]
         double gauge = 0, met = 0, most = 0, largest = 0;
         if (contact) { // w_n >= 0, n >= 0, one of them zero
             const double w_normal = w[block.first], effect = a(block.first, block.first);
@@ -239,11 +289,19 @@ inline double violation(const Island& island, const Eigen::MatrixXd& a) {
             if (cap > 0) gauge += std::pow(x[at] / cap, 2);
             if (!(cap > 0)) worst = std::max(worst, std::abs(x[at]) * a(at, at));
             met -= w[at] * x[at];
+            if (block.surface != nullptr) {
+                share[i] = x[at] / cap;
+                flow[i] = -w[at] * cap;
+            }
             most += std::pow(w[at] * cap, 2);
             largest = std::max(largest, cap);
         }
         if (!(largest > 0)) continue;
         const auto first = Eigen::Index(block.first);
+        if (block.surface != nullptr) {
+            gauge = std::pow(block.surface->value(share), 2);
+            most = std::pow(section_surfaces().dissipation(block.surface, flow), 2);
+        }
         worst = std::max(worst, (std::sqrt(gauge) - 1) * largest * a(first, first));
         // dissipation that was missed, as a velocity
         worst = std::max(worst, (std::sqrt(most) - met) / largest);

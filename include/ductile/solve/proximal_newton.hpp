@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// A safe way through an island for sets of any shape: bounds, ellipsoids, cones, surfaces with
+// corners. Rows are held near the impulses x' that they have, and those follow:
+//
+//   x' <- argmin 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x + 1/2 (x - x')ᵀ σ (x - x'),   v = M⁻¹ Jᵀ x
+//
+// By its dual each round is a smooth convex function of the velocities alone,
+//
+//   1/2 vᵀ M v + Σ φ(b - J v),   x(v) = Π((u + σ x')/(C + σ)) in the metric C + σ,   M v = Jᵀ x(v)
+//
+// on which Newton with a line search cannot fail: along a step its slope rises, so that the line
+// search is a root of the slope. σ falls from a tenth of the rows' own effect to a millionth while
+// x' becomes better, so that few rows change sides in a round; at the answer x = x', and σ has no
+// part in it.
+//
+// The shifts of contacts are those in the system; following the slips is the caller's loop.
+//
+// Source: proximal method of multipliers: Rockafellar (1976), doi:10.1287/moor.1.2.97; Newton on
+// its rounds: Li, Sun & Toh (2018), doi:10.1137/16M1097572; as a function of the velocities:
+// Castro, Permenter & Han (2022), doi:10.1109/TRO.2022.3209077.
+#pragma once
+
+#include <vector>
+
+#include "ductile/solve/island_system.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::solve {
+
+/// Not thread-safe. Keeps room between solves.
+class ProximalNewton {
+  public:
+    /// Leaves impulses, sides and states of the answer in the island. For the last digits the
+    /// active set starts from there. `contacts_held`: they keep their impulses.
+    void solve(IslandSystem& system, bool contacts_held = false);
+
+    [[nodiscard]] int iterations() const noexcept { return iterations_; } ///< of the last solve
+
+  private:
+    struct Row {
+        double compliance, metric;     ///< as they were
+        double softness = 0, from = 0; ///< σ, x'
+    };
+
+    [[nodiscard]] bool held(const IslandBlock& block) const noexcept {
+        return contacts_held_ && block.kind == BlockKind::contact;
+    }
+    void soften(double softness);
+    [[nodiscard]] double given() const;
+    [[nodiscard]] bool minimise(double enough);
+    void respond();
+    [[nodiscard]] double slope(double share);
+    void search(double first);
+    void see();
+    void restore();
+
+    IslandSystem* system_ = nullptr;
+    std::vector<Row> rows_;
+    std::vector<double> start_, change_, speed_; ///< x, dx, J dv of a step
+    std::vector<double> impulses_;               ///< x that belongs to v
+    int iterations_ = 0;
+    bool contacts_held_ = false;
+};
+
+} // namespace ductile::solve
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/solve/proximal_newton.ipp"
+#endif

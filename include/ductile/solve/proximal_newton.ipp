@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of proximal_newton.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/solve/block_form.hpp"
+#include "ductile/solve/proximal_newton.hpp"
+
+namespace ductile::solve {
+
+DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, bool contacts_held) {
+    constexpr double first = 0.1, last = 1e-9, stiffer = 0.1, roughly = 1e-3, fair = 1e-6,
+                     well = 1e-10;
+    constexpr int most = 30;
+    system_ = &system;
+    contacts_held_ = contacts_held;
+    iterations_ = 0;
+    const std::vector<IslandRow>& rows = system.island().rows;
+    rows_.clear();
+    impulses_.clear();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows_.push_back({system.rows()[i].compliance, system.rows()[i].metric});
+        impulses_.push_back(rows[i].impulse);
+    }
+    double softness = first;
+    double enough = roughly, before = roughly; // of the largest velocity
+    for (int round = 0; round < most; ++round) {
+        soften(softness);
+        if (!minimise(enough)) break;
+        const double left = given() / system.scale();
+        const bool slow = softness <= last && left <= fair && left > before / 2;
+        if ((left <= well && enough <= well) || slow) break;
+        before = left;
+        enough = std::clamp(stiffer * left, well, roughly);
+        softness = std::max(stiffer * softness, last);
+    }
+    see();
+    respond(); // sides and states
+    restore();
+    for (std::size_t i = 0; i < rows.size(); ++i) system.island().rows[i].impulse = impulses_[i];
+    system.update_velocities();
+    system.update_residuals();
+}
+
+/// Rows that give nothing where they are, and more than they do elsewhere.
+DUCTILE_INLINE void ProximalNewton::soften(double softness) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        IslandSystem::Row& row = system_->rows()[i];
+        if (!(row.own > 0)) continue;
+        const double soft = softness * (rows_[i].metric - rows_[i].compliance);
+        row.compliance = row.metric = rows_[i].compliance + soft;
+        row.kept = soft * impulses_[i] / row.compliance;
+        rows_[i].softness = soft;
+        rows_[i].from = impulses_[i];
+    }
+}
+
+/// Largest velocity that rows gave since they were softened.
+DUCTILE_INLINE double ProximalNewton::given() const {
+    double most = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        most = std::max(most, rows_[i].softness * std::abs(impulses_[i] - rows_[i].from));
+    }
+    return most;
+}
+
+DUCTILE_INLINE void ProximalNewton::restore() {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        system_->rows()[i].compliance = rows_[i].compliance;
+        system_->rows()[i].metric = rows_[i].metric;
+        system_->rows()[i].kept = 0;
+    }
+}
+
+/// Velocities and residuals of the impulses.
+DUCTILE_INLINE void ProximalNewton::see() {
+    std::vector<IslandRow>& rows = system_->island().rows;
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = impulses_[i];
+    system_->update_velocities();
+    system_->update_residuals();
+}
+
+/// x(v) in place of the impulses, and the tangents there.
+DUCTILE_INLINE void ProximalNewton::respond() {
+    Island& island = system_->island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        if (!system_->alone(i)) continue;
+        IslandRow& row = island.rows[i];
+        IslandSystem::Row& work = system_->rows()[i];
+        row.side = Side::free;
+        work.weight = 0;
+        if (work.own == 0) {
+            row.impulse = 0;
+            continue;
+        }
+        const double aim = row.impulse + work.residual / work.compliance;
+        if (aim <= row.lower) row.side = Side::lower;
+        if (aim >= row.upper) row.side = Side::upper;
+        row.impulse = std::min(std::max(aim, row.lower), row.upper);
+        if (row.side == Side::free) work.weight = 1 / work.compliance;
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(*system_, k);
+        if (!held(view.block)) {
+            with_form(view, [&view](auto form) { form.respond(view); });
+            continue;
+        }
+        view.clear_terms();
+        for (int i = 0; i < view.count(); ++i) view.release(i, false);
+    }
+}
+
+/// dvᵀ (M v - Jᵀ x(v)) after a share of the step.
+DUCTILE_INLINE double ProximalNewton::slope(double share) {
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        impulses_[i] = start_[i] + share * change_[i];
+    }
+    see();
+    respond();
+    double sum = 0;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        sum += speed_[i] * (impulses_[i] - system_->island().rows[i].impulse);
+    }
+    return sum;
+}
+
+/// Goes along the step to where the function is least; `first`: its slope at the start, < 0.
+/// Leaves x(v) and the tangents there.
+DUCTILE_INLINE void ProximalNewton::search(double first) {
+    constexpr int most = 30;
+    constexpr double near = 0.2; // of the first slope
+    double low = 0, at_low = first, high = 1, at_high = slope(1);
+    if (!(at_high > -near * first)) return;
+    for (int i = 0; i < most; ++i) {
+        double t = low + (high - low) * at_low / (at_low - at_high);
+        const double edge = 0.1 * (high - low);
+        t = std::clamp(t, low + edge, high - edge);
+        const double at = slope(t);
+        if (!(std::abs(at) > -near * first)) return;
+        (at < 0 ? low : high) = t;
+        (at < 0 ? at_low : at_high) = at;
+    }
+}
+
+/// False where the island is no use. Newton until the velocities stay, `enough` of the largest.
+DUCTILE_INLINE bool ProximalNewton::minimise(double enough) {
+    constexpr int most = 40;
+    std::vector<IslandRow>& rows = system_->island().rows;
+    see();
+    respond();
+    for (int i = 0; i < most; ++i) {
+        ++iterations_;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            system_->rows()[k].right = 0;
+            system_->rows()[k].extra = rows[k].impulse - impulses_[k];
+        }
+        if (!system_->factor()) return false;
+        system_->step();
+        start_ = impulses_;
+        change_.clear();
+        speed_.clear();
+        double first = 0, fastest = 0;
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const IslandSystem::Row& work = system_->rows()[k];
+            change_.push_back(work.change);
+            speed_.push_back(-work.rest);
+            first += speed_[k] * (impulses_[k] - rows[k].impulse);
+            if (!(std::abs(work.rest) <= fastest)) fastest = std::abs(work.rest);
+        }
+        if (std::isnan(fastest)) return false;
+        if (!(first < 0)) return true;
+        if (!(fastest > enough * system_->scale())) {
+            static_cast<void>(slope(1)); // whole: impulses that balance each other follow too
+            return true;
+        }
+        search(first);
+    }
+    return true;
+}
+
+} // namespace ductile::solve
