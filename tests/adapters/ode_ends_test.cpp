@@ -115,6 +115,43 @@ TEST_CASE("two parts are no longer connected once their joint has broken", "[ode
     CHECK(std::abs(world.ledger().unexplained()) < 1e-9 * kinetic);
 }
 
+TEST_CASE("contacts between two parts act once their joint has broken", "[ode][ends]") {
+    const Kind kind = GENERATE(from_range(kinds));
+    CAPTURE(kind.name);
+    const bool motor = std::string(kind.name) == "motor"; // whose hinge is the user's
+    Engine engine;
+    const dBodyID a = engine.rotor(10), b = engine.rotor(-10), other = engine.rotor(0);
+    const dJointGroupID group = dJointGroupCreate(0);
+    ode::World world(engine.id, ode::WorldParameters{.warn = nullptr});
+    for (dBodyID body : {a, b, other}) world.add(body);
+    const auto constraint = kind.make(engine.id, a, b, 0.05);
+    const auto to_world = kind.make(engine.id, other, nullptr, unlimited);
+    world.add(*constraint);
+    world.add(*to_world);
+    const auto acts = [&](dBodyID first, dBodyID second, bool between_joined = false) {
+        dContact contact{};
+        contact.geom.normal[2] = 1; // they do not close
+        contact.geom.pos[0] = 1;
+        const dJointID joint = dJointCreateContact(engine.id, group, &contact);
+        dJointAttach(joint, first, second);
+        world.add_contact(joint, contact, between_joined);
+        return dJointIsEnabled(joint) != 0;
+    };
+    CHECK(acts(a, b) == motor);
+    CHECK(acts(b, a) == motor);
+    CHECK(acts(a, b, true));
+    CHECK(acts(a, other));
+    CHECK(acts(a, nullptr));
+    CHECK(acts(other, nullptr)); // of what holds it to the world nothing is known
+    world.step(1e-6);
+    dJointGroupEmpty(group);
+    for (int i = 0; i < 100 && !constraint->queries().broken(); ++i) world.step(1. / 240);
+    REQUIRE(constraint->queries().broken());
+    CHECK(acts(a, b));
+    world.step(1e-6);
+    dJointGroupDestroy(group);
+}
+
 TEST_CASE("a joint of six axes that is mended connects its parts again", "[ode][ends]") {
     Engine engine;
     const dBodyID a = engine.rotor(10);

@@ -141,13 +141,28 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
     if (parts_ != nullptr) parts_->forget(body);
 }
 
-DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) {
+DUCTILE_INLINE bool World::are_joined(dBodyID a, dBodyID b) const {
+    if (a == nullptr || b == nullptr) return false;
+    for (int i = 0; i < dBodyGetNumJoints(a); ++i) {
+        const dJointID joint = dBodyGetJoint(a, i); // none of a joint that broke
+        if (dJointGetType(joint) == dJointTypeContact) continue;
+        if (dJointGetBody(joint, 0) != b && dJointGetBody(joint, 1) != b) continue;
+        const auto is_this = [joint](PlasticConstraint* one) {
+            return one->id() == joint && one->island_rows() != nullptr;
+        };
+        if (std::any_of(plastic_.begin(), plastic_.end(), is_this)) return true;
+    }
+    return false;
+}
+DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
+                                       bool between_joined) {
     if (parts_ != nullptr && !(maker_ && maker_->is_making())) {
         throw std::logic_error(
             "World.add_contact: in a world with a tolerance contacts are made by what on_contacts "
             "was given, as each part of a step needs its own");
     }
-    if (members_.hang_together(dJointGetBody(joint, 0), dJointGetBody(joint, 1))) {
+    const dBodyID a = dJointGetBody(joint, 0), b = dJointGetBody(joint, 1);
+    if (members_.hang_together(a, b) || (!between_joined && are_joined(a, b))) {
         dJointDisable(joint);
         return;
     }
