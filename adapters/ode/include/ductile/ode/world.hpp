@@ -15,7 +15,9 @@
 // before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's, also
 // those with a PlasticMotor.
 //
-// A step throws what a constraint's check() throws.
+// A step throws what a constraint's check() throws, and std::invalid_argument where a body that was
+// added, or has a plastic joint, is not finite in pose, velocity or force: ODE, built with its
+// assertions, would end the process. Nothing has changed then.
 //
 // on_contacts: who makes the contacts of a step, so that they need not be made before it.
 //
@@ -162,6 +164,7 @@ class World final : public SteppedWorld {
     /// A body that is not known would not be put back: of joints, also ODE's own, of contacts, of
     /// geoms.
     void require_all_bodies();
+    void require_finite();
 
     dWorldID world_;
     Solver solver_;
