@@ -184,6 +184,26 @@ TEST_CASE("contacts of two bodies end where a joint comes between them", "[bulle
     CHECK(points() == 0);
 }
 
+TEST_CASE("a joint that is broken, or in no world, parts nothing", "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64, 0.05));
+    hinge.add_to(world.world());
+    const auto whole = hinge.state();
+    break_it(world, hinge);
+    const auto broken = hinge.state();
+    hinge.remove_from(world.world());
+    hinge.restore(whole);
+    CHECK(collide(halves));
+    hinge.restore(broken);
+    hinge.add_to(world.world());
+    CHECK(collide(halves));
+    hinge.restore(whole);
+    CHECK_FALSE(collide(halves));
+    hinge.remove_from(world.world());
+    CHECK(collide(halves));
+}
+
 TEST_CASE("ground keeps no list of the bodies that it holds", "[bullet][ends]") {
     BulletWorld world("si");
     Halves halves(world.world());

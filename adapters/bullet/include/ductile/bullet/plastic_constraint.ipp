@@ -104,7 +104,10 @@ DUCTILE_INLINE void PlasticConstraint::add_to(
     world.removeAction(&end_of_tick_); // is there still after Bullet's own removeConstraint
     world.addAction(&end_of_tick_);
     world_ = &world;
-    if (disable_collisions_between_bodies.value_or(!collides_unasked())) part_bodies();
+    if (disable_collisions_between_bodies.value_or(!collides_unasked())) {
+        parts_bodies_ = queries().broken(); // then once it is mended
+        if (!parts_bodies_) part_bodies();
+    }
     came_into_world();
 }
 
@@ -112,6 +115,7 @@ DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
     (void)queries().release(); // books what is open
     world.removeAction(&end_of_tick_);
     world.removeConstraint(this);
+    parts_bodies_ = false;
     if (world_ != &world) return;
     world_ = nullptr;
     leave_account();
