@@ -84,18 +84,144 @@ bool collide(Halves& halves) {
 } // namespace
 
 TEST_CASE("two parts collide again once their joint has broken", "[bullet][ends]") {
-    const bool told = GENERATE(false, true); // that they do not collide while it holds
+    const auto told = GENERATE(as<std::optional<bool>>{}, std::nullopt, false, true); // not to
     const bool by_engine = GENERATE(false, true);
-    INFO((told ? "parted" : "not parted") << (by_engine ? ", addConstraint" : ", add_to"));
+    CAPTURE(told.has_value(), told.value_or(false), by_engine);
     BulletWorld world("si");
     Halves halves(world.world());
     Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64, 0.05));
-    by_engine ? world.world().addConstraint(&hinge, told) : hinge.add_to(world.world(), told);
-    CHECK(collide(halves) == !told); // as Bullet's own joints have it
+    by_engine ? world.world().addConstraint(&hinge, told.value_or(false))
+              : hinge.add_to(world.world(), told);
+    // unasked they do not, but as Bullet's own joints have it by Bullet's own call
+    CHECK(collide(halves) == !told.value_or(!by_engine));
     break_it(world, hinge);
     CHECK(collide(halves));
     CHECK(halves.thrown() > 1);
     world.world().removeConstraint(&hinge);
+}
+
+TEST_CASE("a World parts what a joint holds, unless that was told otherwise", "[bullet][ends]") {
+    const double tolerance = GENERATE(0.0, 0.01);
+    const bool kept = GENERATE(false, true), by_engine = GENERATE(false, true);
+    CAPTURE(tolerance, kept, by_engine);
+    BulletWorld world("si");
+    Halves halves(world.world());
+    bullet::World keeper(world.world(), {.tolerance = tolerance, .warn = nullptr});
+    Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64));
+    if (by_engine) world.world().addConstraint(&hinge); // before: the World goes on from there
+    if (kept) hinge.add_to(world.world(), false);
+    keeper.add(hinge);
+    CHECK(collide(halves) == kept);
+    keeper.step(1e-3);
+    CHECK(collide(halves) == kept);
+    keeper.remove(hinge);
+    CHECK(collide(halves));
+    CHECK(halves[0].getNumConstraintRefs() == 0);
+}
+
+TEST_CASE("parts collide once the last of their joints has broken", "[bullet][ends]") {
+    const bool mended = GENERATE(false, true);
+    BulletWorld world("si");
+    Halves halves(world.world());
+    btPoint2PointConstraint own(halves[0], halves[1], Halves::pivot(0).getOrigin(),
+                                Halves::pivot(1).getOrigin());
+    world.world().addConstraint(&own, true);
+    Hinge weak(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(32, 0.05));
+    Hinge strong(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(32, 0.5));
+    weak.add_to(world.world());
+    strong.add_to(world.world());
+    const auto whole = weak.state();
+    break_it(world, weak);
+    REQUIRE_FALSE(strong.broken());
+    CHECK_FALSE(collide(halves));
+    if (mended) {
+        weak.restore(whole);
+        strong.remove_from(world.world());
+        CHECK_FALSE(collide(halves));
+        weak.remove_from(world.world());
+    } else {
+        break_it(world, strong);
+    }
+    CHECK_FALSE(collide(halves)); // the user's own joint
+    world.world().removeConstraint(&own);
+    CHECK(collide(halves));
+}
+
+TEST_CASE("contacts of two bodies end where a joint comes between them", "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    halves[1].setWorldTransform(BulletWorld::frame({0.95, 0, 0})); // 5 cm in the other
+    for (int i : {0, 1}) halves[i].setAngularVelocity({0, 0, 0});
+    const auto points = [&world] {
+        btDispatcher& dispatcher = *world.world().getDispatcher();
+        int count = 0;
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            count += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
+        }
+        return count;
+    };
+    world.step(1e-3);
+    REQUIRE(points() > 0);
+    for (int i : {0, 1}) halves[i].setLinearVelocity({0, 0, 0});
+    Hinge hinge(halves[0], halves[1], BulletWorld::frame({0.475, 0, 0}),
+                BulletWorld::frame({-0.475, 0, 0}), joint(64), Meeting::as_they_are);
+    hinge.add_to(world.world());
+    CHECK(points() == 0);
+    halves[0].setAngularVelocity({0, 0, 1});
+    world.step(1e-3, 100);
+    CHECK(points() == 0);
+    // once mended as well
+    Hinge broken(halves[0], halves[1], BulletWorld::frame({0.475, 0, 0}),
+                 BulletWorld::frame({-0.475, 0, 0}), joint(64, 1e-3), Meeting::as_they_are);
+    hinge.remove_from(world.world());
+    broken.add_to(world.world());
+    const auto mended = broken.state();
+    halves[0].setAngularVelocity({0, 0, 3});
+    break_it(world, broken);
+    world.step(1e-3);
+    REQUIRE(points() > 0);
+    broken.restore(mended);
+    CHECK(points() == 0);
+}
+
+TEST_CASE("a joint that is broken, or in no world, parts nothing", "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    Hinge hinge(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1), joint(64, 0.05));
+    hinge.add_to(world.world());
+    const auto whole = hinge.state();
+    break_it(world, hinge);
+    const auto broken = hinge.state();
+    hinge.remove_from(world.world());
+    hinge.restore(whole);
+    CHECK(collide(halves));
+    hinge.restore(broken);
+    hinge.add_to(world.world());
+    CHECK(collide(halves));
+    hinge.restore(whole);
+    CHECK_FALSE(collide(halves));
+    hinge.remove_from(world.world());
+    CHECK(collide(halves));
+}
+
+TEST_CASE("ground keeps no list of the bodies that it holds", "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    world.world().removeRigidBody(&halves[1]);
+    halves[1].setMassProps(0, {0, 0, 0});
+    world.world().addRigidBody(&halves[1]);
+    const bool first = GENERATE(false, true); // of the two
+    const int a = first ? 1 : 0;
+    Hinge hinge(halves[a], halves[1 - a], Halves::pivot(a), Halves::pivot(1 - a), joint(64, 0.05));
+    Hinge fixed(halves[0], here, joint(64));
+    hinge.add_to(world.world());
+    fixed.add_to(world.world());
+    CHECK(halves[1].getNumConstraintRefs() == 0);
+    CHECK(halves[0].getNumConstraintRefs() == 1); // the static world has no shape
+    CHECK_FALSE(collide(halves));
+    fixed.remove_from(world.world());
+    break_it(world, hinge);
+    CHECK(collide(halves));
 }
 
 TEST_CASE("parts that were told not to collide do not once their joint is mended",
@@ -113,6 +239,22 @@ TEST_CASE("parts that were told not to collide do not once their joint is mended
     CHECK(collide(halves));
     hinge.remove_from(world.world());
     CHECK(halves[0].getNumConstraintRefs() == 0);
+}
+
+TEST_CASE("a hinge of Bullet's own that a motor rules parts its bodies as it did",
+          "[bullet][ends]") {
+    const bool parted = GENERATE(false, true), asked = GENERATE(false, true);
+    BulletWorld world("si");
+    Halves halves(world.world());
+    btHingeConstraint own(halves[0], halves[1], Halves::pivot(0), Halves::pivot(1));
+    world.world().addConstraint(&own, parted);
+    {
+        bullet::PlasticMotor motor(own, joint(64));
+        asked ? motor.add_to(world.world(), true) : motor.add_to(world.world());
+        CHECK(collide(halves) == (!parted && !asked));
+    }
+    CHECK(collide(halves) == !parted);
+    world.world().removeConstraint(&own);
 }
 
 TEST_CASE("a hinge of Bullet's own that a motor breaks lets its parts collide", "[bullet][ends]") {
@@ -330,9 +472,9 @@ TEST_CASE("a World says once of a joint that nobody added", "[bullet][ends]") {
         CHECK(keeper.time() == 0);
     }
     std::vector<std::string> said;
-    bullet::World keeper(world.world(),
-                         {.tolerance = 0,
-                          .warn = [&](const std::string& line) { said.push_back(line); }});
+    bullet::World keeper(world.world(), {.tolerance = 0, .warn = [&](const std::string& line) {
+                                             said.push_back(line);
+                                         }});
     keeper.add(added);
     for (int i = 0; i < 3; ++i) keeper.step(1e-3);
     REQUIRE(said.size() == 1);

@@ -289,6 +289,29 @@ TEST_CASE("Frames: what is put down on a beam falls as far as it is above it", "
     }
 }
 
+TEST_CASE("Frames: a body that is no number is said once, and no run with it is believed",
+          "[frame]") {
+    std::vector<std::string> said;
+    Rig rig({.tolerance = tolerance, .rest_damping = 0, .warn = [&said](const std::string& line) {
+                 said.push_back(line);
+             }});
+    btRigidBody& arm = rig.body(2, btVector3(2, 2, 2), {0, 0, 0});
+    btRigidBody& other = rig.body(2, btVector3(2, 2, 2), {5, 0, 0});
+    arm.setAngularVelocity({0, 0, 5});
+    Hinge hinge(arm, at({0, 0, 0}), law(64));
+    rig.world->add(hinge);
+    rig.run(0.1, 1.0 / 60);
+    CHECK(rig.world->run().believed());
+    CHECK(said.empty());
+    other.setLinearVelocity({std::numeric_limits<btScalar>::quiet_NaN(), 0, 0});
+    rig.run(1, 1.0 / 60);
+    CHECK_FALSE(rig.world->run().believed());
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find("is no number") != std::string::npos);
+    CHECK(hinge.absorbed_energy() == Approx(25).epsilon(0.01)); // of its own body it knows
+    rig.world->remove(hinge);
+}
+
 TEST_CASE("Frames: what was put elsewhere by hand strikes in the very next frame", "[frame]") {
     // thrown from where the broadphase does not have it yet, at a block that it would pass in one
     // part

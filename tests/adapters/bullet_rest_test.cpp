@@ -274,6 +274,38 @@ TEST_CASE("A slow swing is not put to sleep, and what ends it is in the ledger",
     }
 }
 
+TEST_CASE("What a user puts to sleep while it swings loses that to sleep", "[bullet][rest]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        for (const bool forced : {false, true}) {
+            for (const int frames : {3, 10}) { // 0.05 s and, near where it turns, 0.17 s
+                CAPTURE(tolerance, forced, frames);
+                Rig rig(tolerance);
+                btRigidBody& body = rig.body(1, 2, {0, 0, 0});
+                body.setAngularVelocity({0, 0, 5}); // 25 J
+                body.setDamping(0, btScalar(0.1));
+                Hinge hinge(body, frame_at(0, false), law(1e6, 200));
+                rig.world->add(hinge);
+                for (int i = 0; i < frames; ++i) rig.world->step(1.0 / 60);
+                const Ledger<double>& ledger = rig.world->ledger();
+                const HeldEnergy<double> held = ledger.held();
+                REQUIRE(held.elastic > 5);
+                forced ? body.forceActivationState(ISLAND_SLEEPING)
+                       : body.setActivationState(ISLAND_SLEEPING);
+                for (int i = 0; i < 5; ++i) rig.world->step(1.0 / 60);
+                CHECK(ledger.booked(Account::sleep) == Approx(held.kinetic));
+                CHECK(ledger.held().kinetic == 0);
+                CHECK(ledger.held().elastic == held.elastic); // it waits
+                CHECK(std::abs(ledger.unexplained()) < (single ? 1e-4 : 1e-12) * 25);
+                body.activate(true);
+                rig.world->step(1.0 / 60);
+                CHECK(ledger.held().kinetic > 0);
+                CHECK(std::abs(ledger.unexplained()) < (single ? 1e-4 : 1e-12) * 25);
+                rig.world->remove(hinge);
+            }
+        }
+    }
+}
+
 TEST_CASE("A hinge that creeps at its strength is not put to sleep", "[bullet][rest]") {
     // a drum of 0.3 rad/s that a moment just above the strength keeps turning
     for (const double tolerance : {0.0, 0.01}) {

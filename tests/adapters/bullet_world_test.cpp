@@ -293,6 +293,26 @@ TEST_CASE("a motor taken over and a sleeping joint are told of too", "[bullet][w
     rig.world().removeConstraint(&own);
 }
 
+TEST_CASE("a body that cannot turn leaves the ledger a number", "[bullet][world]") {
+    const double tolerance = GENERATE(0.0, 0.01);
+    const bool partly = GENERATE(false, true); // about one axis alone it can
+    BulletWorld rig;
+    std::vector<std::string> said;
+    bullet::World world(rig.world(), {.tolerance = tolerance, .warn = [&](const std::string& line) {
+                                          said.push_back(line);
+                                      }});
+    btRigidBody& body = rig.body(2, 1);
+    body.setMassProps(2, {0, 0, btScalar(partly ? 1 : 0)});
+    body.updateInertiaTensor();
+    body.setLinearVelocity({3, 0, 0});
+    body.setAngularVelocity({0, 0, btScalar(partly ? 2 : 0)});
+    for (int i = 0; i < 10; ++i) world.step(1.0 / 60);
+    CHECK(std::isfinite(world.ledger().unexplained()));
+    CHECK(world.ledger().held().kinetic == Approx(partly ? 11 : 9));
+    CHECK(std::abs(world.ledger().unexplained()) < (single ? 1e-5 : 1e-12) * 10);
+    CHECK(said.empty());
+}
+
 TEST_CASE("the joint of a multibody is told of, and refused where the world has none",
           "[bullet][world]") {
     btDefaultCollisionConfiguration configuration;

@@ -115,6 +115,43 @@ TEST_CASE("two parts are no longer connected once their joint has broken", "[ode
     CHECK(std::abs(world.ledger().unexplained()) < 1e-9 * kinetic);
 }
 
+TEST_CASE("contacts between two parts act once their joint has broken", "[ode][ends]") {
+    const Kind kind = GENERATE(from_range(kinds));
+    CAPTURE(kind.name);
+    const bool motor = std::string(kind.name) == "motor"; // whose hinge is the user's
+    Engine engine;
+    const dBodyID a = engine.rotor(10), b = engine.rotor(-10), other = engine.rotor(0);
+    const dJointGroupID group = dJointGroupCreate(0);
+    ode::World world(engine.id, ode::WorldParameters{.warn = nullptr});
+    for (dBodyID body : {a, b, other}) world.add(body);
+    const auto constraint = kind.make(engine.id, a, b, 0.05);
+    const auto to_world = kind.make(engine.id, other, nullptr, unlimited);
+    world.add(*constraint);
+    world.add(*to_world);
+    const auto acts = [&](dBodyID first, dBodyID second, bool between_joined = false) {
+        dContact contact{};
+        contact.geom.normal[2] = 1; // they do not close
+        contact.geom.pos[0] = 1;
+        const dJointID joint = dJointCreateContact(engine.id, group, &contact);
+        dJointAttach(joint, first, second);
+        world.add_contact(joint, contact, between_joined);
+        return dJointIsEnabled(joint) != 0;
+    };
+    CHECK(acts(a, b) == motor);
+    CHECK(acts(b, a) == motor);
+    CHECK(acts(a, b, true));
+    CHECK(acts(a, other));
+    CHECK(acts(a, nullptr));
+    CHECK(acts(other, nullptr)); // of what holds it to the world nothing is known
+    world.step(1e-6);
+    dJointGroupEmpty(group);
+    for (int i = 0; i < 100 && !constraint->queries().broken(); ++i) world.step(1. / 240);
+    REQUIRE(constraint->queries().broken());
+    CHECK(acts(a, b));
+    world.step(1e-6);
+    dJointGroupDestroy(group);
+}
+
 TEST_CASE("a joint of six axes that is mended connects its parts again", "[ode][ends]") {
     Engine engine;
     const dBodyID a = engine.rotor(10);
@@ -250,6 +287,64 @@ TEST_CASE("what makes no joint in ODE is refused in words", "[ode][ends]") {
     ode::PlasticHinge fine(engine.id, a, b, {.anchor = {0.5, 0, 0}}, joint(64));
     CHECK(test::message_of([&] { world.add(fine); }) ==
           "World.add.joint: must be one between bodies of this world");
+}
+
+TEST_CASE("a body that is not finite is refused before ODE ends the process", "[ode][ends]") {
+    const double tolerance = GENERATE(0.0, 0.01);
+    const double bad = GENERATE(std::nan(""), std::numeric_limits<double>::infinity());
+    const bool held = GENERATE(false, true);
+    CAPTURE(tolerance, bad, held);
+    Engine engine;
+    const dBodyID a = engine.rotor(10), b = engine.rotor(0);
+    ode::World world(engine.id, ode::WorldParameters{.tolerance = tolerance, .warn = nullptr});
+    world.add(b);
+    world.add(a);
+    ode::PlasticHinge hinge(engine.id, a, nullptr, {.axis = {0, 0, 1}}, joint(64));
+    world.add(hinge, "hinge");
+    world.step(1e-3);
+    const dBodyID body = held ? a : b;
+    const std::string owner = held ? "body 1" : "body 0";
+    const double energy = world.ledger().held().total(), taken = hinge.absorbed_energy();
+    const auto refused = [&](const char* what) {
+        CHECK(test::message_of([&] { world.step(1e-3); }) ==
+              "World.step: the " + std::string(what) + " of " + owner +
+                  " must be finite, as ODE would end the process");
+        CHECK(world.time() == 1e-3);
+    };
+    dBodySetLinearVel(body, 0, dReal(bad), 0);
+    refused("velocity");
+    dBodySetLinearVel(body, 0, 0, 0);
+    dBodyAddForce(body, dReal(bad), 0, 0);
+    refused("force");
+    dBodySetForce(body, 0, 0, 0);
+    dBodyAddTorque(body, dReal(bad), 0, 0);
+    refused("torque");
+    dBodySetTorque(body, 0, 0, 0);
+    const dReal spin = dBodyGetAngularVel(body)[2];
+    dBodySetAngularVel(body, 0, 0, dReal(bad));
+    refused("spin");
+    dBodySetAngularVel(body, 0, 0, spin);
+    dBodySetPosition(body, dReal(bad), 0, 0);
+    refused("position");
+    dBodySetPosition(body, 0, 0, 0);
+    CHECK(hinge.absorbed_energy() == taken);
+    CHECK(world.ledger().held().total() == energy);
+    for (int i = 0; i < 400; ++i) world.step(1e-3);
+    CHECK(hinge.absorbed_energy() == Approx(100).epsilon(tolerance > 0 ? 1e-3 : 1e-2));
+    CHECK(std::abs(world.ledger().unexplained()) < 1e-9);
+}
+
+TEST_CASE("a World of ODE refuses a body that is not finite and that a joint alone tells",
+          "[ode][ends]") {
+    Engine engine;
+    const dBodyID a = engine.rotor(10);
+    ode::World world(engine.id);
+    ode::PlasticHinge hinge(engine.id, a, nullptr, {.axis = {0, 0, 1}}, joint(64));
+    world.add(hinge, "gate");
+    dBodySetLinearVel(a, 0, dReal(std::nan("")), 0);
+    CHECK(test::message_of([&] { world.step(1e-3); }) ==
+          "World.step: the velocity of a body of \"gate\" must be finite, as ODE would end the "
+          "process");
 }
 
 TEST_CASE("a World of ODE says once of a joint that nobody added", "[ode][ends]") {

@@ -82,8 +82,8 @@ class FrameControl {
         run_.unreliable += joints;
     }
 
-    /// What contacts that nobody drives took so far [J].
-    void tell_contacts(double took) noexcept { run_.brought_in = std::max(0.0, -took); }
+    /// What contacts that nobody drives took so far; no number: nothing is known [J].
+    void tell_contacts(double took) noexcept { run_.brought_in = took > 0 ? 0.0 : 0.0 - took; }
 
     /// Somebody changed the bodies: what the last parts say of the next one is forgotten.
     void forget() noexcept;

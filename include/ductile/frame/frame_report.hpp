@@ -55,7 +55,8 @@ struct RunReport {
     double tolerance = 0;    ///< that was asked for [-]
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
-    /// By contacts that nobody drives, beyond what they took; 0 where no ledger is kept [J].
+    /// By contacts that nobody drives, beyond what they took; 0 where no ledger is kept, no number
+    /// where that is none [J].
     double brought_in = 0;
     double least = 0; ///< strength × travel that nobody misses, of all joints [J]
 

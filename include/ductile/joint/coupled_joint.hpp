@@ -331,7 +331,11 @@ class CoupledJoint {
         const Scalar slipped = -numeric::dot(taken.force, step.direction);
         const bool differs = reaction.on_surface && slipped > 0;
         const Scalar booked = differs ? std::min(work / slipped, Scalar(2)) : Scalar(1);
-        const Scalar life = lives_.of(step.direction) * share_ * booked;
+        // what stopped within the step had its strength for a share of it, and flowed in that alone
+        const Scalar flowed = taken.at_bound.any()
+                                  ? Scalar(1)
+                                  : std::min(surface_.value(taken.force) / reach(), Scalar(1));
+        const Scalar life = lives_.of(step.direction) * share_ * booked * flowed;
         const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
         const bool last = spent || uses_up(travel, left);
         if (last) travel = std::min(travel, left);
@@ -352,19 +356,7 @@ class CoupledJoint {
 
     /// The joint broke after the equivalent `travel` of this step.
     void end_after(Step& step, Taken& taken, const Reaction& reaction, Scalar travel,
-                   Scalar dt) noexcept {
-        state_.broken_axis = taken.axis;
-        const Scalar share = std::max(share_, std::numeric_limits<Scalar>::min());
-        taken.force = taken.at_bound.select(taken.force / share, taken.force);
-        // equivalent speeds: power by strength, as the travel is work by strength
-        const Scalar strength = first_strength_ * grown_;
-        const Scalar start = -numeric::dot(taken.force, start_) / strength;
-        const Scalar end = -numeric::dot(taken.force, reaction.velocity) / strength;
-        const Scalar held = (start + end) / 2 * dt - taken.flow / (strength * share);
-        step.after_break =
-            dt - time_to_run(std::max(held, Scalar(0)) + travel, start, end, share, dt);
-        state_.time -= step.after_break;
-    }
+                   Scalar dt) noexcept;
 
     Surface surface_;
     Law law_;

@@ -182,4 +182,21 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     return step;
 }
 
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+void CoupledJoint<Surface, Law, Criterion>::end_after(Step& step, Taken& taken,
+                                                      const Reaction& reaction, Scalar travel,
+                                                      Scalar dt) noexcept {
+    state_.broken_axis = taken.axis;
+    const Scalar share = std::max(share_, std::numeric_limits<Scalar>::min());
+    taken.force = taken.at_bound.select(taken.force / share, taken.force);
+    // equivalent speeds: power by strength, as the travel is work by strength
+    const Scalar strength = first_strength_ * grown_;
+    const Scalar start = -numeric::dot(taken.force, start_) / strength;
+    const Scalar end = -numeric::dot(taken.force, reaction.velocity) / strength;
+    const Scalar held = (start + end) / 2 * dt - taken.flow / (strength * share);
+    step.after_break = dt - time_to_run(std::max(held, Scalar(0)) + travel, start, end, share, dt);
+    state_.time -= step.after_break;
+}
+
 } // namespace ductile

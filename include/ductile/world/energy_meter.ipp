@@ -223,10 +223,10 @@ DUCTILE_INLINE void EnergyMeter::undo_releases() {
 DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBody& now,
                                            double dt) {
     const MeteredBody& start = course.start;
-    if (course.asleep_after) {
-        if (!start.asleep) {
-            add(Account::sleep, detail::kinetic_energy(start, start.velocity, start.spin));
-        }
+    if (course.asleep_after) { // also one that a user put to sleep while it moved
+        add(Account::sleep, course.damped +
+                                detail::kinetic_energy(start, start.velocity, start.spin) -
+                                detail::kinetic_energy(now, now.velocity, now.spin));
         return;
     }
     const Vector3<double> velocities = sum(start.velocity, course.velocity_after);

@@ -10,10 +10,13 @@
 #pragma once
 
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -140,6 +143,7 @@ class SteppedWorld : private JointKeeper {
         }
         supervisor_.look(end);
         look_at_structures();
+        (void)tell_of_ledger();
         supervisor_.close();
         tell_of_forgotten();
     }
@@ -152,12 +156,26 @@ class SteppedWorld : private JointKeeper {
             end_frame();
         }
         frames_->count_unreliable(supervisor_.watch().unreliable());
-        if (const Ledger<double>* kept = kept_ledger()) {
-            frames_->tell_contacts(kept->undriven_contact());
-        }
         supervisor_.set_time(end);
+        if (const Ledger<double>* kept = kept_ledger()) {
+            frames_->tell_contacts(tell_of_ledger() ? kept->undriven_contact()
+                                                    : std::numeric_limits<double>::quiet_NaN());
+        }
         supervisor_.close();
         tell_of_forgotten();
+    }
+
+    /// False where what it tells is no number.
+    bool tell_of_ledger() {
+        const Ledger<double>* kept = kept_ledger();
+        if (kept == nullptr || std::isfinite(kept->unexplained())) return true;
+        if (!std::exchange(told_of_ledger_, true)) {
+            std::ostringstream line;
+            line << "ductile: the ledger is no number from t = " << time()
+                 << " s on; look for what moved or pushed a body so";
+            supervisor_.say(line.str());
+        }
+        return false;
     }
 
     [[nodiscard]] const FrameControl& frames() const {
@@ -177,7 +195,7 @@ class SteppedWorld : private JointKeeper {
 
     Supervisor supervisor_;
     std::optional<FrameControl> frames_;
-    bool stepping_ = false;
+    bool stepping_ = false, told_of_ledger_ = false;
     std::atomic<bool> told_of_engine_ = false; ///< that it is stepped by others
 };
 

@@ -20,7 +20,9 @@ using ductile::test::message_of;
 namespace {
 
 struct Scribe final : SteppedWorld {
-    explicit Scribe(bool ledger = false) : SteppedWorld(nullptr), ledger_kept(ledger) {
+    explicit Scribe(bool ledger = false)
+        : SteppedWorld([this](const std::string& line) { warned.push_back(line); }),
+          ledger_kept(ledger) {
         supervisor().add(this, "joint", [] { return JointReport<double>{}; });
     }
 
@@ -37,7 +39,7 @@ struct Scribe final : SteppedWorld {
         return ledger_kept ? &book : nullptr;
     }
 
-    std::vector<std::string> lines;
+    std::vector<std::string> lines, warned;
     Ledger<double> book;
     double shortest = 0;
     bool ledger_kept;
@@ -71,4 +73,14 @@ TEST_CASE("a ledger that is not kept cannot be read", "[world]") {
     CHECK_THROWS_AS(Scribe().ledger(), std::logic_error);
     Scribe kept(true);
     CHECK(&kept.ledger() == &kept.book);
+}
+
+TEST_CASE("a ledger that is no number is told, once", "[world]") {
+    Scribe world(true);
+    world.step(0.01);
+    CHECK(world.warned.empty());
+    world.book.supply(std::nan(""));
+    for (int i = 0; i < 3; ++i) world.step(0.01);
+    REQUIRE(world.warned.size() == 1);
+    CHECK(world.warned[0].find("is no number from t = 0.02 s on") != std::string::npos);
 }

@@ -106,7 +106,9 @@ namespace ductile::bullet {
     const Matrix3<double> turned = times(skew(spin), inertia);
     const Matrix3<double> jacobian = sum(inertia, scaled(dt, difference(turned, skew(momentum))));
     const Vector3<double> wanted = scaled(dt, cross(spin, momentum));
-    return scaled(-1, times(inertia, numeric::Lu<double, 3>(jacobian).solve(wanted)));
+    const Vector3<double> impulse =
+        scaled(-1, times(inertia, numeric::Lu<double, 3>(jacobian).solve(wanted)));
+    return is_finite(impulse) ? impulse : Vector3<double>(0, 0, 0); // one that cannot turn
 }
 
 inline void apply(btRigidBody& body, const VelocityChange<double>& change) noexcept {

@@ -102,7 +102,7 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
         go_on(hinge, course_.section(section));
         hinge.setJointFeedback(open.feedback.get());
         hinge.set_ahead(ahead);
-        hinge.add_to(*world_);
+        hinge.add_to(*world_, false); // who meets is passing_'s to say
         if (ahead) hinge.begin_part();
         joints_.push_back(std::move(open));
     }

@@ -15,8 +15,11 @@
 // are pulled together again. A kinematic body is not moved by hand but along its way
 // (driven_body.hpp).
 //
-// Collisions. As with Bullet's own joints the two bodies collide with each other, unless add_to or
-// addConstraint was told that they do not; a break ends that, and they collide from then on.
+// Collisions. The joint stands for the material between its two bodies: while it holds they do not
+// collide with each other, from add_to on and unless that was told otherwise. Contacts there would
+// fight its rows: two boxes whose faces met made three times the energy that they had. After a
+// break, or once it has left, they collide, when no other joint parts them. Bullet's addConstraint
+// alone has them collide.
 //
 // Ends. A constraint that ends leaves Bullet's world, and every World that looks after it: so
 // Bullet's world has to outlive it, or it has to be removed before.
@@ -30,6 +33,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "ductile/bullet/driven_body.hpp"
@@ -56,9 +60,11 @@ class PlasticConstraint : public btTypedConstraint,
 
     /// Adds the constraint and its booking at the end of each tick to a world; only the booking
     /// where Bullet's own addConstraint was called before.
-    /// `disable_collisions_between_bodies`: until it breaks or leaves.
+    /// `disable_collisions_between_bodies`: until it breaks or leaves; false: they collide, as two
+    /// that are apart and may close a gap, or what Bullet was told stands. Not said: true, but of a
+    /// PlasticMotor, of whose hinge the user has said it.
     /// @throws std::invalid_argument where it is in a world already.
-    void add_to(btDynamicsWorld& world, bool disable_collisions_between_bodies = false);
+    void add_to(btDynamicsWorld& world, std::optional<bool> disable_collisions_between_bodies = {});
     void remove_from(btDynamicsWorld& world);
 
     [[nodiscard]] virtual const PairQueries& queries() const noexcept = 0;
@@ -114,6 +120,10 @@ class PlasticConstraint : public btTypedConstraint,
   private:
     [[nodiscard]] DUCTILE_INLINE std::size_t island() const override;
     [[nodiscard]] bool is_among_constraints_of(const btDynamicsWorld& world) const;
+    /// Whether its bodies collide while it holds, where nobody said it.
+    [[nodiscard]] virtual bool collides_unasked() const noexcept { return false; }
+    /// They do not from now on, and contacts that they have end.
+    void part_bodies();
     /// Where it ends: its bodies may have ended before.
     void abandon_world();
 

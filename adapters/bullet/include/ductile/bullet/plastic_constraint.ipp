@@ -3,9 +3,13 @@
 // Bodies of plastic_constraint.hpp.
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,6 +49,17 @@ DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
     return parted;
 }
 
+/// Bullet solves the points that a pair had for good where it is not to collide any more.
+DUCTILE_INLINE void end_contacts(btDynamicsWorld& world, btRigidBody& a, btRigidBody& b) {
+    if (a.getBroadphaseHandle() == nullptr || b.getBroadphaseHandle() == nullptr) return;
+    const btBroadphasePair* pair =
+        world.getPairCache()->findPair(a.getBroadphaseHandle(), b.getBroadphaseHandle());
+    if (pair == nullptr || pair->m_algorithm == nullptr) return;
+    btManifoldArray manifolds;
+    pair->m_algorithm->getAllContactManifolds(manifolds);
+    for (int i = 0; i < manifolds.size(); ++i) manifolds[i]->clearManifold();
+}
+
 } // namespace detail
 
 // no built-in type: Bullet casts by type, e.g. when it draws
@@ -76,8 +91,8 @@ DUCTILE_INLINE bool PlasticConstraint::is_among_constraints_of(const btDynamicsW
     return false;
 }
 
-DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
-                                              bool disable_collisions_between_bodies) {
+DUCTILE_INLINE void PlasticConstraint::add_to(
+    btDynamicsWorld& world, std::optional<bool> disable_collisions_between_bodies) {
     const bool is_there = is_among_constraints_of(world);
     if (world_ != nullptr && (world_ != &world || is_there)) {
         throw std::invalid_argument(
@@ -86,13 +101,13 @@ DUCTILE_INLINE void PlasticConstraint::add_to(btDynamicsWorld& world,
     }
     join_account(world);
     if (!is_there) world.addConstraint(this);
-    if (disable_collisions_between_bodies) {
-        m_rbA.addConstraintRef(this);
-        m_rbB.addConstraintRef(this);
-    }
     world.removeAction(&end_of_tick_); // is there still after Bullet's own removeConstraint
     world.addAction(&end_of_tick_);
     world_ = &world;
+    if (disable_collisions_between_bodies.value_or(!collides_unasked())) {
+        parts_bodies_ = queries().broken(); // then once it is mended
+        if (!parts_bodies_) part_bodies();
+    }
     came_into_world();
 }
 
@@ -100,6 +115,7 @@ DUCTILE_INLINE void PlasticConstraint::remove_from(btDynamicsWorld& world) {
     (void)queries().release(); // books what is open
     world.removeAction(&end_of_tick_);
     world.removeConstraint(this);
+    parts_bodies_ = false;
     if (world_ != &world) return;
     world_ = nullptr;
     leave_account();
@@ -137,9 +153,17 @@ DUCTILE_INLINE void PlasticConstraint::let_go() {
 
 DUCTILE_INLINE void PlasticConstraint::hold_again() {
     setEnabled(true);
-    if (!std::exchange(parts_bodies_, false)) return;
-    m_rbA.addConstraintRef(this);
-    m_rbB.addConstraintRef(this);
+    if (std::exchange(parts_bodies_, false)) part_bodies();
+}
+
+/// By bodies that move alone: ground that holds a thousand joints would be asked of each of them in
+/// every pair.
+DUCTILE_INLINE void PlasticConstraint::part_bodies() {
+    if (&m_rbA == &getFixedBody() || &m_rbB == &getFixedBody()) return;
+    for (btRigidBody* body : {&m_rbA, &m_rbB}) {
+        if (!body->isStaticObject()) body->addConstraintRef(this);
+    }
+    if (world_ != nullptr) detail::end_contacts(*world_, m_rbA, m_rbB);
 }
 
 DUCTILE_INLINE void PlasticConstraint::keep_life() {

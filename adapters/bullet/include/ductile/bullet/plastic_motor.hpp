@@ -100,6 +100,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// Of A minus B at the pivot, world.
     [[nodiscard]] Vector6<double> twist(const BodyState<double>& a,
                                         const BodyState<double>& b) const;
+    /// As its hinge has it.
+    [[nodiscard]] bool collides_unasked() const noexcept override { return true; }
     void prepare();
     void take_in_hands(double now);
     void hand_back();

@@ -83,8 +83,8 @@ class World final : public SteppedWorld {
     [[nodiscard]] btDiscreteDynamicsWorld& engine() const noexcept { return world_; }
 
     /// Looks after a joint until that ends, and puts it into Bullet's world where it is in none
-    /// yet, with collisions between its bodies as by Bullet's default. An empty `name`: "joint" and
-    /// its number.
+    /// yet: its bodies do not collide with each other until it breaks. Where they are to, call its
+    /// add_to(engine(), false) before. An empty `name`: "joint" and its number.
     /// @throws std::invalid_argument where it is here already.
     void add(PlasticConstraint& joint, std::string name = {});
     void add(MultiBodyPlasticConstraint& joint, std::string name = {});

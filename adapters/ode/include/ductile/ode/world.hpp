@@ -15,7 +15,9 @@
 // before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's, also
 // those with a PlasticMotor.
 //
-// A step throws what a constraint's check() throws.
+// A step throws what a constraint's check() throws, and std::invalid_argument where a body that was
+// added, or has a plastic joint, is not finite in pose, velocity or force: ODE, built with its
+// assertions, would end the process. Nothing has changed then.
 //
 // on_contacts: who makes the contacts of a step, so that they need not be made before it.
 //
@@ -115,10 +117,12 @@ class World final : public SteppedWorld {
     void remove(dBodyID body);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
     /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies
-    /// of a member that hang together is disabled.
+    /// that a plastic joint holds together, until that breaks, or of a member that hang together
+    /// is disabled, as it would fight their rows; where `between_joined` that of a joint is not, as
+    /// where a gap between them may close. Of a motor the hinge is the user's, and so is this.
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
-    void add_contact(dJointID joint, const dContact& contact);
+    void add_contact(dJointID joint, const dContact& contact, bool between_joined = false);
     /// From now on `make` is called for the contacts of each step, part, and look for gaps; it
     /// makes their joints in the group and names them by add_contact. The group is emptied around
     /// that.
@@ -155,9 +159,12 @@ class World final : public SteppedWorld {
     void book(double dt);
     /// The step stands.
     void let_go_of_broken();
+    /// Whether a plastic joint, no motor, holds two bodies together.
+    [[nodiscard]] bool are_joined(dBodyID a, dBodyID b) const;
     /// A body that is not known would not be put back: of joints, also ODE's own, of contacts, of
     /// geoms.
     void require_all_bodies();
+    void require_finite();
 
     dWorldID world_;
     Solver solver_;

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -16,6 +18,27 @@
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
+
+namespace detail {
+
+/// What of a body is not finite; null: nothing.
+[[nodiscard]] DUCTILE_INLINE const char* not_finite(dBodyID body) {
+    if (body == nullptr) return nullptr;
+    const auto finite = [](const dReal* values, int count) {
+        dReal sum = 0; // of what is not finite it is not
+        for (int i = 0; i < count; ++i) sum += values[i];
+        return std::isfinite(sum);
+    };
+    if (!finite(dBodyGetPosition(body), 3)) return "position";
+    if (!finite(dBodyGetQuaternion(body), 4)) return "orientation";
+    if (!finite(dBodyGetLinearVel(body), 3)) return "velocity";
+    if (!finite(dBodyGetAngularVel(body), 3)) return "spin";
+    if (!finite(dBodyGetForce(body), 3)) return "force";
+    if (!finite(dBodyGetTorque(body), 3)) return "torque";
+    return nullptr;
+}
+
+} // namespace detail
 
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
     : SteppedWorld(std::move(parameters.warn)), world_(world), solver_(parameters.solver) {
@@ -141,13 +164,28 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
     if (parts_ != nullptr) parts_->forget(body);
 }
 
-DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact) {
+DUCTILE_INLINE bool World::are_joined(dBodyID a, dBodyID b) const {
+    if (a == nullptr || b == nullptr) return false;
+    for (int i = 0; i < dBodyGetNumJoints(a); ++i) {
+        const dJointID joint = dBodyGetJoint(a, i); // none of a joint that broke
+        if (dJointGetType(joint) == dJointTypeContact) continue;
+        if (dJointGetBody(joint, 0) != b && dJointGetBody(joint, 1) != b) continue;
+        const auto is_this = [joint](PlasticConstraint* one) {
+            return one->id() == joint && one->island_rows() != nullptr;
+        };
+        if (std::any_of(plastic_.begin(), plastic_.end(), is_this)) return true;
+    }
+    return false;
+}
+DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
+                                       bool between_joined) {
     if (parts_ != nullptr && !(maker_ && maker_->is_making())) {
         throw std::logic_error(
             "World.add_contact: in a world with a tolerance contacts are made by what on_contacts "
             "was given, as each part of a step needs its own");
     }
-    if (members_.hang_together(dJointGetBody(joint, 0), dJointGetBody(joint, 1))) {
+    const dBodyID a = dJointGetBody(joint, 0), b = dJointGetBody(joint, 1);
+    if (members_.hang_together(a, b) || (!between_joined && are_joined(a, b))) {
         dJointDisable(joint);
         return;
     }
@@ -164,6 +202,27 @@ DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
     members_.require_possible();
     if (parts_ != nullptr) require_all_bodies();
+    require_finite();
+}
+DUCTILE_INLINE void World::require_finite() {
+    const auto refuse = [](const std::string& owner, const char* what) {
+        throw std::invalid_argument("World.step: the " + std::string(what) + " of " + owner +
+                                    " must be finite, as ODE would end the process");
+    };
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (const char* what = detail::not_finite(bodies_[i])) {
+            refuse("body " + std::to_string(i), what);
+        }
+    }
+    for (const PlasticConstraint* joint : plastic_) {
+        for (const int side : {0, 1}) {
+            if (const char* what = detail::not_finite(dJointGetBody(joint->id(), side))) {
+                const std::size_t number = supervisor().number(joint);
+                const bool known = number != Watch<double>::nobody; // no joint of a member
+                refuse("a body of \"" + (known ? watch().name(number) : "a member") + "\"", what);
+            }
+        }
+    }
 }
 DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) maker_->make(bodies_);

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+//
+// Two boxes end to end whose faces meet and which a plastic joint holds: it stands for the material
+// between them, so that contacts there have no say until it breaks. Compiled for every engine and
+// precision (RIG_HEADER), whose shapes and contacts are its own; nobody leaves these out but the
+// World.
+#include RIG_HEADER
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace ductile;
+using namespace ductile::test;
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Boxes of 7800 kg/m³ along z, from z = -length to 0 and on to length; `joint`: 400 MPa, for a
+/// piece as long as it is thick.
+struct Beam {
+    double length, thickness, mass = 7800 * thickness * thickness * length;
+    double inertia = mass * (length * length + thickness * thickness) / 12; ///< of one, about x
+    WorldRig rig{false, 0.01, 256};
+    WorldRig::Body lower = box(-1), upper = box(1);
+    decltype(auto) joint_for(double largest, bool elastic) {
+        const Material<double> steel({.density = 7800,
+                                      .youngs_modulus = 200e9,
+                                      .poisson_ratio = 0.3,
+                                      .yield_stress = 400e6});
+        const Rectangle<double> section({.width = thickness, .height = thickness});
+        return rig.some_of(
+            lower, upper, V3::Zero(), Eigen::Matrix3d::Identity(),
+            section_joint(section, steel,
+                          {.length = thickness, .largest_bending = largest, .elastic = elastic}),
+            all_joint_axes);
+    }
+    [[nodiscard]] WorldRig::Body box(double side) {
+        return rig.box(mass, V3(thickness / 2, thickness / 2, length / 2),
+                       V3(0, 0, side * length / 2));
+    }
+    /// Each turns about the joint, by `spin` against the other's.
+    void bend(double spin) {
+        for (const auto& [body, w] : {std::pair{lower, -spin}, std::pair{upper, spin}}) {
+            WorldRig::set_spin(body, V3(w, 0, 0));
+            WorldRig::set_velocity(body, V3(0, -spin * length / 2, 0));
+        }
+    }
+    void run(double duration, double frame) {
+        while (rig.world().time() < duration - 1e-9) rig.world().step(frame);
+    }
+    [[nodiscard]] double contact() { return rig.world().ledger().booked(Account::contact); }
+};
+
+constexpr struct Size { double length, thickness; } sizes[] = {{0.5, 0.05}, {0.5, 0.1}, {2, 0.1}};
+
+} // namespace
+
+TEST_CASE("Frames: boxes whose faces meet bend as their joint has it", "[frame]") {
+    for (const Size& size : sizes) {
+        for (const double speed : {5.0, 20.0}) {
+            CAPTURE(size.length, size.thickness, speed);
+            const double spin = speed / size.length;
+            Beam beam{size.length, size.thickness};
+            const auto& joint = beam.joint_for(unlimited, false);
+            beam.bend(spin);
+            beam.run(0.3, 1.0 / 60);
+            CHECK(joint.absorbed_energy() == Approx(beam.inertia * spin * spin).epsilon(0.01));
+            CHECK(beam.contact() == 0);
+            CHECK(beam.rig.world().run().believed());
+        }
+    }
+}
+
+TEST_CASE("Frames: boxes whose faces meet are thrown as their joint has it", "[frame]") {
+    for (const Size& size : sizes) {
+        for (const double speed : {2.0, 10.0}) {
+            CAPTURE(size.length, size.thickness, speed);
+            Beam beam{size.length, size.thickness};
+            const auto& joint = beam.joint_for(unlimited, false);
+            WorldRig::set_velocity(beam.upper, V3(0, speed, 0));
+            beam.run(0.3, 1.0 / 60);
+            // both go on as one: half the speed, and what they have about their common centre
+            const double both = 2 * beam.inertia + beam.mass * size.length * size.length / 2;
+            const double angular = beam.mass * speed * size.length / 2;
+            const double after = beam.mass * speed * speed / 4 + angular * angular / (2 * both);
+            CHECK(joint.absorbed_energy() ==
+                  Approx(beam.mass * speed * speed / 2 - after).epsilon(0.01));
+            CHECK(beam.contact() == 0);
+            CHECK(beam.rig.world().run().believed());
+        }
+    }
+}
+
+TEST_CASE("Frames: elastic boxes whose faces meet do not touch either", "[frame]") {
+    for (const Size& size : sizes) {
+        CAPTURE(size.length, size.thickness);
+        Beam beam{size.length, size.thickness};
+        const auto& joint = beam.joint_for(unlimited, true);
+        beam.bend(20 / size.length);
+        beam.run(0.3, 1.0 / 60);
+        CHECK(beam.contact() == 0);
+        CHECK(joint.absorbed_energy() > 0);
+        CHECK(std::isfinite(beam.rig.world().ledger().held().total()));
+    }
+}
+
+TEST_CASE("Frames: halves that overlap as their joint breaks collide, and win next to nothing",
+          "[frame]") {
+    // bent by 0.3 rad about their middle, they lie 1.5 cm in each other
+    constexpr double largest = 0.3, length = 0.5, thickness = 0.1;
+    const double moment = 400e6 * std::pow(thickness, 3) / 4;
+    for (const double more : {1.001, 1.1}) {
+        CAPTURE(more);
+        Beam beam{length, thickness};
+        const auto& joint = beam.joint_for(largest, false);
+        const double energy = moment * largest * more;
+        beam.bend(std::sqrt(energy / beam.inertia));
+        beam.run(1, 1.0 / 60);
+        REQUIRE(joint.broken());
+        CHECK(joint.absorbed_energy() == Approx(moment * largest).epsilon(0.01));
+        const double left = energy - joint.absorbed_energy();
+        CHECK(beam.contact() > -5e-3 * energy); // of ODE; Bullet -1e-5
+        CHECK(beam.contact() < std::max(left, 1e-3 * energy));
+        if (more > 1.05) CHECK(beam.contact() > left / 50); // they go on closing
+        CHECK(beam.rig.world().run().believed());
+    }
+}
