@@ -38,6 +38,9 @@ std::string why_doubted(const RunReport& report) {
     const double work = report.plastic_work;
     std::string why = replay::quantity(report.left.energy, "J") + " of " +
                       replay::quantity(work, "J") + " unresolved";
+    if (report.given > 0) {
+        why += ", " + replay::quantity(report.given, "J") + " given by joints";
+    }
     if (report.brought_in > 0) {
         why += ", " + replay::quantity(report.brought_in, "J") + " brought in by contacts";
     }

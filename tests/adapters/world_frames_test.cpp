@@ -277,6 +277,40 @@ TEST_CASE("Frames: what stops within a frame uses up the life of its flow alone"
     }
 }
 
+TEST_CASE("Frames: a joint of several axes takes what it holds until it breaks within a frame",
+          "[frame]") {
+    // bent and twisted at once; what twists is light and slows, so that the flow turns
+    using Eigen::Vector2d;
+    constexpr double moment = 100e3, torque = 77e3, spin = 160, bends = 0.41, twists = 0.0325;
+    for (const double limit : {1e-3, 5e-3, 0.02}) {
+        double work = 0, bent = 0;
+        for (Vector2d speed(spin, spin); bent < limit;) {
+            constexpr double h = 1e-8;
+            const Vector2d flow(moment * speed[0], torque * speed[1]);
+            work += flow.norm() * h;
+            bent += speed[0] * h;
+            speed[0] -= moment * flow[0] / flow.norm() / bends * h;
+            speed[1] -= torque * flow[1] / flow.norm() / twists * h;
+        }
+        for (const double frame : {1e-5, 1e-4, 1e-3, 1.0 / 240, 1.0 / 60}) {
+            CAPTURE(limit, frame);
+            Rig rig;
+            const auto body = rig.body(40, V3(bends, bends, twists), V3::Zero());
+            WorldRig::set_spin(body, V3(spin, 0, spin));
+            const CoupledJoint joint(Ellipsoid<double, 2>({.capacity = {moment, torque}}),
+                                     Perfect<double>({.strength = moment}), TravelLimit<double>(),
+                                     {.largest_travel = {limit, unlimited}});
+            auto& link =
+                rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(), joint,
+                            std::array<JointAxis, 2>{JointAxis::bending_x, JointAxis::torsion});
+            rig.run(std::max(1e-3, frame), frame);
+            CHECK(link.broken());
+            CHECK(link.absorbed_energy() == Approx(work).epsilon(rough ? 1e-2 : 2e-3));
+            CHECK(rig.world().run().believed());
+        }
+    }
+}
+
 TEST_CASE("Frames: a rigid joint whose load turns flows the way that its bodies go", "[frame]") {
     using Eigen::Vector2d;
     constexpr double mass = 2, frame = 1.0 / 60;

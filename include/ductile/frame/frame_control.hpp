@@ -93,6 +93,7 @@ class FrameControl {
     struct Judgement {
         double error = 0;
         double given = 0;     ///< of it: by dampers
+        double astray = 0;    ///< of it: by breaks
         double of_rows = 0;   ///< of that, by flows
         double most = 0;      ///< that those can have taken: R x speed x length
         double allowed = 0;   ///< that grows as the budget goes
@@ -122,6 +123,7 @@ class FrameControl {
     [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
     [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
+    [[nodiscard]] bool breaks(std::size_t row, const PartMotion& motion) const noexcept;
     [[nodiscard]] double first_length(double left) noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;
     [[nodiscard]] double followed(double h) const noexcept;
@@ -150,6 +152,7 @@ class FrameControl {
     double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
     double allowed_ = 0;       ///< of the last part [J]
     double work_ = 0;          ///< plastic, of all joints [J]
+    double taken_ = 0;         ///< by them beside their flow [J]
     int solves_ = 0;           ///< of this frame
 };
 

@@ -221,6 +221,14 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     return {past_[row].acceleration, before_};
 }
 
+/// In this part, not in one before.
+DUCTILE_INLINE bool FrameControl::breaks(std::size_t row,
+                                         const PartMotion& motion) const noexcept {
+    const PartRow& of = motion.rows[row];
+    if (!(of.broke > 0)) return false;
+    return !(row < past_.size() && past_[row].row.joint == of.joint && past_[row].row.broke > 0);
+}
+
 /// In a part below the `shortest` contacts are struck, which misplaces nothing.
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
@@ -233,6 +241,11 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.turned =
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
+        if (breaks(i, motion)) {
+            judged.astray += row.astray;
+            judged.stop = row.broke;
+            largest = row.astray;
+        }
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = misplaced_energy(row, off, motion.plastic_work);
@@ -251,7 +264,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.turned =
             std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
-    judged.error += judged.given;
+    judged.error += judged.given + judged.astray;
     judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
@@ -291,6 +304,9 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     ++report_.parts;
     report_.jumps += jump;
     work_ = motion.plastic_work;
+    taken_ += motion.rigid_work;
+    run_.given = taken_ > 0 ? 0.0 : 0.0 - taken_;
+    run_.stored = std::max(run_.stored, motion.stored);
     // a change of force that a far shorter part foretold is more than there can be; it stays an
     // alarm
     const double most = std::max(judged.most, 2 * parameters_.tolerance * work_);

@@ -27,6 +27,7 @@ struct PartMotion {
     /// of members; 0: there are none.
     double closed_work = 0;
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
+    double stored = 0;         ///< that elastic ones hold [J]
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing

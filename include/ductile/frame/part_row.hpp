@@ -59,6 +59,8 @@ struct PartRow {
     double least = 0;      ///< travel that nobody misses [m | rad]
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
+    double broke = 0;      ///< how long its joint held in the part that broke it [s]
+    double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
     bool elastic = false;  ///< below its strength it is a spring
     bool swings = false;   ///< as a spring, after a flow
 

@@ -165,6 +165,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     } else {
         flow(step, taken, reaction, dt);
     }
+    if (state_.broken) step.held = dt - step.after_break;
     settle(state_, step,
            StepEnd<Scalar, Vector>{.start = start_,
                                    .velocity = reaction.velocity,

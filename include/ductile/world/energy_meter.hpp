@@ -134,6 +134,8 @@ class EnergyMeter {
     /// Of the last step alone: what plastic joints took beside their flow, damping and what they
     /// store, but for driven ones, and what contacts of bodies took that count [J].
     [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
+    /// What elastic joints held at its end [J].
+    [[nodiscard]] double stored() const noexcept { return last_.elastic; }
     [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;

@@ -26,6 +26,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     const bool yielded =
         link.axes().size() == 1 && !link.all_rigid() && link.totals().plastic_work > 0;
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
+    double broke = link.axes().size() > 1 ? link.last().held : 0;
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
         PartRow& row = rows.emplace_back();
@@ -34,6 +35,11 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.turning = link.turning_speed();
         row.least = link.least_travel();
         row.too_far = link.turned_too_far();
+        row.broke = std::exchange(broke, 0);
+        if (row.broke > 0) {
+            const double after = link.last().after_break;
+            row.astray = link.last().plastic_work * after / (row.broke + after);
+        }
         row.elastic = !link.all_rigid();
         if (!acts) continue;
         row.start = link.start_velocities()[i];

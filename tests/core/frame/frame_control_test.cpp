@@ -298,6 +298,23 @@ TEST_CASE("What rigid rows take of velocities that do not fit is a blow, what th
     }
 }
 
+TEST_CASE("Energy that joints give where nothing flows is told", "[frame]") {
+    for (const double given : {0.5, 5.0}) { // of 52 J
+        Engine engine = sliding_mass();
+        engine.masses[0].velocity = 0;
+        engine.stored = 52;
+        engine.kick = -given / 4;
+        FrameControl control;
+        for (int i = 0; i < 4; ++i) control.frame(engine, frame);
+        CHECK(control.run().given == Approx(given));
+        CHECK(control.run().believed() == (given < 0.52));
+        engine.kick = given; // what is taken is a loss, and makes up for it
+        control.frame(engine, frame);
+        CHECK(control.run().given == 0);
+        CHECK(control.run().believed());
+    }
+}
+
 TEST_CASE("What is no number is never believed, and ends", "[frame]") {
     Engine engine = sliding_mass();
     engine.breaks_down = true;

@@ -42,6 +42,7 @@ class Engine final : public ductile::PartEngine {
     std::vector<Tie> ties;
     bool foresees = true;     ///< gaps that close
     double kick = 0;          ///< rigid_work of every part, whatever its length [J]
+    double stored = 0;        ///< by elastic joints [J]
     bool breaks_down = false; ///< its answers are no numbers
     double time = 0;
     int solves = 0;
@@ -153,6 +154,7 @@ class Engine final : public ductile::PartEngine {
             motion_.contact_work -= impulse[rows.size() + i] * (closing[i] + end) / 2;
         }
         motion_.rigid_work = kick;
+        motion_.stored = stored;
         for (std::size_t i = 0; i < ties.size(); ++i) {
             if (!ties[i].tells) continue;
             const double end = relative(ties[i].a, ties[i].b);

@@ -248,6 +248,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
+    motion_.stored = metered ? meter_.stored() : 0;
     motion_.contact_work = 0;
     if (metered && motion_.flows()) {
         motion_.contact_work = meter_.step_of_contacts([this](const void* body) {
