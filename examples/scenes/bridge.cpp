@@ -241,8 +241,7 @@ class Bridge final : public Scene {
     /// `stands`: whether it does, at the problem's speed; nothing: it is only told.
     void cross(Run& run, double steel, double mass, std::optional<bool> stands) const {
         const std::string what = name_of(steel, mass) + ": ";
-        Take take = run.take(take_of(steel, mass), "A vehicle crosses a deck.",
-                             {.gravity = 0, .budget = 64});
+        Take take = run.take(take_of(steel, mass), "A vehicle crosses a deck.", {.gravity = 0});
         Stage& stage = take.stage();
         const Cast cast = build(stage, steel, mass, waits);
         take.action(30);

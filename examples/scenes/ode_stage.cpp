@@ -21,8 +21,7 @@ class OdeStage final : public Stage {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
         world_ = std::make_unique<ode::World>(
-            engine_.id, ode::WorldParameters{.tolerance = parameters.tolerance,
-                                             .budget = parameters.budget});
+            engine_.id, ode::WorldParameters{.tolerance = parameters.tolerance});
         keeps_tolerance_ = parameters.tolerance > 0;
         world_->on_contacts({.space = engine_.space, .group = engine_.contacts}, [this] {
             dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {

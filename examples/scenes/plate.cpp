@@ -239,7 +239,7 @@ class Plate final : public Scene {
         run.expect("5 t put on slowly: absorbed", cast.absorbed(), 0, 0.1, "J");
     }
     void drop(Run& run) const {
-        Take take = run.take(dropped, "A block falls on a plate.", {.budget = 20});
+        Take take = run.take(dropped, "A block falls on a plate.");
         Stage& stage = take.stage();
         const Cast cast = build(stage, cases[4]);
         const auto block = stage.add({.name = "block",

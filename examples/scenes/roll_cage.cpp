@@ -217,7 +217,7 @@ class RollCage final : public Scene {
         return model;
     }
     static void roll_over(Run& run) {
-        Take take = run.take("roll over", "A cage falls on the edge of its roof.", {.budget = 128});
+        Take take = run.take("roll over", "A cage falls on the edge of its roof.");
         Stage& stage = take.stage();
         BuiltStructure& built = stage.build(cage());
         stage.describe({{"section", "tube 50 x 3 mm"}, {"material", "S355"}});

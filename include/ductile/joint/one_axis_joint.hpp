@@ -270,10 +270,14 @@ class OneAxisJoint {
         const Scalar slipped = spring_slip(law_, state_.law, k, fade_, trial);
         const Scalar strained = trial - slipped;
         step.elastic = k * (strained * strained - elastic_ * elastic_) / 2;
-        step.damped = spring_.damped(taken.velocity, slipped, strained, taken.dt);
-        const Scalar rest = taken.work - step.elastic - step.damped;
         const Scalar direction = std::copysign(Scalar(1), slipped != 0 ? slipped : taken.travel);
         const Scalar strength = flow_.resistance(direction);
+        step.damped = spring_.damped(taken.velocity, slipped, strained, taken.dt);
+        if (taken.at_bound()) { // the damper has what the spring and the flow leave of the strength
+            const Scalar left = taken.work - step.elastic - strength * std::abs(slipped);
+            step.damped = std::min(step.damped, std::max(left, Scalar(0)));
+        }
+        const Scalar rest = taken.work - step.elastic - step.damped;
         if (slipped != 0) {
             // the geometry of a symplectic row is second order, the work of an implicit one is the
             // better account, in between as the row itself; a law that rests by itself has its own
