@@ -277,6 +277,39 @@ TEST_CASE("Frames: what stops within a frame uses up the life of its flow alone"
     }
 }
 
+TEST_CASE("Frames: a damper beside a spring takes no more than its strength leaves", "[frame]") {
+    // spring and damper together carry the strength, and the rest flows
+    constexpr double inertia = 1, spin = 10, strength = 20, stiffness = 100, damper = 10; // SI
+    double work = 0, damped = 0;
+    {
+        constexpr double h = 1e-6;
+        double rate = spin, elastic = 0;
+        for (int i = 0; i < 3000000; ++i) {
+            const double held = stiffness * elastic + damper * rate;
+            const double moment = std::clamp(held, -strength, strength);
+            const double strain = (moment - stiffness * elastic) / damper;
+            work += moment * (rate - strain) * h;
+            damped += damper * strain * strain * h;
+            elastic += strain * h;
+            rate -= moment / inertia * h;
+        }
+    }
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(1, V3::Constant(inertia), V3::Zero());
+        WorldRig::set_spin(body, V3(0, 0, spin));
+        const Joint joint(Perfect<double>({.strength = strength}), TravelLimit<double>(),
+                          {.stiffness = stiffness, .damping_time = damper / stiffness});
+        auto& hinge = rig.hinge(body, nullptr, V3::Zero(), joint, "hinge");
+        rig.run(3, frame);
+        CHECK(hinge.absorbed_energy() == Approx(work).epsilon(0.02));
+        CHECK(rig.world().ledger().booked(Account::damping) == Approx(damped).epsilon(0.05));
+        CHECK(std::abs(rig.world().ledger().booked(Account::joints)) < 1e-3 * work);
+        CHECK(rig.world().run().believed());
+    }
+}
+
 TEST_CASE("Frames: a joint of several axes takes what it holds until it breaks within a frame",
           "[frame]") {
     // bent and twisted at once; what twists is light and slows, so that the flow turns
