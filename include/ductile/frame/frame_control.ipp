@@ -39,6 +39,14 @@ inline constexpr double of_turns = 0.9; ///< that may be a part's: a body may st
     return ratio >= least ? std::min(ratio, most) : least;
 }
 
+/// Whether a row of a part was in the one before, at the same place.
+template <class Past>
+[[nodiscard]] bool was_there(const std::vector<Past>& before, const PartMotion& motion,
+                             std::size_t row) noexcept {
+    return row < before.size() && before[row].row.joint == motion.rows[row].joint &&
+           before[row].row.section == motion.rows[row].section;
+}
+
 } // namespace detail
 
 DUCTILE_INLINE void FrameParameters::validate(const char* owner) const {
@@ -215,18 +223,14 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
 
 DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
                                                const PartMotion& motion) const noexcept {
-    const bool known = row < past_.size() && past_[row].row.joint == motion.rows[row].joint &&
-                       past_[row].row.section == motion.rows[row].section;
-    if (!known) return {};
+    if (!detail::was_there(past_, motion, row)) return {};
     return {past_[row].acceleration, before_};
 }
 
 /// In this part, not in one before.
-DUCTILE_INLINE bool FrameControl::breaks(std::size_t row,
-                                         const PartMotion& motion) const noexcept {
-    const PartRow& of = motion.rows[row];
-    if (!(of.broke > 0)) return false;
-    return !(row < past_.size() && past_[row].row.joint == of.joint && past_[row].row.broke > 0);
+DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& motion) const noexcept {
+    const bool broke_before = detail::was_there(past_, motion, row) && past_[row].row.broke > 0;
+    return motion.rows[row].broke > 0 && !broke_before;
 }
 
 /// In a part below the `shortest` contacts are struck, which misplaces nothing.

@@ -15,20 +15,21 @@ namespace detail {
 /// The six rows of a joint in an island: those that share a surface first, in its order.
 struct RowOrder {
     std::array<JointAxis, 6> axes = all_joint_axes;
-    std::array<int, 6> place{0, 1, 2, 3, 4, 5}; ///< of each axis
-    int shared = 0;                             ///< rows
+    std::array<int, 6> place{0, 1, 2, 3, 4, 5};         ///< of each axis
+    int shared = 0;                                     ///< rows
+    Vector6<double> strength = Vector6<double>::Zero(); ///< of those, by axis [N | N m]
 };
 
 DUCTILE_INLINE RowOrder row_order(const AnyLink<double>& link) noexcept {
     RowOrder order;
-    const Vector6<double> strength = link.shared_strength();
+    order.strength = link.shared_strength();
     int next = 0;
     const auto put = [&](JointAxis axis) {
         order.axes[std::size_t(next)] = axis;
         order.place[index(axis)] = next++;
     };
     for (const JointAxis axis : link.axes()) {
-        if (!(strength[Eigen::Index(index(axis))] > 0)) return {};
+        if (!(order.strength[Eigen::Index(index(axis))] > 0)) return {};
     }
     for (const JointAxis axis : link.axes()) put(axis);
     order.shared = next;
@@ -44,10 +45,9 @@ DUCTILE_INLINE solve::IslandBlock block_of(const AnyLink<double>& link, const Ro
     solve::IslandBlock block{.first = first, .count = order.shared};
     block.surface = link.surface();
     if (block.surface != nullptr) block.kind = solve::BlockKind::surface;
-    const Vector6<double> strength = link.shared_strength();
     for (int i = 0; i < block.count; ++i) {
         const auto axis = Eigen::Index(index(order.axes[std::size_t(i)]));
-        block.size[std::size_t(i)] = strength[axis] * dt;
+        block.size[std::size_t(i)] = order.strength[axis] * dt;
     }
     return block;
 }
