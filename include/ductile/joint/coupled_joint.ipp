@@ -78,10 +78,12 @@ auto CoupledJoint<Surface, Law, Criterion>::off_normal(const Reaction& reaction,
     if (flows) {
         const Vector normal = surface_.normal(reaction.force);
         const Scalar along = numeric::dot(excess, normal) / numeric::dot(normal, normal);
-        // in a corner, which has many normals, the force is the one that meets the flow
-        const Vector met = surface_.support(Vector(-excess)) * reach();
-        if (surface_.value(Vector(met - reaction.force)) <= bound_tolerance * reach()) {
-            return Vector::Zero();
+        if constexpr (!requires { surface_.semi_axes(); }) { // an ellipsoid has no corners
+            // in a corner, which has many normals, the force is the one that meets the flow
+            const Vector met = surface_.support(Vector(-excess)) * reach();
+            if (surface_.value(Vector(met - reaction.force)) <= bound_tolerance * reach()) {
+                return Vector::Zero();
+            }
         }
         if (along < 0) excess -= along * normal; // against the force
     }

@@ -115,6 +115,9 @@ struct Island {
     }
 };
 
+/// Velocity of a row that a unit impulse of its own gives it, J M⁻¹ Jᵀ [1/kg | 1/(kg m²)].
+[[nodiscard]] double own_effect(const Island& island, const IslandRow& row) noexcept;
+
 } // namespace ductile::solve
 
 #ifndef DUCTILE_COMPILED

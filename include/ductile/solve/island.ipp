@@ -42,4 +42,19 @@ DUCTILE_INLINE IslandBody island_body(const Vector3<double>& inverse_mass,
     return body;
 }
 
+DUCTILE_INLINE double own_effect(const Island& island, const IslandRow& row) noexcept {
+    double effect = 0;
+    const auto see = [&](int body, const Vector6<double>& on) {
+        if (body < 0) return;
+        const Matrix6<double>& m = island.bodies[std::size_t(body)].inverse_mass;
+        for (int i = 0; i < 3; ++i) { // no body turns by a force through its centre
+            effect += m(i, i) * on[i] * on[i];
+            for (int j = 0; j < 3; ++j) effect += m(3 + i, 3 + j) * on[3 + i] * on[3 + j];
+        }
+    };
+    see(row.a, row.on_a);
+    see(row.b, row.on_b);
+    return effect;
+}
+
 } // namespace ductile::solve

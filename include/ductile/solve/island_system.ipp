@@ -14,11 +14,10 @@ namespace ductile::solve {
 namespace detail {
 
 /// A row's entries on an axis that a body has locked are of no effect.
-DUCTILE_INLINE double own_effect(Vector6<double>& on, const IslandBody& body) noexcept {
+DUCTILE_INLINE void lock(Vector6<double>& on, const IslandBody& body) noexcept {
     for (int i = 0; i < 6; ++i) {
         if (body.inverse_mass(i, i) == 0) on[i] = 0;
     }
-    return on.dot(body.inverse_mass * on);
 }
 
 } // namespace detail
@@ -42,12 +41,9 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
         row = {};
-        if (given.a >= 0) {
-            row.own += detail::own_effect(given.on_a, island.bodies[std::size_t(given.a)]);
-        }
-        if (given.b >= 0) {
-            row.own += detail::own_effect(given.on_b, island.bodies[std::size_t(given.b)]);
-        }
+        if (given.a >= 0) detail::lock(given.on_a, island.bodies[std::size_t(given.a)]);
+        if (given.b >= 0) detail::lock(given.on_b, island.bodies[std::size_t(given.b)]);
+        row.own = own_effect(island, given);
         const double softness = given.softness > 0 ? given.softness : least_softness * row.own;
         row.compliance = given.compliance <= softness ? softness : given.compliance; // or NaN
         const bool contact = block_of_[i] >= 0 &&

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ductile/numeric/cholesky.hpp"
 #include "ductile/solve/one_pair.hpp"
 
 namespace ductile::solve {
@@ -25,11 +26,10 @@ class OnePair {
     /// b - A x of a row; `size`: of what is added up for it.
     [[nodiscard]] double left(int i, double& size) const noexcept;
     [[nodiscard]] Side where(int i) const noexcept;
-    [[nodiscard]] bool inside_blocks() const noexcept;
+    [[nodiscard]] bool solve_bounded(IslandReport& report) noexcept;
+    [[nodiscard]] bool solve_ellipsoid(IslandBlock& block, IslandReport& report) noexcept;
 
     Island* island_ = nullptr;
-    bool blocked_ = false; ///< the rows share a block, and have no bounds
-    double scale_ = 0;
     double a_[most][most];                             ///< A, lower triangle by rows
     double f_[most][most];                             ///< its factors
     double x_[most];                                   ///< impulses
@@ -109,7 +109,6 @@ inline double OnePair::left(int i, double& size) const noexcept {
 
 inline Side OnePair::where(int i) const noexcept {
     const IslandRow& row = island_->rows[std::size_t(i)];
-    if (blocked_) return Side::free;
     if (!(row.lower < row.upper)) return Side::lower;
     constexpr double round_off = 1e-13;
     if (side_[i] == Side::free) {
@@ -123,33 +122,98 @@ inline Side OnePair::where(int i) const noexcept {
     return pulls > round_off * size ? Side::free : side_[i];
 }
 
-inline bool OnePair::inside_blocks() const noexcept {
-    for (const IslandBlock& block : island_->blocks) {
-        double square = 0;
-        for (int i = 0; i < block.count; ++i) {
-            square += std::pow(x_[block.first + i] / block.size[std::size_t(i)], 2);
-        }
-        if (!(square <= 1)) return false;
+inline bool OnePair::solve_bounded(IslandReport& report) noexcept {
+    constexpr int rounds = 40, together = 6;
+    for (int i = 0; i < most; ++i) {
+        const IslandRow& row = island_->rows[std::size_t(i)];
+        side_[i] = row.lower < row.upper ? row.side : Side::lower;
+        x_[i] = side_[i] == Side::lower ? row.lower : side_[i] == Side::upper ? row.upper : 0;
     }
+    for (report.rounds = 1; report.rounds <= rounds; ++report.rounds) {
+        ++report.factorisations;
+        if (!factor_and_solve()) return false;
+        int wrong = 0;
+        for (int i = 0; i < most && !(wrong > 0 && report.rounds > together); ++i) {
+            const Side side = where(i);
+            if (side == side_[i]) continue;
+            ++wrong;
+            side_[i] = side;
+            const IslandRow& row = island_->rows[std::size_t(i)];
+            if (side != Side::free) x_[i] = side == Side::lower ? row.lower : row.upper;
+        }
+        if (wrong > 0) continue;
+        for (int i = 0; i < most; ++i) {
+            double size = 0;
+            if (side_[i] == Side::free) {
+                report.residual = std::max(report.residual, std::abs(left(i, size)));
+            }
+        }
+        return true;
+    }
+    return false;
+}
+
+/// Impulses in shares of the semi-axes, those of other rows of 1/sqrt(A_ii): so scaled the
+/// multiplier's terms are those of 1, whatever the units.
+inline bool OnePair::solve_ellipsoid(IslandBlock& block, IslandReport& report) noexcept {
+    constexpr int rounds = 60;
+    constexpr double exact = 4e-15, allowed = 1e-9;
+    Vector6<double> unit, shared, asked;
+    for (int i = 0; i < most; ++i) {
+        const int k = i - block.first;
+        const bool shares = k >= 0 && k < block.count;
+        const IslandRow& row = island_->rows[std::size_t(i)];
+        if (!shares && (std::isfinite(row.lower) || std::isfinite(row.upper))) return false;
+        unit[i] = shares ? block.size[std::size_t(k)] : 1 / std::sqrt(a_[i][i]);
+        if (!(unit[i] > 0)) return false;
+        shared[i] = shares ? 1 : 0;
+        asked[i] = unit[i] * row.target;
+        side_[i] = Side::free;
+    }
+    Matrix6<double> scaled;
+    for (int i = 0; i < most; ++i) {
+        for (int j = 0; j <= i; ++j) scaled(i, j) = unit[i] * a_[i][j] * unit[j];
+    }
+    double multiplier = 0, gauge = 0;
+    Vector6<double> share;
+    for (report.rounds = 1; report.rounds <= rounds; ++report.rounds) {
+        ++report.factorisations;
+        Matrix6<double> system = scaled;
+        for (int i = 0; i < most; ++i) system(i, i) += multiplier * shared[i];
+        const numeric::Cholesky<double, most> factors(system);
+        if (!factors.succeeded()) return false;
+        share = factors.solve(asked);
+        const Vector6<double> on = share.cwiseProduct(shared);
+        gauge = std::sqrt(dot(on, on));
+        if (multiplier == 0 && gauge <= 1) break;
+        const double ahead = (gauge - 1) * gauge * gauge / dot(on, factors.solve(on));
+        if (!(gauge - 1 > exact) || !(ahead > 1e-16 * multiplier)) break;
+        multiplier += ahead;
+    }
+    const bool outside = multiplier > 0;
+    for (int i = 0; i < most; ++i) {
+        x_[i] = unit[i] * share[i] / (outside && shared[i] > 0 ? gauge : 1);
+    }
+    for (int i = 0; i < most; ++i) {
+        double size = 0;
+        const double flow = multiplier * shared[i] * x_[i] / (unit[i] * unit[i]);
+        report.residual = std::max(report.residual, std::abs(left(i, size) - flow));
+    }
+    if (!(report.residual <= allowed * report.scale)) return false;
+    block.state = outside ? BlockState::surface : BlockState::inside;
+    block.multiplier = multiplier;
     return true;
 }
 
 inline bool OnePair::solve(Island& island, IslandReport& report) noexcept {
-    constexpr int rounds = 40, together = 6;
     const std::size_t rows = island.rows.size();
     if (rows != std::size_t(most) || island.blocks.size() > 1) return false;
     const int a = island.rows[0].a, b = island.rows[0].b;
     for (const IslandRow& row : island.rows) {
         if (row.a != a || row.b != b) return false;
     }
-    for (const IslandBlock& block : island.blocks) {
-        if (block.kind != BlockKind::ellipsoid || block.count != most ||
-            block.state != BlockState::inside) {
-            return false;
-        }
-    }
+    if (!island.blocks.empty() && island.blocks[0].kind != BlockKind::ellipsoid) return false;
     island_ = &island;
-    blocked_ = !island.blocks.empty();
     for (auto& row : a_) std::fill(std::begin(row), std::end(row), 0.0);
     if (a >= 0) add(island.bodies[std::size_t(a)], &IslandRow::on_a, moved_a_);
     if (b >= 0) add(island.bodies[std::size_t(b)], &IslandRow::on_b, moved_b_);
@@ -160,45 +224,27 @@ inline bool OnePair::solve(Island& island, IslandReport& report) noexcept {
         a_[i][i] += row.compliance;
         finite += 0 * (a_[i][i] + row.target);
         fastest = std::max(fastest, std::abs(row.target));
-        side_[i] = blocked_ ? Side::free : row.lower < row.upper ? row.side : Side::lower;
-        x_[i] = side_[i] == Side::lower ? row.lower : side_[i] == Side::upper ? row.upper : 0;
     }
     if (!(finite == 0)) return false;
     report.scale = fastest;
-    for (report.rounds = 1; report.rounds <= rounds; ++report.rounds) {
-        ++report.factorisations;
-        if (!factor_and_solve()) return false;
-        int wrong = 0;
-        for (int i = 0; i < most && !(wrong > 0 && report.rounds > together); ++i) {
-            const Side side = where(i);
-            if (side == side_[i]) continue;
-            ++wrong;
-            side_[i] = side;
-            const IslandRow& row = island.rows[std::size_t(i)];
-            if (side != Side::free) x_[i] = side == Side::lower ? row.lower : row.upper;
-        }
-        if (wrong > 0) continue;
-        if (!inside_blocks()) return false;
-        for (int i = 0; i < most; ++i) {
-            double size = 0;
-            const double off = std::abs(left(i, size));
-            if (side_[i] == Side::free) report.residual = std::max(report.residual, off);
-            island.rows[std::size_t(i)].impulse = x_[i];
-            island.rows[std::size_t(i)].side = side_[i];
-        }
-        const auto move = [&](int body, const double(*moved)[most]) {
-            Vector6<double>& velocity = island.bodies[std::size_t(body)].velocity;
-            velocity.setZero();
-            for (int i = 0; i < most; ++i) {
-                for (int k = 0; k < 6; ++k) velocity[k] += moved[i][k] * x_[i];
-            }
-        };
-        for (IslandBody& body : island.bodies) body.velocity.setZero();
-        if (a >= 0) move(a, moved_a_);
-        if (b >= 0) move(b, moved_b_);
-        return true;
+    const bool solved =
+        island.blocks.empty() ? solve_bounded(report) : solve_ellipsoid(island.blocks[0], report);
+    if (!solved) return false;
+    for (int i = 0; i < most; ++i) {
+        island.rows[std::size_t(i)].impulse = x_[i];
+        island.rows[std::size_t(i)].side = side_[i];
     }
-    return false;
+    const auto move = [&](int body, const double(*moved)[most]) {
+        Vector6<double>& velocity = island.bodies[std::size_t(body)].velocity;
+        velocity.setZero();
+        for (int i = 0; i < most; ++i) {
+            for (int k = 0; k < 6; ++k) velocity[k] += moved[i][k] * x_[i];
+        }
+    };
+    for (IslandBody& body : island.bodies) body.velocity.setZero();
+    if (a >= 0) move(a, moved_a_);
+    if (b >= 0) move(b, moved_b_);
+    return true;
 }
 
 } // namespace detail

@@ -48,9 +48,6 @@ void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat
 [[nodiscard]] Vector6<double> forces_of(const solve::Island& island, const AnyLink<double>& link,
                                         int first, double dt) noexcept;
 
-/// Velocity of a row that a unit impulse of its own gives it, J M⁻¹ Jᵀ [1/kg | 1/(kg m²)].
-[[nodiscard]] double own_effect(const solve::Island& island, const solve::IslandRow& row) noexcept;
-
 /// The last rows are a contact, a normal first; `contact`: those that its friction couples to it,
 /// after it, with their coefficients. Says where the solve begins, from their impulses.
 void begin_contact(solve::Island& island, solve::IslandBlock contact);

@@ -171,18 +171,6 @@ DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, const AnyL
     return forces;
 }
 
-DUCTILE_INLINE double own_effect(const solve::Island& island,
-                                 const solve::IslandRow& row) noexcept {
-    double effect = 0;
-    const auto see = [&](int body, const Vector6<double>& on) {
-        if (body < 0) return;
-        effect += on.dot(island.bodies[std::size_t(body)].inverse_mass * on);
-    };
-    see(row.a, row.on_a);
-    see(row.b, row.on_b);
-    return effect;
-}
-
 DUCTILE_INLINE void begin_contact(solve::Island& island, solve::IslandBlock contact) {
     constexpr double slides = 1 - 1e-6;
     solve::IslandRow& normal = island.rows[std::size_t(contact.first)];

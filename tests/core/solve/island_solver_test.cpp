@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/solve/islands.hpp"
+#include "ductile/solve/one_pair.hpp"
 #include "reference/boxed_lcp.hpp"
 
 using namespace ductile::solve;
@@ -80,6 +81,33 @@ TEST_CASE("A joint between two bodies is solved on its surface, not within its r
         CHECK(violation(with, islands::system_matrix(with)) <= 1e-7);
         CHECK((with.blocks[0].state == BlockState::surface) == (cap < 1));
     }
+}
+
+TEST_CASE("A joint alone flows on its ellipsoid by the short way, whatever its strengths",
+          "[solve]") {
+    islands::Random make{std::mt19937(5)};
+    int flowing = 0;
+    for (int repeat = 0; repeat < 400; ++repeat) {
+        const int axes = 2 + repeat % 5, bodies = 1 + repeat % 2;
+        Island island;
+        for (int i = 0; i < bodies; ++i) island.bodies.push_back(body(make.decades(0, 2)));
+        add_joint(island, 0, bodies - 1 > 0 ? 1 : immovable, make.point(), make.point());
+        IslandBlock block{.first = int(make.uniform() * (7 - axes)), .count = axes};
+        for (int k = 0; k < axes; ++k) block.size[std::size_t(k)] = make.decades(-6, 2);
+        island.blocks.push_back(block);
+        for (IslandRow& row : island.rows) {
+            row.target = make.normal();
+            row.compliance = make.decades(-9, -2) * own_effect(island, row);
+        }
+        const Eigen::MatrixXd a = islands::system_matrix(island);
+        IslandReport report;
+        INFO("axes " << axes << ", bodies " << bodies << ", repeat " << repeat);
+        REQUIRE(solve_one_pair(island, report));
+        CHECK(violation(island, a) <= 1e-9 * report.scale);
+        CHECK(report.factorisations <= 12);
+        flowing += island.blocks[0].state == BlockState::surface;
+    }
+    CHECK(flowing > 300);
 }
 
 TEST_CASE("Rows that repeat each other share their force as their compliance says", "[solve]") {

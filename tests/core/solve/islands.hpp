@@ -42,13 +42,6 @@ inline Vector3<double> unit(int axis) {
     return result;
 }
 
-inline double own_effect(const Island& island, const IslandRow& row) {
-    double own = 0;
-    if (row.a >= 0) own += row.on_a.dot(island.bodies[std::size_t(row.a)].inverse_mass * row.on_a);
-    if (row.b >= 0) own += row.on_b.dot(island.bodies[std::size_t(row.b)].inverse_mass * row.on_b);
-    return own;
-}
-
 /// Six rows at a point: three forces, three moments. Returns the first.
 inline int add_joint(Island& island, int a, int b, const Vector3<double>& arm_a,
                      const Vector3<double>& arm_b) {

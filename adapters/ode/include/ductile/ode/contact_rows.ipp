@@ -53,7 +53,7 @@ DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat
         ductile::add_row(island, a, b, arm_a_, arm_b_, along, Vector3<double>::Zero(), target);
     row.impulse = dot(begins_, along) * dt;
     row.compliance = cfm / dt;
-    row.softness = softness_ * own_effect(island, row);
+    row.softness = softness_ * solve::own_effect(island, row);
     along_[std::size_t(count_++)] = along;
 }
 
