@@ -20,6 +20,7 @@
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/resting_islands.ipp>
 #include <ductile/ode/structure.ipp>
+#include <ductile/ode/structure_in_time.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
 #include <ductile/ode/world_parts.ipp>

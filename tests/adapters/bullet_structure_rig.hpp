@@ -49,6 +49,10 @@ class StructureRig {
         const StructureModel& model, const std::vector<bullet::OwnBody>& own = {}) {
         return std::make_unique<bullet::Structure>(*world_, model, own);
     }
+    [[nodiscard]] std::unique_ptr<bullet::StructureInTime> build_in_time(
+        const StructureModel& model) {
+        return std::make_unique<bullet::StructureInTime>(*world_, model);
+    }
     void forget() {} // what was built is gone: the engine knows
     /// That touches others; a mass of zero: static.
     Body box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
@@ -114,11 +118,22 @@ class StructureRig {
     [[nodiscard]] static Vector3<double> place(Body body) {
         return bullet::to_core(body->getCenterOfMassPosition());
     }
+    [[nodiscard]] static bool moves(Body body) { return !body->isStaticOrKinematicObject(); }
+    [[nodiscard]] static bool asleep(Body body) { return !body->isActive(); }
+    [[nodiscard]] static BodyMotion motion(Body body) {
+        return {bullet::to_core(body->getLinearVelocity()),
+                bullet::to_core(body->getAngularVelocity())};
+    }
+    [[nodiscard]] static Matrix3<double> inertia(Body body) {
+        return bullet::to_core(body->getInvInertiaTensorWorld().inverse());
+    }
     static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
         body->applyForce(bullet::to_bullet(force), bullet::to_bullet(at - place(body)));
     }
-    static void set_velocity(Body body, const Vector3<double>& velocity) {
+    static void set_velocity(Body body, const Vector3<double>& velocity,
+                             const Vector3<double>& spin = {0, 0, 0}) {
         body->setLinearVelocity(bullet::to_bullet(velocity));
+        body->setAngularVelocity(bullet::to_bullet(spin));
     }
 
     [[nodiscard]] std::size_t events() const { return events_; }

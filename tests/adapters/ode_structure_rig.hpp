@@ -34,6 +34,11 @@ class StructureRig {
         dWorldSetContactSurfaceLayer(id_, dReal(layer));
         parameters.warn = [this](const std::string& line) { lines_.push_back(line); };
         world_ = std::make_unique<ode::World>(id_, parameters);
+        if (parameters.tolerance > 0) {
+            world_->on_contacts({.space = space_, .group = contacts_},
+                                [this] { dSpaceCollide(space_, this, &StructureRig::touch); });
+        }
+        frames_ = parameters.tolerance > 0;
         dCreatePlane(space_, 0, 0, 1, 0);
     }
     StructureRig(const StructureRig&) = delete;
@@ -49,8 +54,17 @@ class StructureRig {
         built_ = made.get();
         return made;
     }
+    /// The same.
+    [[nodiscard]] std::unique_ptr<ode::StructureInTime> build_in_time(const StructureModel& model) {
+        auto made = std::make_unique<ode::StructureInTime>(*world_, space_, model);
+        in_time_ = made.get();
+        return made;
+    }
     /// What was built is gone.
-    void forget() { built_ = nullptr; }
+    void forget() {
+        built_ = nullptr;
+        in_time_ = nullptr;
+    }
     /// That touches others.
     Body box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
         dBodyID body = dBodyCreate(id_);
@@ -80,9 +94,9 @@ class StructureRig {
 
     void step(double dt) {
         if (damping_ != 0) each([this](dBodyID body) { apply_damping(body); });
-        dSpaceCollide(space_, this, &StructureRig::touch);
+        if (!frames_) dSpaceCollide(space_, this, &StructureRig::touch);
         world_->step(dt);
-        dJointGroupEmpty(contacts_);
+        if (!frames_) dJointGroupEmpty(contacts_);
         events_ += world_->events().size();
     }
     void run(double time, double dt) {
@@ -106,12 +120,20 @@ class StructureRig {
     [[nodiscard]] static Vector3<double> place(Body body) {
         return ode::to_core(dBodyGetPosition(body));
     }
+    [[nodiscard]] static bool moves(Body body) { return ode::can_move(body); }
+    [[nodiscard]] static bool asleep(Body body) { return dBodyIsEnabled(body) == 0; }
+    [[nodiscard]] static BodyMotion motion(Body body) {
+        return {ode::linear_velocity(body), ode::angular_velocity(body)};
+    }
+    [[nodiscard]] static Matrix3<double> inertia(Body body) { return ode::inertia(body); }
     static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
         dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
                            dReal(at.x()), dReal(at.y()), dReal(at.z()));
     }
-    static void set_velocity(Body body, const Vector3<double>& v) {
+    static void set_velocity(Body body, const Vector3<double>& v,
+                             const Vector3<double>& spin = {0, 0, 0}) {
         dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
+        dBodySetAngularVel(body, dReal(spin.x()), dReal(spin.y()), dReal(spin.z()));
     }
 
     [[nodiscard]] std::size_t events() const { return events_; }
@@ -121,6 +143,11 @@ class StructureRig {
     template <class Visit>
     void each(const Visit& visit) {
         for (dBodyID body : own_) visit(body);
+        if (in_time_ != nullptr) {
+            for (dBodyID body : in_time_->bodies()) {
+                if (moves(body)) visit(body);
+            }
+        }
         if (built_ == nullptr) return;
         for (std::size_t i = 0; i < built_->plan().bodies.size(); ++i) {
             if (built_->has_body(i)) visit(built_->body(i));
@@ -160,6 +187,8 @@ class StructureRig {
     std::unique_ptr<ode::World> world_;
     std::vector<std::unique_ptr<Joint>> joints_;
     const ode::Structure* built_ = nullptr;
+    const ode::StructureInTime* in_time_ = nullptr;
+    bool frames_ = false;
     double damping_ = 0, friction_ = 0.6;
     std::size_t events_ = 0;
 };

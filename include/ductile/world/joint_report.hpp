@@ -4,7 +4,9 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <optional>
+#include <string>
 
 #include "ductile/fracture/event.hpp"
 #include "ductile/joint/joint_totals.hpp"
@@ -61,5 +63,12 @@ template <std::floating_point S>
     last.outcome = Outcome::elastic;
     return last;
 }
+
+/// Of what may open: under which key it is reported, as what, how it went.
+struct DivisionReport {
+    const void* key;
+    std::string name;
+    std::function<JointReport<double>()> ask;
+};
 
 } // namespace ductile

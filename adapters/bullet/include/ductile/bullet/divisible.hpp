@@ -6,9 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <LinearMath/btVector3.h>
 
-#include <functional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "ductile/bullet/piece_maker.hpp"
@@ -29,13 +27,6 @@ struct BodyBefore {
 struct DivisionChange {
     const void* key;
     int section;
-};
-
-/// Of what may open: under which key it is reported, as what, how it went.
-struct DivisionReport {
-    const void* key;
-    std::string name;
-    std::function<JointReport<double>()> ask;
 };
 
 /// Contacts that act on it, as body A or B of these.

@@ -17,16 +17,9 @@
 namespace ductile::bullet {
 
 DUCTILE_INLINE StructureInTime::StructureInTime(World& world, const StructureModel& model)
-    : BuiltStructure(make_plan(model)),
-      world_(world),
-      gravity_(world.engine().getGravity()),
-      course_(plan()) {
+    : DividedStructure(model), world_(world), gravity_(world.engine().getGravity()) {
     for (const PlanBody& body : plan().bodies) {
         boxes_.push_back(std::make_unique<btBoxShape>(to_bullet(body.half_lengths)));
-    }
-    for (std::size_t j = 0; j < plan().joints.size(); ++j) {
-        const PlanJoint* key = &plan().joints[j];
-        reports_.push_back({key, key->name, [this, j] { return report(j); }});
     }
     for (std::size_t c = 0; c < course_.clusters().size(); ++c) {
         pieces_.push_back(make_cluster(c, nullptr));
@@ -59,66 +52,20 @@ DUCTILE_INLINE btRigidBody& StructureInTime::body_of(std::string_view member,
     return *pieces_[course_.cluster_of(present_body(plan().body(member, piece)))].body;
 }
 
-DUCTILE_INLINE const StructureInTime::OpenJoint* StructureInTime::open_joint(
-    std::size_t joint) const {
-    const auto found = std::find_if(joints_.begin(), joints_.end(),
-                                    [joint](const auto& open) { return open.joint == joint; });
-    return found != joints_.end() ? &*found : nullptr;
-}
-
-DUCTILE_INLINE Vector6<double> StructureInTime::force(std::string_view member,
-                                                      MemberEnd end) const {
-    const std::size_t j = present_joint(plan().joint(member, end));
-    const OpenJoint* open = open_joint(j);
-    return open != nullptr ? forces_of(*open->constraint) : course_.force(j);
-}
-
-DUCTILE_INLINE JointReport<double> StructureInTime::report(std::size_t joint) const {
-    if (const OpenJoint* open = open_joint(joint)) return open->constraint->report();
-    JointReport<double> report;
-    const auto& state = course_.joint(joint).state;
-    if (!state) return report;
-    report.plastic_travel = state->joint.plastic_travel;
-    report.absorbed_energy = state->joint.plastic_work;
-    return report;
-}
-
-DUCTILE_INLINE double StructureInTime::utilisation_of(std::size_t joint) const {
-    if (open_joint(joint) != nullptr) return queries(joint).utilisation();
-    return plan().joints[joint].joint.surface().value(course_.force(joint));
-}
 DUCTILE_INLINE const void* StructureInTime::key_of(const PlasticConstraint& joint,
                                                    int& section) const {
-    for (const OpenJoint& open : joints_) {
-        if (open.constraint.get() != &joint) continue;
-        section = int(open.joint);
-        return &plan().joints[open.joint];
-    }
-    return nullptr;
+    const auto index = index_of(joint);
+    if (!index) return nullptr;
+    section = int(*index);
+    return DividedStructure::key_of(*index);
 }
 
 // ---- its bodies
 
-DUCTILE_INLINE std::vector<PlacedBody> StructureInTime::placed_clusters() const {
-    std::vector<PlacedBody> all;
-    for (std::size_t c = 0; c < pieces_.size(); ++c) {
-        const btRigidBody& body = *pieces_[c].body;
-        PlacedBody& placed = all.emplace_back();
-        if (course_.clusters()[c].held) continue;
-        placed.pose = to_core(body.getCenterOfMassTransform());
-        placed.motion = {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
-    }
-    return all;
-}
-
-/// Into the course what open joints went through and carry.
-DUCTILE_INLINE void StructureInTime::note_joints() {
-    for (const OpenJoint& open : joints_) {
-        auto& state = course_.joint(open.joint).state;
-        state = open.constraint->state();
-        if (!open.constraint->is_awake_member()) state->joint.flowing = false; // not any more
-        course_.force(open.joint) = forces_of(*open.constraint);
-    }
+DUCTILE_INLINE PlacedBody StructureInTime::cluster_now(std::size_t c) const {
+    const btRigidBody& body = *pieces_[c].body;
+    return {to_core(body.getCenterOfMassTransform()),
+            {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())}};
 }
 
 DUCTILE_INLINE PieceBody StructureInTime::make_cluster(std::size_t c, const btRigidBody* like) {
@@ -154,21 +101,7 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
     proved_.reset();
     passing_.clear();
     std::vector<PieceBody> old = std::exchange(pieces_, {});
-    std::vector<const btRigidBody*> now(change.kept.size(), nullptr);
-    for (std::size_t c = 0; c < change.kept.size(); ++c) {
-        if (change.kept[c]) now[c] = old[*change.kept[c]].body;
-    }
-    // constraints end before their bodies
-    std::erase_if(joints_, [&](const OpenJoint& open) {
-        const PlanJoint& joint = plan().joints[open.joint];
-        const auto& course = course_.joint(open.joint);
-        const bool ground = joint.b.kind == PlanSeat::Kind::ground;
-        const bool stays =
-            course.there && course.open &&
-            now[course_.cluster_of(joint.a)] == &open.constraint->getRigidBodyA() &&
-            (ground || now[course_.cluster_of(joint.b.index)] == &open.constraint->getRigidBodyB());
-        return !stays;
-    });
+    end_joints(change); // before their bodies do
     const btRigidBody* like = old.empty() ? nullptr : old.front().body;
     for (std::size_t c = 0; c < change.kept.size(); ++c) {
         if (change.kept[c]) {
@@ -181,7 +114,22 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
         if (piece.own != nullptr) world_.engine().removeRigidBody(piece.body);
     }
     let_neighbours_pass();
-    make_joints(ahead);
+    make_joints(
+        [this](std::size_t j, std::size_t a, const JointFrame<double>& in_a,
+               std::optional<std::size_t> b, const JointFrame<double>& in_b) {
+            btRigidBody& other = b ? *pieces_[*b].body : btTypedConstraint::getFixedBody();
+            return OpenJoint{j, std::make_unique<btJointFeedback>(),
+                             std::make_unique<Joint>(*pieces_[a].body, other, to_bullet(in_a),
+                                                     to_bullet(in_b), plan().joints[j].joint,
+                                                     all_joint_axes, Meeting::as_they_are)};
+        },
+        [this, ahead](OpenJoint& open) {
+            open.constraint->setJointFeedback(open.feedback.get());
+            open.constraint->set_ahead(ahead);
+            open.constraint->add_to(world_.engine(), !stands_on_ground(open.joint));
+            if (ahead) open.constraint->begin_part();
+            world_.look_after_rest(*open.constraint);
+        });
 }
 
 DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
@@ -191,65 +139,6 @@ DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
                     &other = *pieces_[course_.cluster_of(b)].body;
         if (&one != &other) passing_.add(one, other);
     }
-}
-
-DUCTILE_INLINE void StructureInTime::make_joints(bool ahead) {
-    for (std::size_t j = 0; j < plan().joints.size(); ++j) {
-        const PlanJoint& joint = plan().joints[j];
-        if (!course_.joint(j).there || !course_.joint(j).open || open_joint(j) != nullptr) continue;
-        const auto side = [&](std::size_t body, const JointFrame<double>& frame) {
-            const std::size_t c = course_.cluster_of(body);
-            return std::pair<btRigidBody&, btTransform>(
-                *pieces_[c].body, to_bullet(placed(course_.clusters()[c].place(body), frame)));
-        };
-        const auto& [in_a, in_b] = course_.frames(j);
-        const bool ground = joint.b.kind == PlanSeat::Kind::ground;
-        const auto a = side(joint.a, in_a);
-        const auto b = ground ? std::pair<btRigidBody&, btTransform>(
-                                    btTypedConstraint::getFixedBody(), to_bullet(in_b))
-                              : side(joint.b.index, in_b);
-        if (&a.first == &b.first) continue; // what it joins hangs together by other joints, too
-        OpenJoint open{j, std::make_unique<btJointFeedback>(), nullptr};
-        open.constraint = std::make_unique<Joint>(a.first, b.first, a.second, b.second, joint.joint,
-                                                  all_joint_axes, Meeting::as_they_are);
-        if (course_.joint(j).state) open.constraint->restore(*course_.joint(j).state);
-        open.constraint->setJointFeedback(open.feedback.get());
-        open.constraint->set_ahead(ahead);
-        open.constraint->add_to(world_.engine(), !ground);
-        if (ahead) open.constraint->begin_part();
-        world_.look_after_rest(*open.constraint);
-        joints_.push_back(std::move(open));
-    }
-}
-
-// ---- what BuiltStructure asks
-
-DUCTILE_INLINE JointFrame<double> StructureInTime::frame_of(const PlanSeat& seat) const {
-    const std::size_t c = course_.cluster_of(seat.index);
-    const Cluster& cluster = course_.clusters()[c];
-    const JointFrame<double> pose =
-        cluster.held ? JointFrame<double>{} : to_core(pieces_[c].body->getCenterOfMassTransform());
-    return placed(pose, cluster.place(seat.index));
-}
-
-DUCTILE_INLINE void StructureInTime::push(const PlanSeat& seat, const Vector3<double>& force,
-                                          const Vector3<double>& at) {
-    const JointFrame<double> frame = frame_of(seat);
-    forces_.push_back(
-        {seat.index, force, transposed_times(frame.axes, difference(at, frame.origin))});
-    pieces_[course_.cluster_of(seat.index)].body->activate();
-}
-
-DUCTILE_INLINE void StructureInTime::drop_joint(std::size_t joint) {
-    note_joints();
-    become(course_.remove_joint(joint, placed_clusters()), {});
-    if (!left_) world_.rearranged(*this);
-}
-DUCTILE_INLINE void StructureInTime::drop_body(std::size_t body) {
-    note_joints();
-    std::erase_if(forces_, [body](const Force& force) { return force.body == body; });
-    become(course_.remove_body(body, placed_clusters()), {});
-    if (!left_) world_.rearranged(*this);
 }
 
 DUCTILE_INLINE void StructureInTime::wake() {
@@ -268,17 +157,11 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 // ---- what the world asks
 
 DUCTILE_INLINE void StructureInTime::apply_forces() {
-    for (const Force& force : forces_) {
-        btRigidBody& body = *pieces_[course_.cluster_of(force.body)].body;
-        if (body.isStaticObject()) continue;
-        const JointFrame<double> at = frame_of({PlanSeat::Kind::body, force.body});
-        body.applyForce(to_bullet(force.force),
-                        to_bullet(sum(at.origin, times(at.axes, force.in_body))) -
-                            body.getCenterOfMassPosition());
-    }
+    add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
+        btRigidBody& body = *pieces_[c].body;
+        body.applyForce(to_bullet(force), to_bullet(at) - body.getCenterOfMassPosition());
+    });
 }
-
-DUCTILE_INLINE void StructureInTime::begin() { touches_.clear(); }
 
 /// Nothing acts on it but what it carried before.
 DUCTILE_INLINE bool StructureInTime::rests() const {
@@ -317,34 +200,25 @@ DUCTILE_INLINE void StructureInTime::read_contact(const ContactTouch& touch,
 
 DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore> before,
                                           const btVector3& gravity) {
-    loads_.clear();
+    begin_read();
     struck_ = 0;
-    steps_.assign(pieces_.size(), {});
     for (std::size_t c = 0; c < pieces_.size(); ++c) {
         if (course_.clusters()[c].held) continue;
         const int place = pieces_[c].body->getWorldArrayIndex();
         steps_[c].pose = to_core(before[std::size_t(place)].pose);
     }
     for (const ContactTouch& touch : touches_) read_contact(touch, before);
-    const auto add = [&](const btVector3& force, const btVector3& torque, std::size_t body) {
-        // about the centre of its cluster's body
-        loads_.push_back({body, steps_[course_.cluster_of(body)].pose.origin,
-                          scaled(dt, to_core(force)), scaled(dt, to_core(torque))});
+    const auto add = [&](std::size_t body, const btVector3& force, const btVector3& torque) {
+        add_load(body, to_core(force), to_core(torque), dt);
     };
     for (const OpenJoint& open : joints_) {
         if (!open.constraint->isEnabled()) continue;
         const PlanJoint& joint = plan().joints[open.joint];
-        add(open.feedback->m_appliedForceBodyA, open.feedback->m_appliedTorqueBodyA, joint.a);
-        if (joint.b.kind != PlanSeat::Kind::body) continue;
-        add(open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB, joint.b.index);
+        add(joint.a, open.feedback->m_appliedForceBodyA, open.feedback->m_appliedTorqueBodyA);
+        if (stands_on_ground(open.joint)) continue;
+        add(joint.b.index, open.feedback->m_appliedForceBodyB, open.feedback->m_appliedTorqueBodyB);
     }
-    for (const Force& force : forces_) {
-        const std::size_t c = course_.cluster_of(force.body);
-        const JointFrame<double> at =
-            placed(steps_[c].pose, course_.clusters()[c].place(force.body));
-        loads_.push_back({force.body, sum(at.origin, times(at.axes, force.in_body)),
-                          scaled(dt, force.force), Vector3<double>::Zero()});
-    }
+    read_forces(dt);
     for (std::size_t c = 0; c < pieces_.size(); ++c) {
         ClusterStep& step = steps_[c];
         const btRigidBody& body = *pieces_[c].body;
@@ -381,7 +255,8 @@ DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ah
     note_joints();
     const std::vector<int> opened(sections.begin(), sections.end());
     become(course_.open(opened, placed_clusters()), ahead);
-    for (const int joint : opened) told.push_back({&plan().joints[std::size_t(joint)], joint});
+    for (const int joint : opened)
+        told.push_back({DividedStructure::key_of(std::size_t(joint)), joint});
 }
 
 DUCTILE_INLINE bool StructureInTime::close_held(Closing when, bool ahead,
@@ -391,7 +266,8 @@ DUCTILE_INLINE bool StructureInTime::close_held(Closing when, bool ahead,
     const std::vector<int> held = course_.held();
     if (held.empty()) return false;
     become(course_.close(held, placed_clusters()), ahead);
-    for (const int joint : held) told.push_back({&plan().joints[std::size_t(joint)], joint});
+    for (const int joint : held)
+        told.push_back({DividedStructure::key_of(std::size_t(joint)), joint});
     return true;
 }
 

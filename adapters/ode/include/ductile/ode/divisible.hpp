@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// What is fewer bodies than it may come to be, as a World sees it: a member (member.hpp).
+// What is fewer bodies than it may come to be, as a World sees it: a member, a structure.
 #pragma once
 
 #include <ode/ode.h>
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ductile/member/active_sections.hpp"
@@ -26,7 +27,7 @@ struct Touch {
     Vector3<double> point, normal;
     double closing = 0;                       ///< speed before the solve [m/s]
     const dJointFeedback* feedback = nullptr; ///< of the step, once it is solved
-    int segment = 0;                          ///< that it acts on, once it was read
+    int segment = 0;                          ///< or body of a plan, on which it acts, once read
 
     /// As the bodies move now [m/s].
     [[nodiscard]] double closing_speed() const {
@@ -54,9 +55,12 @@ class Divisible {
     [[nodiscard]] virtual bool is_open() const = 0;
     /// The bodies that it is now.
     [[nodiscard]] virtual std::vector<dBodyID> bodies() const = 0;
-    [[nodiscard]] virtual JointReport<double> section_report() const = 0;
+    /// Under which keys what may open is reported, as what; `name`: the user's.
+    [[nodiscard]] virtual std::vector<DivisionReport> reports(const std::string& name) const = 0;
     /// Of a joint of its own; no_section: it is not.
     [[nodiscard]] virtual int section_of(const PlasticConstraint& joint) const = 0;
+    /// Under which a section is reported.
+    [[nodiscard]] virtual const void* key_of(int /*section*/) const { return this; }
     /// Whether contacts between two bodies of it are not to be.
     [[nodiscard]] virtual bool hangs_together(dBodyID a, dBodyID b) const = 0;
     /// Of sections that are closed [J]; that of a least travel, 0: of none.
@@ -79,7 +83,7 @@ class Divisible {
     virtual void begin_blow() = 0;
     virtual void find_struck(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;
     virtual void open(std::span<const int> sections, bool ahead) = 0;
-    /// Has a segment now.
+    /// Has a segment, or body of a plan, now.
     [[nodiscard]] virtual dBodyID body_of(int segment) const = 0;
     /// A step stands: what it left in vibration, of what its sections took [J].
     virtual double count_vibration() = 0;

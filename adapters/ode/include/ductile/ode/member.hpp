@@ -37,6 +37,7 @@
 #include "ductile/member/divided_member.hpp"
 #include "ductile/ode/divisible.hpp"
 #include "ductile/ode/member_geoms.hpp"
+#include "ductile/ode/piece.hpp"
 #include "ductile/ode/plastic_hinge.hpp"
 #include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -88,10 +89,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         MemberRun run{};
         bool own = false; ///< else the user's
     };
-    /// What acts on a body, about its centre of mass [N], [N m].
-    struct Wrench {
-        Vector3<double> force = Vector3<double>::Zero(), torque = force;
-    };
     /// A joint of the user's on a body of the member.
     struct Hold {
         dJointID joint;
@@ -101,18 +98,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         bool support = false; ///< by what cannot move
         Wrench wrench{};      ///< when it was last solved; the ledger may have lent its feedback
     };
-    /// By a body that touches a clamped member.
-    struct Pressed {
-        dBodyID body;
-        Vector3<double> point; ///< [m]
-        Vector3<double> force; ///< [N]
-    };
-    /// Of a piece, where the step solves it.
-    struct Before {
-        JointFrame<double> pose; ///< of its body
-        BodyMotion motion, after;
-        bool solved = false;
-    };
     // ---- what the World asks
 
     DUCTILE_INLINE void enter(World& world) override;
@@ -121,7 +106,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void body_came(dBodyID body) override { is_missing_ = is_missing_ && body != user_; }
     [[nodiscard]] bool is_open() const override { return !joints_.empty(); }
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
-    [[nodiscard]] JointReport<double> section_report() const override { return report(); }
+    [[nodiscard]] std::vector<DivisionReport> reports(const std::string& name) const override {
+        return {{static_cast<const Divisible*>(this), name, [this] { return report(); }}};
+    }
     [[nodiscard]] DUCTILE_INLINE int section_of(const PlasticConstraint& joint) const override;
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
@@ -158,13 +145,10 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
 
     // ---- a step
 
-    void find_asleep(std::span<const Touch> touches);
     [[nodiscard]] double sum_of_impulses(double dt, std::span<const Touch> touches) const;
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
     void read_steps(double dt);
-    [[nodiscard]] static Wrench wrench_of(const OpenSection& open, bool of_upper);
-    [[nodiscard]] static Wrench wrench_of(const dJointFeedback& feedback, bool of_a);
     void add_load(const Wrench& wrench, int segment, double dt);
 
     dBodyID user_;
@@ -177,8 +161,8 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     std::vector<PieceBody> pieces_;
     std::vector<Hold> holds_;
     std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
-    std::vector<Before> before_;                         ///< by piece
-    std::vector<Pressed> pressed_, asleep_; ///< when it was last solved; of these, what sleeps
+    std::vector<PieceCourse> before_;                    ///< by piece
+    PressedTouches pressed_;                             ///< of a clamped one that is whole
     std::vector<PieceStep> steps_;
     std::vector<MemberLoad> loads_;
 };

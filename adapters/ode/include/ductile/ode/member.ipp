@@ -15,12 +15,6 @@ namespace ductile::ode {
 
 namespace detail {
 
-[[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(dBodyID body) {
-    return {to_core(dBodyGetPosition(body)), matrix_to_core(dBodyGetRotation(body))};
-}
-[[nodiscard]] DUCTILE_INLINE BodyMotion motion_of(dBodyID body) {
-    return {linear_velocity(body), angular_velocity(body)};
-}
 [[nodiscard]] DUCTILE_INLINE dBodyID require_body(dBodyID body) {
     if (body == nullptr) throw std::invalid_argument("Member.body = null: must be a body");
     return body;

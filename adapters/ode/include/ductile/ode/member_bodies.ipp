@@ -20,51 +20,6 @@ namespace ductile::ode {
 
 namespace detail {
 
-DUCTILE_INLINE void put(dBodyID body, const JointFrame<double>& pose, const BodyMotion& motion) {
-    dMatrix3 turned{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) {
-            turned[4 * row + column] = dReal(pose.axes(row, column));
-        }
-    }
-    const Vector3<double>&at = pose.origin, &v = motion.velocity, &w = motion.spin;
-    dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
-    dBodySetRotation(body, turned);
-    dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
-    dBodySetAngularVel(body, dReal(w.x()), dReal(w.y()), dReal(w.z()));
-    dBodySetForce(body, 0, 0, 0);
-    dBodySetTorque(body, 0, 0, 0);
-}
-
-DUCTILE_INLINE void set_mass(dBodyID body, const MemberPiece& piece) {
-    dMass mass;
-    dMassSetParameters(&mass, dReal(piece.mass), 0, 0, 0, dReal(piece.inertia[0]),
-                       dReal(piece.inertia[1]), dReal(piece.inertia[2]), 0, 0, 0);
-    dBodySetMass(body, &mass);
-}
-
-DUCTILE_INLINE void copy_manners(dBodyID from, dBodyID body) {
-    dBodySetAutoDisableFlag(body, dBodyGetAutoDisableFlag(from));
-    dBodySetAutoDisableLinearThreshold(body, dBodyGetAutoDisableLinearThreshold(from));
-    dBodySetAutoDisableAngularThreshold(body, dBodyGetAutoDisableAngularThreshold(from));
-    dBodySetAutoDisableSteps(body, dBodyGetAutoDisableSteps(from));
-    dBodySetAutoDisableTime(body, dBodyGetAutoDisableTime(from));
-    dBodySetAutoDisableAverageSamplesCount(body,
-                                           unsigned(dBodyGetAutoDisableAverageSamplesCount(from)));
-    dBodySetLinearDamping(body, dBodyGetLinearDamping(from));
-    dBodySetLinearDampingThreshold(body, dBodyGetLinearDampingThreshold(from));
-    dBodySetAngularDamping(body, dBodyGetAngularDamping(from));
-    dBodySetAngularDampingThreshold(body, dBodyGetAngularDampingThreshold(from));
-    dBodySetMaxAngularSpeed(body, dBodyGetMaxAngularSpeed(from));
-    dBodySetGravityMode(body, dBodyGetGravityMode(from));
-    dBodySetGyroscopicMode(body, dBodyGetGyroscopicMode(from));
-    dBodySetFiniteRotationMode(body, dBodyGetFiniteRotationMode(from));
-    dVector3 axis;
-    dBodyGetFiniteRotationAxis(from, axis);
-    dBodySetFiniteRotationAxis(body, axis[0], axis[1], axis[2]);
-    dBodySetData(body, dBodyGetData(from));
-}
-
 /// Anchors stay where they are, each on its own body.
 DUCTILE_INLINE void attach_ball(dJointID joint, dBodyID first, dBodyID second) {
     dVector3 on_first, on_second;
@@ -185,7 +140,7 @@ DUCTILE_INLINE auto Member::make_body(const PlacedPiece& placed) -> PieceBody {
         return {user_, of.run, false};
     }
     const dBodyID body = dBodyCreate(dBodyGetWorld(user_));
-    detail::set_mass(body, of);
+    detail::set_mass(body, of.mass, of.inertia);
     detail::copy_manners(user_, body);
     detail::put(body, placed.pose, placed.motion);
     world_->add(body);
@@ -208,7 +163,7 @@ DUCTILE_INLINE void Member::put_whole(const PlacedPiece& placed) {
         whole_in_body_ = first_in_body_;
     } else {
         // the frame of a piece is that of its centre and main axes
-        detail::set_mass(user_, of);
+        detail::set_mass(user_, of.mass, of.inertia);
         whole_in_body_ = {};
     }
     detail::put(user_, frame_around(placed.pose, whole_in_body_), placed.motion);

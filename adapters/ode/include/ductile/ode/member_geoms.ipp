@@ -5,6 +5,7 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/member_geoms.hpp"
+#include "ductile/ode/piece.hpp"
 
 namespace ductile::ode {
 
@@ -28,15 +29,7 @@ DUCTILE_INLINE MemberGeoms::MemberGeoms(dBodyID user, const ductile::Member& mem
 DUCTILE_INLINE void MemberGeoms::place(dGeomID geom, dBodyID body,
                                        const JointFrame<double>& in_body) {
     if (dGeomGetBody(geom) != body) dGeomSetBody(geom, body); // forgets the offset
-    const Vector3<double>& at = in_body.origin;
-    dMatrix3 turned{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 3; ++column) {
-            turned[4 * row + column] = dReal(in_body.axes(row, column));
-        }
-    }
-    dGeomSetOffsetPosition(geom, dReal(at.x()), dReal(at.y()), dReal(at.z()));
-    dGeomSetOffsetRotation(geom, turned);
+    detail::set_offset(geom, in_body);
 }
 
 DUCTILE_INLINE void MemberGeoms::put_straight() {

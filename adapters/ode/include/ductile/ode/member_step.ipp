@@ -12,21 +12,6 @@
 
 namespace ductile::ode {
 
-namespace detail {
-
-/// Before ODE damped it, after its solve.
-[[nodiscard]] DUCTILE_INLINE Vector3<double> undamped(const Vector3<double>& velocity, double share,
-                                                      double threshold) {
-    const Vector3<double> before = scaled(1 / (1 - share), velocity);
-    return share > 0 && share < 1 && norm(before) > threshold ? before : velocity;
-}
-
-[[nodiscard]] DUCTILE_INLINE bool is_solved(dBodyID body) {
-    return can_move(body) && dBodyIsEnabled(body) != 0;
-}
-
-} // namespace detail
-
 DUCTILE_INLINE void Member::apply_forces() {
     for (const Force& force : forces_) {
         const dBodyID body = body_of(force.at.segment);
@@ -41,13 +26,7 @@ DUCTILE_INLINE void Member::apply_forces() {
 DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     before_.clear();
-    for (const PieceBody& piece : pieces_) {
-        Before& before = before_.emplace_back();
-        before.pose = detail::frame_of(piece.body);
-        before.solved = detail::is_solved(piece.body);
-        if (!before.solved) continue;
-        before.motion = detail::motion_of(piece.body);
-    }
+    for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
@@ -61,30 +40,11 @@ DUCTILE_INLINE void Member::after_solve() {
         hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
-        const dBodyID body = pieces_[i].body;
-        before_[i].solved = detail::is_solved(body);
-        before_[i].after = {
-            detail::undamped(linear_velocity(body), double(dBodyGetLinearDamping(body)),
-                             double(dBodyGetLinearDampingThreshold(body))),
-            detail::undamped(angular_velocity(body), double(dBodyGetAngularDamping(body)),
-                             double(dBodyGetAngularDampingThreshold(body)))};
+        before_[i].see(pieces_[i].body);
     }
 }
 
 // ---- after it
-
-DUCTILE_INLINE auto Member::wrench_of(const dJointFeedback& feedback, bool of_a) -> Wrench {
-    return of_a ? Wrench{to_core(feedback.f1), to_core(feedback.t1)}
-                : Wrench{to_core(feedback.f2), to_core(feedback.t2)};
-}
-/// What the rows of a section gave, its angular motor and the rest.
-DUCTILE_INLINE auto Member::wrench_of(const OpenSection& open, bool of_upper) -> Wrench {
-    const OutsideForce& outside = open.hinge->outside_force();
-    Wrench wrench = wrench_of(*dJointGetFeedback(open.hinge->id()), of_upper);
-    wrench.force = sum(wrench.force, scaled(of_upper ? 1 : -1, outside.force));
-    wrench.torque = sum(wrench.torque, of_upper ? outside.torque_a : outside.torque_b);
-    return wrench;
-}
 
 /// Of joints and contacts that acted on it [N s].
 DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> touches) const {
@@ -96,12 +56,12 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
     for (const Touch& touch : touches) {
         all += dt * norm(wrench_of(*touch.feedback, touch.of_a).force);
     }
-    for (const Pressed& asleep : asleep_) all += dt * norm(asleep.force);
+    for (const PressedTouches::Pressed& asleep : pressed_.asleep()) all += dt * norm(asleep.force);
     for (const Hold& hold : holds_) {
         if (hold.acts) add(hold.wrench);
     }
     for (const OpenSection& open : joints_) {
-        for (const bool of_upper : {true, false}) add(wrench_of(open, of_upper));
+        for (const bool of_upper : {true, false}) add(wrench_of(*open.hinge, of_upper));
     }
     for (const Force& force : forces_) all += dt * norm(force.force);
     return all;
@@ -145,7 +105,7 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
                                         touch.point);
         add_load(wrench_of(*touch.feedback, touch.of_a), touch.segment, dt);
     }
-    for (const Pressed& asleep : asleep_) {
+    for (const PressedTouches::Pressed& asleep : pressed_.asleep()) {
         const auto piece = std::size_t(&piece_on(user_) - pieces_.data());
         const int segment = nearest_segment(description(), course_.pieces()[piece],
                                             steps_[piece].pose, asleep.point);
@@ -163,10 +123,10 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
     }
     for (const OpenSection& open : joints_) {
         if (!open.hinge->is_awake_member()) continue;
-        add_load(wrench_of(open, true), open.section + 1, dt);
+        add_load(wrench_of(*open.hinge, true), open.section + 1, dt);
         // one that is held on the static world says nothing of that
         if (pieces_[course_.piece_of(open.section)].own) {
-            add_load(wrench_of(open, false), open.section, dt);
+            add_load(wrench_of(*open.hinge, false), open.section, dt);
         } else {
             const MemberLoad upper = loads_.back();
             loads_.push_back(
@@ -185,7 +145,7 @@ DUCTILE_INLINE void Member::read_steps(double dt) {
     const Vector3<double> fallen = scaled(dt, to_core(world_gravity));
     steps_.resize(pieces_.size());
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-        const Before& before = before_[i];
+        const PieceCourse& before = before_[i];
         const MemberPiece& piece = course_.pieces()[i];
         PieceStep& step = steps_[i] = {};
         step.pose = placed(before.pose, in_body(i));
@@ -194,54 +154,19 @@ DUCTILE_INLINE void Member::read_steps(double dt) {
             continue;
         }
         if (!before.solved) continue;
-        const dBodyID body = pieces_[i].body;
-        step.change.velocity = difference(before.after.velocity, before.motion.velocity);
-        if (dBodyGetGravityMode(body) != 0) {
-            step.change.velocity = difference(step.change.velocity, fallen);
-        }
+        step.change = before.change(pieces_[i].body, fallen, piece.inertia_in_world(step.pose.axes),
+                                    piece.inverse_inertia_in_world(step.pose.axes), dt, step.dt);
         step.spin = before.motion.spin;
-        // the body's inertia may be the user's, and ODE's gyroscopic moment is an implicit one
-        dMass mass;
-        dBodyGetMass(body, &mass);
-        const Matrix3<double> inertia = sandwiched(before.pose.axes, matrix_to_core(mass.I));
-        Vector3<double> about = times(inertia, difference(before.after.spin, before.motion.spin));
-        if (dBodyGetGyroscopicMode(body) != 0) {
-            step.dt = dt;
-            const Vector3<double> own = times(piece.inertia_in_world(step.pose.axes), step.spin);
-            about = difference(about, sum(gyroscopic_impulse(body, inertia, step.spin, dt),
-                                          scaled(dt, cross(step.spin, own))));
-        }
-        step.change.spin = times(piece.inverse_inertia_in_world(step.pose.axes), about);
-    }
-}
-
-/// Of a clamped member that is whole: what touches it and sleeps presses as when it was solved.
-DUCTILE_INLINE void Member::find_asleep(std::span<const Touch> touches) {
-    asleep_.clear();
-    if (!description().clamped() || !whole()) {
-        pressed_.clear();
-        return;
-    }
-    const auto other_of = [](const Touch& touch) {
-        return touch.of_a ? touch.bodies.b : touch.bodies.a;
-    };
-    std::erase_if(pressed_, [&](const Pressed& was) {
-        const auto touch = std::find_if(touches.begin(), touches.end(), [&](const Touch& each) {
-            return other_of(each) == was.body;
-        });
-        return touch == touches.end() || detail::is_solved(was.body);
-    });
-    asleep_.assign(pressed_.begin(), pressed_.end());
-    for (const Touch& touch : touches) {
-        if (!detail::is_solved(other_of(touch))) continue;
-        pressed_.push_back(
-            {other_of(touch), touch.point, wrench_of(*touch.feedback, touch.of_a).force});
     }
 }
 
 DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
-    find_asleep(touches);
+    if (description().clamped() && whole()) {
+        pressed_.see(touches);
+    } else {
+        pressed_.forget();
+    }
     if (!may_be_beyond(dt, touches)) return;
     read(dt, touches);
     sections = course_.beyond(steps_, loads_, dt);

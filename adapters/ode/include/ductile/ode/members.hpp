@@ -38,6 +38,8 @@ class Members {
     void remove(Divisible& member);
     [[nodiscard]] bool empty() const noexcept { return members_.empty(); }
     [[nodiscard]] bool has(const Divisible& member) const noexcept;
+    /// Bodies of one are others than they were, and not by a step.
+    void rearranged() { note_bodies(); }
     /// All of them leave.
     void leave();
     /// All bodies that they are now.

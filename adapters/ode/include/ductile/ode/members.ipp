@@ -53,7 +53,7 @@ DUCTILE_INLINE void Members::body_came(dBodyID body) {
 DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
     for (const Course& course : members_) {
         section = course.of->section_of(joint);
-        if (section >= 0) return course.of;
+        if (section >= 0) return course.of->key_of(section);
     }
     return nullptr;
 }
@@ -212,7 +212,7 @@ DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
 
 DUCTILE_INLINE void Members::tell(const Tell& tell) {
     for (const Happened& entry : std::exchange(happened_, {})) {
-        tell(entry.of, entry.section, entry.kind);
+        tell(entry.of->key_of(entry.section), entry.section, entry.kind);
     }
 }
 

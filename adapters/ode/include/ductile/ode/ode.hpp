@@ -21,5 +21,6 @@
 #include "ductile/ode/point_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/ode/structure.hpp"
+#include "ductile/ode/structure_in_time.hpp"
 #include "ductile/ode/thread_pool.hpp"
 #include "ductile/ode/world.hpp"

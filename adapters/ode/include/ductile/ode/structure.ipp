@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/piece.hpp"
 #include "ductile/ode/structure.hpp"
 
 namespace ductile::ode {
@@ -24,14 +25,6 @@ DUCTILE_INLINE StructurePlan plan_of(const StructureModel& model, const std::vec
                                     std::to_string(one.node.index) + ": must be a body");
     }
     return make_plan(model, nodes);
-}
-
-/// By rows, as ODE stores matrices.
-inline void to_ode(const Matrix3<double>& m, dMatrix3 result) {
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) result[4 * i + j] = dReal(m(i, j));
-        result[4 * i + 3] = 0;
-    }
 }
 
 } // namespace detail
@@ -59,25 +52,13 @@ DUCTILE_INLINE Structure::~Structure() {
 
 DUCTILE_INLINE void Structure::make_body(const PlanBody& plan, dSpaceID space) {
     Part part{.body = dBodyCreate(world_.id())};
-    dMass mass;
-    dMassSetParameters(&mass, dReal(plan.mass), 0, 0, 0, dReal(plan.inertia.x()),
-                       dReal(plan.inertia.y()), dReal(plan.inertia.z()), 0, 0, 0);
-    dBodySetMass(part.body, &mass);
-    const Vector3<double>& centre = plan.pose.origin;
-    dBodySetPosition(part.body, dReal(centre.x()), dReal(centre.y()), dReal(centre.z()));
-    dMatrix3 axes;
-    detail::to_ode(plan.pose.axes, axes);
-    dBodySetRotation(part.body, axes);
+    detail::set_mass(part.body, plan.mass, plan.inertia);
+    detail::put(part.body, plan.pose, {});
     dBodySetFiniteRotationMode(part.body, 1);
-    if (plan.collides && space != nullptr) {
-        const Vector3<double>& half = plan.half_lengths;
-        part.box = dCreateBox(space, dReal(2 * half.x()), dReal(2 * half.y()), dReal(2 * half.z()));
+    part.box = detail::box_of(plan, space);
+    if (part.box != nullptr) {
         dGeomSetBody(part.box, part.body);
-        const Vector3<double>& from_centre = plan.box.origin;
-        dGeomSetOffsetPosition(part.box, dReal(from_centre.x()), dReal(from_centre.y()),
-                               dReal(from_centre.z()));
-        detail::to_ode(plan.box.axes, axes);
-        dGeomSetOffsetRotation(part.box, axes);
+        detail::set_offset(part.box, plan.box);
     }
     world_.add(part.body);
     parts_.push_back(part);

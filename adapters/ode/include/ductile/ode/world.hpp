@@ -142,7 +142,8 @@ class World final : public SteppedWorld {
     }
 
     friend class Member;
-    /// Of a member: it is not reported by itself.
+    friend class StructureInTime;
+    /// Of a member or a structure: it is not reported by itself.
     void take_in(PlasticConstraint& joint);
     void forget(PlasticConstraint& joint);
     void step_with_members(double dt);

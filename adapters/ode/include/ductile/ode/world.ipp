@@ -124,11 +124,13 @@ DUCTILE_INLINE void World::add(Divisible& member, std::string name) {
         if (std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end()) add(body);
     }
     members_.add(member);
-    supervisor().add(&member, std::move(name), [&member] { return member.section_report(); });
+    for (const DivisionReport& one : member.reports(name)) {
+        supervisor().add(one.key, one.name, one.ask);
+    }
 }
 DUCTILE_INLINE void World::remove(Divisible& member) {
     if (!members_.has(member)) return;
-    supervisor().remove(&member);
+    for (const DivisionReport& one : member.reports({})) supervisor().remove(one.key);
     rearrange([&] { member.leave(); });
     members_.remove(member);
 }

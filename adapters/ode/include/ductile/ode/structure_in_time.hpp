@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+//
+// A StructureModel in an ODE world as one rigid body: kinematic where it stands on supports. Joints
+// open where they would have to carry more than they can, there and in that very step
+// (structure/structure_course.hpp), and it is one body again, bent, where nothing flows.
+//
+//   StructureModel model({.elastic = false});
+//   ...
+//   ductile::ode::World world(id, {.tolerance = 0.01});
+//   ductile::ode::StructureInTime frame(world, space, model);
+//   world.step(dt);
+//   frame.bodies();                        // one
+//   frame.remove("column 00");
+//   frame.open_joints();
+//
+// What may be asked of it and done to it is as of Structure, but for the engine's joints and
+// bodies, which come and go: keep none. Events name the joint, as in Structure, with split and
+// fused beside yielded and broke. Geoms stay: each goes with the body that has its member.
+//
+// Contacts have to be named (World::add_contact), which leaves out those of members that hang
+// together or meet at a node.
+//
+// An elastic one opens where the elastic frame yields, and then swings as that does until it rests;
+// as one body it has the shape without load. Bodies of the user's are not joined to it.
+//
+// Not thread-safe. World, ODE's world and the space must outlive this.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ductile/ode/divisible.hpp"
+#include "ductile/ode/piece.hpp"
+#include "ductile/ode/plastic_joint.hpp"
+#include "ductile/ode/world.hpp"
+#include "ductile/structure/divided_structure.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile::ode {
+
+/// A joint that flows, or did.
+struct OpenJoint {
+    std::size_t joint;
+    std::unique_ptr<PlasticJoint<SectionJoint<double>>> constraint;
+};
+
+/// What it says of its joints: structure/divided_structure.hpp.
+class StructureInTime final : public DividedStructure<OpenJoint>, private Divisible {
+  public:
+    /// `space`: where the geoms go; null: there are none.
+    /// @throws std::invalid_argument as make_plan and StructureCourse, and where the World's solver
+    /// is Solver::quick.
+    StructureInTime(World& world, dSpaceID space, const StructureModel& model);
+    DUCTILE_INLINE ~StructureInTime() override;
+
+    [[nodiscard]] bool whole() const { return course_.whole(); }
+    using DividedStructure::is_open;
+    /// Bodies that it is now.
+    [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
+    /// The one that has a body of a member, by its number from the start.
+    /// @throws std::invalid_argument as StructurePlan::body, and where it was removed.
+    [[nodiscard]] dBodyID body_of(std::string_view member, std::size_t piece = 0) const;
+
+  private:
+    using Joint = PlasticJoint<SectionJoint<double>>;
+
+    [[nodiscard]] dBodyID make_cluster(std::size_t cluster, dBodyID like);
+    void end_body(dBodyID body);
+    [[nodiscard]] bool held(std::size_t cluster) const { return course_.clusters()[cluster].held; }
+    [[nodiscard]] Vector3<double> gravity() const;
+    [[nodiscard]] bool rests(std::span<const Touch> touches) const;
+    [[nodiscard]] bool may_be_beyond(std::span<const Touch> touches) const;
+    void read(double dt, std::span<Touch> touches);
+
+    // ---- what DividedStructure asks
+    [[nodiscard]] PlacedBody cluster_now(std::size_t cluster) const override {
+        return {detail::frame_of(bodies_[cluster]), detail::motion_of(bodies_[cluster])};
+    }
+    void wake_cluster(std::size_t cluster) override {
+        if (!held(cluster)) dBodyEnable(bodies_[cluster]);
+    }
+    DUCTILE_INLINE void become(const StructureCourse::Change& change, bool ahead) override;
+    void rearranged() override {
+        if (!left_) world_.members_.rearranged();
+    }
+    DUCTILE_INLINE void wake() override;
+    DUCTILE_INLINE void set_gravity(double factor) override;
+
+    // ---- what the World asks
+    void enter(World& /*world*/) override {}
+    void leave() override { left_ = true; }
+    void body_left(dBodyID /*body*/) override {}
+    void body_came(dBodyID /*body*/) override {}
+    [[nodiscard]] bool is_open() const override { return !whole(); }
+    [[nodiscard]] std::vector<DivisionReport> reports(const std::string& /*name*/) const override {
+        return reports_;
+    }
+    [[nodiscard]] int section_of(const PlasticConstraint& joint) const override {
+        const auto index = index_of(joint);
+        return index ? int(*index) : no_section;
+    }
+    [[nodiscard]] const void* key_of(int section) const override {
+        return DividedStructure::key_of(std::size_t(section));
+    }
+    [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
+    [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
+    [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
+    void require_possible() override {}
+    DUCTILE_INLINE void apply_forces() override;
+    void drop_forces() override { forces_.clear(); }
+    DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;
+    DUCTILE_INLINE void after_solve() override;
+    DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
+                                    std::vector<int>& sections) override;
+    void begin_blow() override {}
+    DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
+                                    std::vector<int>& sections) override;
+    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
+    [[nodiscard]] dBodyID body_of(int body) const override {
+        return bodies_[course_.cluster_of(std::size_t(body))];
+    }
+    double count_vibration() override { return 0; }
+    DUCTILE_INLINE std::vector<int> close_held(Closing when, bool ahead) override;
+
+    World& world_;
+    Vector3<double> gravity_; ///< at which it was made [m/s²]
+    bool left_ = false;
+    std::vector<dGeomID> boxes_;       ///< by body of the plan; null: none
+    std::vector<dBodyID> bodies_;      ///< by cluster
+    std::vector<PieceCourse> courses_; ///< of a step
+    PressedTouches pressed_;           ///< of those that are held
+    std::size_t proved_touches_ = 0;
+    std::optional<Vector3<double>>
+        proved_; ///< gravity at which it is proved that it stays as it is
+};
+
+} // namespace ductile::ode
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/ode/structure_in_time.ipp"
+#endif

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of structure_in_time.hpp.
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include "ductile/ode/convert.hpp"
+#include "ductile/ode/structure_in_time.hpp"
+
+namespace ductile::ode {
+
+DUCTILE_INLINE StructureInTime::StructureInTime(World& world, dSpaceID space,
+                                                const StructureModel& model)
+    : DividedStructure(model), world_(world), gravity_(gravity()) {
+    for (const PlanBody& body : plan().bodies) boxes_.push_back(detail::box_of(body, space));
+    for (std::size_t c = 0; c < course_.clusters().size(); ++c) {
+        bodies_.push_back(make_cluster(c, nullptr));
+    }
+    made();
+    try {
+        world_.add(*this);
+    } catch (...) {
+        for (dBodyID body : bodies_) end_body(body);
+        for (dGeomID box : boxes_) {
+            if (box != nullptr) dGeomDestroy(box);
+        }
+        throw;
+    }
+}
+
+DUCTILE_INLINE StructureInTime::~StructureInTime() {
+    if (!left_) world_.remove(static_cast<Divisible&>(*this));
+    joints_.clear();
+    for (dBodyID body : bodies_) end_body(body);
+    for (dGeomID box : boxes_) {
+        if (box != nullptr) dGeomDestroy(box);
+    }
+}
+
+DUCTILE_INLINE std::vector<dBodyID> StructureInTime::bodies() const { return bodies_; }
+DUCTILE_INLINE dBodyID StructureInTime::body_of(std::string_view member, std::size_t piece) const {
+    return bodies_[course_.cluster_of(present_body(plan().body(member, piece)))];
+}
+
+// ---- its bodies
+
+/// The frame of one that is held is the world's.
+DUCTILE_INLINE dBodyID StructureInTime::make_cluster(std::size_t c, dBodyID like) {
+    const Cluster& cluster = course_.clusters()[c];
+    const PlacedBody& at = course_.made_at()[c];
+    const dBodyID body = dBodyCreate(world_.id());
+    if (like != nullptr) detail::copy_manners(like, body);
+    detail::put(body, at.pose, at.motion);
+    if (cluster.held) {
+        dBodySetKinematic(body);
+        dBodyDisable(body);
+    } else {
+        detail::set_mass(body, cluster.mass, cluster.inertia);
+        dBodySetFiniteRotationMode(body, 1);
+    }
+    for (std::size_t i = 0; i < cluster.bodies.size(); ++i) {
+        const std::size_t b = cluster.bodies[i];
+        if (boxes_[b] == nullptr) continue;
+        dGeomSetBody(boxes_[b], body); // forgets the offset
+        detail::set_offset(boxes_[b], placed(cluster.places[i], plan().bodies[b].box));
+    }
+    world_.add(body);
+    return body;
+}
+
+DUCTILE_INLINE void StructureInTime::end_body(dBodyID body) {
+    world_.remove(body);
+    dBodyDestroy(body);
+}
+
+DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change, bool ahead) {
+    proved_.reset();
+    pressed_.forget();
+    end_joints(change); // before their bodies do
+    std::vector<dBodyID> old = std::exchange(bodies_, {});
+    const dBodyID like = old.empty() ? nullptr : old.front();
+    for (std::size_t c = 0; c < change.kept.size(); ++c) {
+        bodies_.push_back(change.kept[c] ? std::exchange(old[*change.kept[c]], nullptr)
+                                         : make_cluster(c, like));
+    }
+    for (std::size_t b = 0; b < boxes_.size(); ++b) {
+        if (course_.has_body(b) || boxes_[b] == nullptr) continue;
+        dGeomDestroy(boxes_[b]);
+        boxes_[b] = nullptr;
+    }
+    for (dBodyID body : old) {
+        if (body != nullptr) end_body(body);
+    }
+    make_joints(
+        [this](std::size_t j, std::size_t a, const JointFrame<double>& in_a,
+               std::optional<std::size_t> b, const JointFrame<double>& in_b) {
+            // one that is held has the world's frame
+            const dBodyID other = b && !held(*b) ? bodies_[*b] : nullptr;
+            return OpenJoint{j, std::make_unique<Joint>(world_.id(), bodies_[a], other, in_a, in_b,
+                                                        plan().joints[j].joint)};
+        },
+        [this, ahead](OpenJoint& open) {
+            world_.take_in(*open.constraint);
+            if (ahead) open.constraint->begin_frame();
+        });
+}
+
+/// Pieces that hang together do, and those that meet at a node; where a joint broke they meet.
+DUCTILE_INLINE bool StructureInTime::hangs_together(dBodyID a, dBodyID b) const {
+    const auto between = [&](std::size_t first, std::size_t second) {
+        const dBodyID one = bodies_[course_.cluster_of(first)],
+                      other = bodies_[course_.cluster_of(second)];
+        return (one == a && other == b) || (one == b && other == a);
+    };
+    for (const auto& [first, second] : plan().neighbours) {
+        if (has_body(first) && has_body(second) && between(first, second)) return true;
+    }
+    return std::any_of(joints_.begin(), joints_.end(), [&](const OpenJoint& open) {
+        const PlanJoint& joint = plan().joints[open.joint];
+        return !stands_on_ground(open.joint) && !open.constraint->broken() &&
+               between(joint.a, joint.b.index);
+    });
+}
+
+DUCTILE_INLINE void StructureInTime::wake() {
+    proved_.reset();
+    for (std::size_t c = 0; c < bodies_.size(); ++c) wake_cluster(c);
+}
+
+DUCTILE_INLINE Vector3<double> StructureInTime::gravity() const {
+    dVector3 now;
+    dWorldGetGravity(world_.id(), now);
+    return to_core(now);
+}
+DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
+    dWorldSetGravity(world_.id(), dReal(factor * gravity_.x()), dReal(factor * gravity_.y()),
+                     dReal(factor * gravity_.z()));
+}
+
+// ---- a step
+
+DUCTILE_INLINE void StructureInTime::apply_forces() {
+    add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
+        const Vector3<double> arm = difference(at, to_core(dBodyGetPosition(bodies_[c])));
+        add_force(bodies_[c], force, cross(arm, force));
+    });
+}
+
+DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& /*joints*/) {
+    courses_.clear();
+    for (dBodyID body : bodies_) courses_.emplace_back(body);
+}
+DUCTILE_INLINE void StructureInTime::after_solve() {
+    for (std::size_t c = 0; c < courses_.size() && c < bodies_.size(); ++c) {
+        if (held(c)) dBodyDisable(bodies_[c]); // ODE wakes what was touched
+        courses_[c].see(bodies_[c]);
+    }
+}
+
+/// Nothing acts on it but what it carried before.
+DUCTILE_INLINE bool StructureInTime::rests(std::span<const Touch> touches) const {
+    return forces_.empty() && std::none_of(touches.begin(), touches.end(), [](const Touch& touch) {
+               return detail::is_solved(touch.bodies.a) || detail::is_solved(touch.bodies.b);
+           });
+}
+DUCTILE_INLINE bool StructureInTime::may_be_beyond(std::span<const Touch> touches) const {
+    if (!proved_ || *proved_ != gravity() || !rests(touches) || proved_touches_ != touches.size()) {
+        return true;
+    }
+    return std::any_of(courses_.begin(), courses_.end(),
+                       [](const PieceCourse& course) { return course.solved; });
+}
+
+DUCTILE_INLINE void StructureInTime::read(double dt, std::span<Touch> touches) {
+    begin_read();
+    const Vector3<double> fallen = scaled(dt, gravity());
+    for (std::size_t c = 0; c < bodies_.size(); ++c) {
+        ClusterStep& step = steps_[c];
+        if (held(c)) {
+            step.change.velocity = scaled(-1, fallen);
+            continue;
+        }
+        const PieceCourse& course = courses_[c];
+        step.pose = course.pose;
+        if (!course.solved) continue; // what sleeps stays as it is
+        const Vector3<double>& inertia = course_.clusters()[c].inertia;
+        const Vector3<double> inverse{1 / inertia[0], 1 / inertia[1], 1 / inertia[2]};
+        step.change = course.change(bodies_[c], fallen, along_axes(inertia, step.pose.axes),
+                                    along_axes(inverse, step.pose.axes), dt, step.dt);
+        step.spin = course.motion.spin;
+    }
+    const auto push = [&](dBodyID body, const Vector3<double>& point,
+                          const Vector3<double>& force) {
+        const auto c =
+            std::size_t(std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
+        const std::size_t on = course_.nearest(c, steps_[c].pose, point);
+        loads_.push_back({on, point, scaled(dt, force), Vector3<double>::Zero()});
+        return int(on);
+    };
+    for (Touch& touch : touches) {
+        touch.segment = push(touch.of_a ? touch.bodies.a : touch.bodies.b, touch.point,
+                             wrench_of(*touch.feedback, touch.of_a).force);
+    }
+    for (const PressedTouches::Pressed& asleep : pressed_.asleep()) {
+        push(asleep.on, asleep.point, asleep.force);
+    }
+    for (const OpenJoint& open : joints_) {
+        if (!open.constraint->is_awake_member()) continue;
+        const PlanJoint& joint = plan().joints[open.joint];
+        const Wrench upper = wrench_of(*open.constraint, true);
+        add_load(joint.a, upper.force, upper.torque, dt);
+        if (stands_on_ground(open.joint)) continue;
+        // one that is held on the static world says nothing of that
+        if (held(course_.cluster_of(joint.b.index))) {
+            BodyLoad lower = loads_.back();
+            lower.body = joint.b.index;
+            lower.impulse = scaled(-1, lower.impulse);
+            lower.moment = scaled(-1, lower.moment);
+            loads_.push_back(lower);
+        } else {
+            const Wrench lower = wrench_of(*open.constraint, false);
+            add_load(joint.b.index, lower.force, lower.torque, dt);
+        }
+    }
+    read_forces(dt);
+}
+
+DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> touches,
+                                                 std::vector<int>& sections) {
+    std::vector<Touch> on_held;
+    for (const Touch& touch : touches) {
+        if (!can_move(touch.of_a ? touch.bodies.a : touch.bodies.b)) on_held.push_back(touch);
+    }
+    pressed_.see(on_held);
+    if (!may_be_beyond(touches)) return;
+    read(dt, touches);
+    proved_.reset();
+    proved_touches_ = touches.size();
+    sections = course_.beyond(steps_, loads_, dt);
+    if (sections.empty() && rests(touches) && joints_.empty()) proved_ = gravity();
+}
+
+DUCTILE_INLINE void StructureInTime::find_struck(double dt, std::span<Touch> touches,
+                                                 std::vector<int>& sections) {
+    proved_.reset();
+    if (touches.empty()) return;
+    read(dt, touches);
+    double energy = 0; // that contacts took
+    for (const Touch& touch : touches) {
+        const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
+        energy += pressed * (touch.closing + touch.closing_speed()) / 2;
+    }
+    sections = course_.struck(steps_, loads_, energy);
+}
+
+DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ahead) {
+    note_joints();
+    become(course_.open(sections, placed_clusters()), ahead);
+}
+
+DUCTILE_INLINE std::vector<int> StructureInTime::close_held(Closing when, bool ahead) {
+    if (whole() || when == Closing::before_blow) return {};
+    note_joints();
+    std::vector<int> held = course_.held();
+    if (!held.empty()) become(course_.close(held, placed_clusters()), ahead);
+    return held;
+}
+
+} // namespace ductile::ode
