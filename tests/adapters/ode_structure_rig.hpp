@@ -162,7 +162,7 @@ class StructureRig {
         dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
         if (body_a == nullptr && body_b == nullptr) return;
         if (built_ != nullptr && built_->meet(body_a, body_b)) return;
-        if (body_a != nullptr && body_b != nullptr && dAreConnected(body_a, body_b) != 0) return;
+        if (OdeEngine::are_joined(a, b)) return;
         dSurfaceParameters surface{};
         surface.mode = dContactApprox1;
         surface.mu = dReal(friction_);

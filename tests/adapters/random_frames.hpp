@@ -120,4 +120,15 @@ class RandomFrame {
     int rows_ = 1, members_ = 0;
 };
 
+/// P43, of tests/reference/limit_load.py.
+struct LimitLoad {
+    std::uint32_t seed;
+    double factor; ///< of the weights
+};
+inline constexpr LimitLoad limit_loads[] = {
+    {0, 6.5455},  {1, 5.9944},  {2, 1.3356},  {3, 3.3936},   {4, 2.1229},  {5, 2.6402},
+    {6, 8.4721},  {7, 56.2338}, {8, 0.3767},  {9, 9.5893},   {10, 1.1865}, {11, 14.4832},
+    {12, 4.3634}, {13, 4.6861}, {14, 9.5653}, {15, 3.1126},  {16, 1.5329}, {17, 2.5527},
+    {18, 4.9647}, {19, 1.9181}, {20, 5.8736}, {21, 27.5771}, {22, 4.6909}, {23, 2.9095}};
+
 } // namespace ductile::test
