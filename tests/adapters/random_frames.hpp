@@ -21,8 +21,8 @@ namespace ductile::test {
 
 class RandomFrame {
   public:
-    explicit RandomFrame(std::uint32_t seed, bool elastic)
-        : next_(seed), model_({.elastic = elastic}) {
+    explicit RandomFrame(std::uint32_t seed, bool elastic, bool collides = false)
+        : next_(seed), model_({.elastic = elastic}), collides_(collides) {
         const int kind = one_of(5), storeys = 1 + one_of(3), bays = 1 + one_of(2);
         const int rows = kind < 2 ? 1 : 2 + one_of(2); // of frames, one behind the other
         const double height = between(2.5, 4.5), length = between(3, 8), depth = between(3, 6);
@@ -84,7 +84,7 @@ class RandomFrame {
     }
 
     void add(NodeId from, NodeId to, const Kind& kind, bool beam) {
-        MemberOptions options{.collides = false};
+        MemberOptions options{.gap = collides_ ? 0.03 : 0, .collides = collides_};
         if (beam) {
             options.carried_mass = between(500, 6000);
             if (one_of(3) == 0) options.setback = 0.1;
@@ -117,6 +117,7 @@ class RandomFrame {
     std::mt19937 next_;
     StructureModel model_;
     std::vector<std::vector<NodeId>> at_;
+    bool collides_;
     int rows_ = 1, members_ = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string>
@@ -83,6 +84,35 @@ TEST_CASE("what elastic frames absorb of weight that comes at once hardly depend
         CHECK(work(seed, 1.0 / 60) == Approx(fine).epsilon(fine < 500 ? 0.1 : 0.01));
     }
     CHECK(yielded == 9);
+}
+
+TEST_CASE("what an elastic frame at rest absorbs of a blow hardly depends on the frame's length",
+          "[structures]") {
+    if (StructureRig::single) return; // as above
+    const auto work = [](std::uint32_t seed, double tolerance, double dt) {
+        engine::WorldParameters parameters;
+        parameters.tolerance = tolerance;
+        StructureRig rig(0, parameters);
+        const auto frame = rig.build(RandomFrame(seed, true, true).model());
+        const PlanMember* beam = nullptr; // the last one that is level
+        for (const PlanMember& member : frame->plan().members) {
+            if (std::abs(member.from.z() - member.to.z()) < 1e-9) beam = &member;
+        }
+        const Vector3<double> hit = beam->from + 0.4 * (beam->to - beam->from);
+        const auto box = rig.box(1200, {0.2, 0.2, 0.2}, hit + Vector3<double>(0, 0, 0.6));
+        StructureRig::set_velocity(box, {0, 0, -5});
+        rig.run(0.35, dt);
+        CHECK(rig.world().run().believed());
+        const double absorbed = frame->absorbed_energy();
+        rig.forget();
+        return absorbed;
+    };
+    for (const std::uint32_t seed : {0u, 13u, 14u, 22u}) {
+        const double fine = work(seed, 0.002, 1.0 / 240);
+        CAPTURE(seed, fine);
+        CHECK(work(seed, 0.01, 1.0 / 60) == Approx(fine).epsilon(0.05));
+        CHECK(work(seed, 0.01, 1.0 / 240) == Approx(fine).epsilon(0.05));
+    }
 }
 
 TEST_CASE("the statics of random frames, for limit_load.py", "[.statics]") {

@@ -19,6 +19,7 @@ namespace detail {
 inline constexpr double part_share = 0.1;     ///< κ
 inline constexpr double contact_share = 0.3;  ///< of the work of contacts that counts as error
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
+inline constexpr double of_stored = 5;        ///< of what springs hold: the same
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
 inline constexpr int most_tries = 12;         ///< of one part
 inline constexpr int tries_at_gaps = 6;       ///< the same, for gaps that closed in it unforeseen
@@ -237,11 +238,17 @@ DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& moti
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    double ahead = 0, largest = 0;
+    double ahead = 0, largest = 0, unmissed = motion.closed_work, of_springs = 0;
     judged.least = motion.closed_work;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
-        judged.least += row.strength * row.least;
+        const double least = row.strength * row.least;
+        judged.least += least;
+        if (row.elastic) { // the first one that yields
+            of_springs = std::max(of_springs, least);
+        } else {
+            unmissed += least;
+        }
         judged.turned =
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
@@ -259,7 +266,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             largest = error;
             judged.stop = off.stop;
         }
-        ahead += work_ahead(row, h);
+        judged.moves = true;
+        if (!row.elastic || row.flows()) ahead += work_ahead(row, h);
         judged.of_rows = judged.error;
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
         judged.most += row.strength * row.speed() * h;
@@ -269,7 +277,6 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given + judged.astray;
-    judged.moves = !(ahead <= 0); // also where it is no number
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
@@ -280,7 +287,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
     const double share = tolerated_share();
-    judged.tolerated = share * (motion.plastic_work + ahead + judged.least * detail::unmissed);
+    judged.tolerated = share * (motion.plastic_work + ahead + detail::of_stored * motion.stored +
+                                detail::unmissed * (unmissed + of_springs));
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;

@@ -65,11 +65,14 @@ struct PartRow {
     bool swings = false;   ///< as a spring, after a flow
 
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
+    /// Its force is its strength.
+    [[nodiscard]] bool flows() const noexcept {
+        constexpr double holds = 1 - 1e-6, least_own = 0.1;
+        return share >= holds && own_share >= least_own;
+    }
     /// Negated so that a speed that is no number moves.
     [[nodiscard]] bool moves() const noexcept {
-        constexpr double holds = 1 - 1e-6, least_own = 0.1;
-        const bool flows = share >= holds && own_share >= least_own;
-        const double rest = flows ? noise : std::max(noise, turning);
+        const double rest = flows() ? noise : std::max(noise, turning);
         return strength > 0 && !(std::abs(start) <= rest && std::abs(end) <= rest);
     }
 };
