@@ -145,7 +145,7 @@ TEST_CASE("Frames: bodies that overlap come apart, in short frames no faster", "
         CHECK((WorldRig::position(upper) - WorldRig::position(lower)).z() > 0.995);
         return (WorldRig::velocity(upper) - WorldRig::velocity(lower)).z();
     };
-    for (const double depth : {0.02, 0.2}) { // beyond 0.04 Bullet pushes without a velocity
+    for (const double depth : {0.02, 0.2}) { // beyond 0.04 Bullet alone pushes without a velocity
         CAPTURE(depth);
         const double usual = apart(depth, true, 1.0 / 60);
         CHECK(apart(depth, true, 1.0 / 240) <= 1.25 * usual + 1e-6);
