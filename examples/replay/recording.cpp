@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "recording.hpp"
 
+#include <cmath>
 #include <string>
 
 namespace ductile::replay {
@@ -17,6 +18,7 @@ void check(const Recording& recording) {
     const std::size_t frames = recording.times.size();
     if (recording.bodies.empty()) fail(recording, "there is no body in it");
     if (frames == 0) fail(recording, "nothing was sampled");
+    if (!std::isfinite(recording.times.back())) fail(recording, "its time is no number");
     for (std::size_t i = 1; i < frames; ++i) {
         if (!(recording.times[i] > recording.times[i - 1])) {
             fail(recording, "time does not increase at sample " + std::to_string(i));
@@ -51,7 +53,7 @@ void check(const Recording& recording) {
         known(joint.b, name);
         for (const auto* column :
              {&samples.utilisation, &samples.plastic_travel, &samples.absorbed, &samples.residual,
-              &samples.curve.force, &samples.curve.position}) {
+              &samples.life, &samples.curve.force, &samples.curve.position}) {
             full(column->size(), name);
         }
         full(samples.state.size(), name);

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -139,7 +140,7 @@ class Writer {
             const Body& body = recording.bodies[i];
             const int node = add_node(body.name);
             model_.nodes[std::size_t(root_)].children.push_back(node);
-            place(node, recording.poses[i].front());
+            place(node, drawable(recording.poses[i].front(), {}));
             for (const Shape& shape : body.shapes) add(node, shape, body.moves);
             if (body.moves && recording.times.size() > 1) move(node, recording, i);
         }
@@ -150,13 +151,25 @@ class Writer {
         model_.buffers[0].data = data_;
         std::ostringstream out;
         tinygltf::TinyGLTF writer;
-        if (!writer.WriteGltfSceneToStream(&model_, out, false, true)) {
-            throw Error("the scene could not be written as glTF");
+        const auto fail = [](const std::string& why) {
+            throw Error("the scene could not be written as glTF" + why);
+        };
+        try {
+            if (!writer.WriteGltfSceneToStream(&model_, out, false, true)) fail("");
+        } catch (const std::exception& error) { // a name that is no UTF-8
+            fail(std::string(": ") + error.what());
         }
         return out.str();
     }
 
   private:
+    /// What went to infinity, for which glTF has no number, stays where it was.
+    [[nodiscard]] static Pose drawable(const Pose& pose, const Pose& last) {
+        const auto known = [](double value) { return std::isfinite(float(value)); };
+        const bool all = std::all_of(pose.position.begin(), pose.position.end(), known) &&
+                         std::all_of(pose.turn.begin(), pose.turn.end(), known);
+        return all ? pose : last;
+    }
     int add_node(const std::string& name) {
         model_.nodes.emplace_back().name = name;
         return int(model_.nodes.size()) - 1;
@@ -250,7 +263,9 @@ class Writer {
         }
         std::vector<Point> places;
         std::vector<std::array<float, 4>> turns;
-        for (const Pose& pose : recording.poses[body]) {
+        Pose last;
+        for (const Pose& seen : recording.poses[body]) {
+            const Pose& pose = last = drawable(seen, last);
             const auto& p = pose.position;
             const auto& q = pose.turn;
             places.push_back({float(p[0]), float(p[1]), float(p[2])});

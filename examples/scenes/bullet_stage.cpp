@@ -22,8 +22,12 @@ class BulletStage final : public Stage {
         world_ = std::make_unique<bullet::World>(engine_, of_world);
         keeps_tolerance_ = parameters.tolerance > 0;
         if (parameters.floor) {
-            shapes_.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0));
-            own(0, "floor", btVector3(0, 0, 0)).setFriction(1);
+            // not a plane, which holds a box that slides by one corner a tick: 50 t at 10 m/s tilt
+            // and sink by 4 cm a second
+            const btVector3 half(500, 500, 10);
+            shapes_.push_back(std::make_unique<btBoxShape>(half));
+            floor_ = &own(0, "floor", btVector3(0, 0, -half.z()));
+            floor_->setFriction(1);
         }
     }
     ~BulletStage() override {
@@ -130,7 +134,16 @@ class BulletStage final : public Stage {
     void record(replay::Recorder& recorder) override {
         recorder_ = &recorder;
         for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            if (bodies_[i].get() == floor_) continue;
             replay::add_body(recorder, *bodies_[i], names_[i]);
+        }
+        if (floor_ != nullptr) {
+            constexpr double drawn = 50; // [m]
+            recorder.add(floor_,
+                         {.name = "floor",
+                          .shapes = {{replay::ShapeKind::plane, {drawn, drawn, 0}, {}}},
+                          .moves = false},
+                         [] { return replay::Pose{}; });
         }
         if (structure_) {
             const StructurePlan& plan = structure_->plan();
@@ -222,6 +235,7 @@ class BulletStage final : public Stage {
     std::vector<std::unique_ptr<btCollisionShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::string> names_;
+    btRigidBody* floor_ = nullptr; ///< null: there is none
     bool keeps_tolerance_ = false;
     std::unique_ptr<bullet::World> world_;
     std::unique_ptr<bullet::Structure> structure_;

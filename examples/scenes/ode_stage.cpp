@@ -60,6 +60,7 @@ class OdeStage final : public Stage {
             world_->add(own.body);
         } else {
             dGeomSetPosition(own.geom, box.at.x(), box.at.y(), box.at.z());
+            if (!box.collides) dGeomDisable(own.geom);
         }
         return int(own_.size()) - 1;
     }

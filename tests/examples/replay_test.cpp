@@ -209,6 +209,19 @@ TEST_CASE("replay: bad input is one clear line, and nothing is half-written", "[
     // a body that is lost to infinity is recorded as such
     seen.poses[0].back().position[0] = std::numeric_limits<double>::quiet_NaN();
     CHECK_NOTHROW(replay::pack(seen));
-    seen.samples[0].absorbed.pop_back();
-    CHECK_THROWS_WITH(replay::pack(seen), Contains("\"bar\""));
+    replay::write_glb(seen, "replay_lost.glb"); // valid glTF all the same
+    for (const auto column : {&replay::JointSamples::absorbed, &replay::JointSamples::life}) {
+        replay::Recording cut = seen;
+        (cut.samples[0].*column).pop_back();
+        CHECK_THROWS_WITH(replay::pack(cut), Contains("\"bar\""));
+    }
+    seen.bodies[0].name = "\xff"; // replaced in the page
+    CHECK_NOTHROW(replay::pack(seen));
+    CHECK_THROWS_AS(replay::write_glb(seen, "x.glb"), replay::Error);
+    CHECK_FALSE(std::filesystem::exists("x.glb"));
+    // a folder where the file should be
+    std::filesystem::create_directory("replay_folder.html");
+    CHECK_THROWS_WITH(replay::write_html(record(rotor, 60, 0.2), "replay_folder.html"),
+                      Contains("cannot write replay_folder.html"));
+    CHECK_FALSE(std::filesystem::exists("replay_folder.html.part"));
 }

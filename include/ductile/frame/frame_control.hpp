@@ -22,7 +22,8 @@
 // that misplaced most, until one such part did not do: what stops there depends on others, so that
 // the frame tries it no more; (4) by 0.85 √(allowed/error).
 // Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
-// its length comes first, where more than what is allowed is at stake.
+// its length comes first, where more than what is allowed is at stake. Where a flow stops in that
+// one too, the next first one is as long as any next part.
 // Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most
 // three times as long, in the same frame also after all flows have ended, not past the first
 // stop that is predicted, u = -a t, nor past 0.045 rad of what is pushed; the last two parts of
@@ -149,6 +150,7 @@ class FrameControl {
     bool stop_failed_ = false; ///< in this frame
     bool fresh_ = false;       ///< accelerations of the last part say nothing of the next
     bool fitted_ = false;      ///< the last part made velocities fit
+    double start_ = 0;         ///< least length of a first short part [s]
     double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
     double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
     double allowed_ = 0;       ///< of the last part [J]

@@ -65,7 +65,7 @@ DUCTILE_INLINE FrameControl::FrameControl(const FrameParameters& parameters)
 DUCTILE_INLINE void FrameControl::forget() noexcept {
     past_.clear();
     fresh_ = fitted_ = false;
-    next_ = spin_ = 0;
+    next_ = spin_ = start_ = 0;
 }
 
 /// Of the work of a part, that may be misplaced in it [-].
@@ -96,7 +96,7 @@ DUCTILE_INLINE double FrameControl::first_length(double left) noexcept {
     if (next_ > 0 && next_ < left) h = std::min({h, next_, left / 2});
     if (!fresh_) return first_stop(h);
     starts_ = at_stake(h);
-    return starts_ ? detail::start_share * h : h;
+    return starts_ ? std::min(std::max(detail::start_share * h, start_), h) : h;
 }
 
 /// Whether the rows could misplace more than what is allowed.
@@ -143,7 +143,7 @@ DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
         ++report_.blows;
         fresh_ = true;
         fitted_ = false;
-        next_ = spin_ = 0;
+        next_ = spin_ = start_ = 0;
     }
     return std::numeric_limits<double>::infinity();
 }
@@ -332,7 +332,10 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     fresh_ = judged.ended || at_event;
     // a first short part says nothing of the next one's length
     const bool says = !starts_ && !jump;
-    next_ = says ? h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3) : 0;
+    const double longer = h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3);
+    next_ = says ? longer : 0;
+    // unless a flow stopped in it too, as in one after the other where many do
+    start_ = starts_ && fresh_ && !jump ? longer : 0;
     spin_ = motion.turned / h;
     fitted_ = judged.fitted;
     engine.accept(h);

@@ -122,7 +122,9 @@ struct ContactForm {
             aim.d * aim.length + aim.d_normal * aim.normal <= slack * aim.d_normal) {
             to = was;
         }
-        if (to == was) return false;
+        // else it would begin inside again, where it was before
+        const bool left = was == BlockState::surface && !(v.row[0].impulse > 0);
+        if (to == was && !left) return false;
         v.block.state = to;
         v.block.multiplier = 0;
         if (to == BlockState::surface) put_on_cone(v, aim);

@@ -180,15 +180,17 @@ DUCTILE_INLINE void begin_contact(solve::Island& island, solve::IslandBlock cont
         normal.side = open ? solve::Side::lower : solve::Side::free;
         return;
     }
-    double square = 0;
+    double square = 0, slip = 0;
     for (int k = 1; k < contact.count; ++k) {
         const solve::IslandRow& row = island.rows[std::size_t(contact.first + k)];
         square += std::pow(row.impulse / contact.size[std::size_t(k)], 2);
+        slip += std::pow(row.target * contact.size[std::size_t(k)], 2);
     }
     if (open) {
         contact.state = solve::BlockState::apex;
     } else if (square > 0 && std::sqrt(square) >= slides * normal.impulse) {
         contact.state = solve::BlockState::surface;
+        contact.multiplier = std::sqrt(slip); // as before the step
     }
     island.blocks.push_back(contact);
 }

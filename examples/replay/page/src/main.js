@@ -248,6 +248,7 @@ class Replay {
             const other = await decode(ofPage(await file.text()));
             const at = firstDifference(this.recording, other);
             document.querySelector("#ticks .differs")?.remove();
+            if (other.name !== this.recording.name) return say(`${file.name} is of another scene: ${other.name}`);
             if (at < 0) return say("both recordings are the same, bit for bit");
             const time = this.recording.times[Math.min(at, this.recording.times.length - 1)];
             const tick = document.createElement("i");

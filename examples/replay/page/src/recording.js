@@ -21,7 +21,10 @@ export function fromBase64(text) {
 /** The recording inside the text of a replay page. */
 export function ofPage(text) {
     const found = /<script id="recording" type="text\/plain">([^<]*)<\/script>/.exec(text);
-    if (!found) throw new RecordingError("this file holds no recording");
+    if (!found) {
+        const begun = /<script id="recording" type="text\/plain">/.test(text);
+        throw new RecordingError(begun ? "the recording is cut short" : "this file holds no recording");
+    }
     return fromBase64(found[1]);
 }
 
@@ -74,6 +77,15 @@ export function decodeLaidDown(all) {
     if (letters.decode(all.subarray(0, 8)) !== magic) {
         throw new RecordingError("this is not a recording, or one of another version");
     }
+    try {
+        return read(all, letters);
+    } catch (error) {
+        if (error instanceof RecordingError) throw error;
+        throw new RecordingError("the recording is damaged or cut short");
+    }
+}
+
+function read(all, letters) {
     const length = new DataView(all.buffer, all.byteOffset).getUint32(8, true);
     const text = JSON.parse(letters.decode(all.subarray(12, 12 + length)));
     const frames = text.times.length;

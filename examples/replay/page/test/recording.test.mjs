@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import test from "node:test";
+import { gunzipSync, gzipSync } from "node:zlib";
 
 import validator from "gltf-validator";
 
@@ -48,6 +49,13 @@ test("a recording that is damaged, cut short or none is refused in words", async
     await assert.rejects(decode(bytes.subarray(0, bytes.length / 2)), RecordingError);
     await assert.rejects(decode(new Uint8Array([1, 2, 3])), RecordingError);
     assert.throws(() => ofPage("<html></html>"), RecordingError);
+    assert.throws(() => ofPage(page.slice(0, page.indexOf('<script id="recording"') + 1000)), /cut short/);
+    const laidDown = gunzipSync(bytes);
+    for (const length of [4, 10, 200, laidDown.length - 1]) {
+        await assert.rejects(decode(gzipSync(laidDown.subarray(0, length))), RecordingError);
+    }
+    const foreign = Buffer.concat([Buffer.from("ductrec2"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
+    await assert.rejects(decode(gzipSync(foreign)), RecordingError);
 });
 
 test("recordings are compared by their hashes", async () => {
@@ -83,8 +91,10 @@ test("another section, a bend or a joint aside is no bar", async () => {
     }
 });
 
-test("the glb is valid glTF", async () => {
-    const report = await validator.validateBytes(new Uint8Array(await readFile(join(folder, "replay_rotor.glb"))));
-    assert.equal(report.issues.numErrors, 0, JSON.stringify(report.issues.messages));
-    assert.equal(report.issues.numWarnings, 0, JSON.stringify(report.issues.messages));
+test("the glb is valid glTF, of a body that went to infinity too", async () => {
+    for (const name of ["replay_rotor.glb", "replay_lost.glb"]) {
+        const report = await validator.validateBytes(new Uint8Array(await readFile(join(folder, name))));
+        assert.equal(report.issues.numErrors, 0, JSON.stringify(report.issues.messages));
+        assert.equal(report.issues.numWarnings, 0, JSON.stringify(report.issues.messages));
+    }
 });

@@ -9,6 +9,8 @@
 //     as joints book where bodies are.
 //   - A body that the tick woke was not ahead; one that the tick put to sleep stays where it is.
 //   - Where Bullet's continuous collision stopped a body, it goes no further than that.
+//   - What overlaps deeper than m_splitImpulsePenetrationThreshold is pushed apart without a
+//     velocity: that way stays.
 //
 // Not thread-safe.
 #pragma once

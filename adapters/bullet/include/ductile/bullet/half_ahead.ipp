@@ -34,6 +34,15 @@ struct ActionArray : btDiscreteDynamicsWorld {
     return result;
 }
 
+/// Whether the body, moved by its velocity for `time` [s] since it was at `from`, is elsewhere.
+[[nodiscard]] DUCTILE_INLINE bool was_pushed(const btRigidBody& body, const btTransform& from,
+                                             btScalar time) {
+    const btVector3 way = body.getLinearVelocity() * time;
+    const btVector3 off = body.getCenterOfMassPosition() - (from.getOrigin() + way);
+    const btScalar rounded = 8 * SIMD_EPSILON;
+    return off.length2() > rounded * rounded * (from.getOrigin().length2() + way.length2());
+}
+
 } // namespace detail
 
 DUCTILE_INLINE HalfAhead::HalfAhead(btDiscreteDynamicsWorld& world) : world_(world) {
@@ -78,13 +87,14 @@ DUCTILE_INLINE void HalfAhead::finish(std::span<btRigidBody* const> bodies, btSc
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         btRigidBody* body = detail::awake_body(*bodies[i]);
         if (body == nullptr) continue;
+        const btTransform& here = body->getCenterOfMassTransform();
         const bool known = i < middles_.size() && middles_[i].body == body;
-        if (known) {
-            const btScalar share = std::min(btScalar(0.5), body->getHitFraction());
+        const btScalar hit = known ? body->getHitFraction() : btScalar(1);
+        const btScalar share = std::min(btScalar(0.5), hit);
+        if (known && !detail::was_pushed(*body, middles_[i].transform, hit * h)) {
             body->setCenterOfMassTransform(detail::moved(*body, middles_[i].transform, share * h));
         } else {
-            body->setCenterOfMassTransform(
-                detail::moved(*body, body->getCenterOfMassTransform(), -h / 2));
+            body->setCenterOfMassTransform(detail::moved(*body, here, (share - hit) * h));
         }
     }
 }

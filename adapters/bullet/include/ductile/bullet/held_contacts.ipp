@@ -171,6 +171,7 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
     std::sort(pushing.begin(), pushing.end());
     pushing.erase(std::unique(pushing.begin(), pushing.end()), pushing.end());
     lost_.clear();
+    bool anew = false;
     for (const Bodies& bodies : pushing) {
         const ContactBody a = detail::contact_body(*bodies.first),
                           b = detail::contact_body(*bodies.second);
@@ -178,9 +179,11 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
             detail::held_apart(bodies) + h * norm(difference(a.velocity, b.velocity)), bodies);
         world.contactPairTest(const_cast<btCollisionObject*>(bodies.first),
                               const_cast<btCollisionObject*>(bodies.second), contact);
-        if (!contact.found) lost_.push_back(bodies);
+        if (contact.found) continue;
+        lost_.push_back(bodies);
+        anew = anew || std::find(gone_.begin(), gone_.end(), bodies) == gone_.end();
     }
-    return !lost_.empty();
+    return anew;
 }
 
 } // namespace ductile::bullet

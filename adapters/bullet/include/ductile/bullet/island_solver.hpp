@@ -17,7 +17,7 @@
 //   - Large limits stand for infinite ones: 1e10 for contacts, SIMD_INFINITY for joints.
 //   - What overlaps deeper than m_splitImpulsePenetrationThreshold is pushed apart in a solve of
 //   its own:
-//     Bullet's, by sweeps, without the joints.
+//     Bullet's, by sweeps, without the joints. Not in parts of frames (front_solver.ipp).
 //
 // Not thread-safe.
 #pragma once

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <limits>
 
@@ -253,6 +254,13 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
         };
         solve::IslandRow& normal = take(contacts[i]);
         normal.target += turned(contacts[i].m_originalContactPoint);
+        // Bullet begins friction at zero: what slid would be looked for anew in every tick
+        const auto& point = *static_cast<btManifoldPoint*>(contacts[i].m_originalContactPoint);
+        const std::array before{double(point.m_appliedImpulseLateral1),
+                                double(point.m_appliedImpulseLateral2)};
+        const double share =
+            point.m_appliedImpulse > 0 ? normal.impulse / double(point.m_appliedImpulse) : 0;
+        std::size_t slid = 0;
         const auto take_friction = [&](btConstraintArray& pool, int& next) {
             for (; next < pool.size() && pool[next].m_frictionIndex == i; ++next) {
                 // no more than a block holds: sliding comes first, then rolling about the normal
@@ -261,7 +269,8 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
                     continue;
                 }
                 block.size[std::size_t(block.count)] = double(pool[next].m_friction);
-                take(pool[next]);
+                solve::IslandRow& row = take(pool[next]);
+                if (slid < 2) row.impulse = before[slid++] * share;
             }
         };
         take_friction(m_tmpSolverContactFrictionConstraintPool, slides);
