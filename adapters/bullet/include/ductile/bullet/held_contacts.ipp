@@ -62,18 +62,6 @@ namespace detail {
     return way + turn * reach * most > share * most;
 }
 
-/// Within which Bullet's points hold two bodies that do not touch: where they turned together since
-/// the points were found. Of how far it lets points come apart, which goes with the bodies' size
-/// [m].
-[[nodiscard]] DUCTILE_INLINE double held_apart(const HeldContacts::Bodies& bodies) {
-    constexpr double share = 5e-3;
-    const auto least = [](const btCollisionObject& object) {
-        return double(
-            object.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold));
-    };
-    return share * std::min(least(*bodies.first), least(*bodies.second));
-}
-
 /// Whether two bodies have a point nearer than the threshold.
 struct AnyContact final : btCollisionWorld::ContactResultCallback {
     bool found = false;
@@ -175,8 +163,8 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
     for (const Bodies& bodies : pushing) {
         const ContactBody a = detail::contact_body(*bodies.first),
                           b = detail::contact_body(*bodies.second);
-        detail::AnyContact contact(
-            detail::held_apart(bodies) + h * norm(difference(a.velocity, b.velocity)), bodies);
+        detail::AnyContact contact(closed_gap + h * norm(difference(a.velocity, b.velocity)),
+                                   bodies);
         world.contactPairTest(const_cast<btCollisionObject*>(bodies.first),
                               const_cast<btCollisionObject*>(bodies.second), contact);
         if (contact.found) continue;
