@@ -243,4 +243,35 @@ struct BallOnPost {
     }
 };
 
+/// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
+struct BallOnBar {
+    Rig rig;
+    bullet::World world;
+    std::unique_ptr<bullet::Member> bar;
+
+    BallOnBar(const Member& of, double mass, double speed, double place)
+        : world(rig.engine, {.tolerance = 0.01, .warn = {}}) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const auto half = btScalar(of.length() / 2);
+        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
+        bar = std::make_unique<bullet::Member>(
+            rig.body(of.mass(),
+                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
+                      btScalar(whole.inertia[2])},
+                     {0, 0, half}, box, usual, everything),
+            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
+        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
+        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
+        btRigidBody& ball =
+            rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(-0.1571), btScalar(place)},
+                     sphere, usual, everything);
+        ball.setLinearVelocity({0, btScalar(speed), 0});
+        world.add(*bar, "bar");
+    }
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
 } // namespace ductile::test

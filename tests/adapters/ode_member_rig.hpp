@@ -242,4 +242,31 @@ struct BallOnPost {
     }
 };
 
+/// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
+struct BallOnBar {
+    Rig rig;
+    ode::World world;
+    std::unique_ptr<ode::Member> bar;
+
+    BallOnBar(const Member& of, double mass, double speed, double place)
+        : world(rig.id, {.tolerance = 0.01, .warn = {}}) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
+        rig.box(body, {0.05, 0.05, half});
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
+                                            ode::MemberBox{0.05, 0.05});
+        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, -0.1571, place});
+        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+        set_velocity(ball, {0, speed, 0});
+        world.add(ball);
+        world.add(*bar, "bar");
+        rig.meet(world);
+    }
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
 } // namespace ductile::test::in_ode

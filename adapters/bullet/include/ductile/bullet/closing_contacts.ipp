@@ -84,6 +84,10 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     double unseen;  ///< past each other by more than that nobody would find them [m]
     btVector3 fall; ///< acceleration of the first body beside the second [m/s²]
     const btCollisionObject* first;
+    struct Nearest {                                           ///< of the points
+        double away = std::numeric_limits<double>::infinity(); ///< [m]
+        double speed = 0, energy = 0;                          ///< with which it closes [m/s], [J]
+    } nearest{};
     ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
                   const btCollisionObject* a, const btCollisionObject* b, const btVector3& falls)
         : found(result),
@@ -108,6 +112,8 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const double faster = gain(of_a, normal), away = distance(point, *a, *b);
+        const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
+        if (away < nearest.away) nearest = {away, speed, taken};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
             if (!(end * end > 2 * yields * apart)) return 0;
@@ -117,11 +123,13 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
             return 0;
         }
         if (!(speed > 0) || !(yields > 0)) return 0;
-        const double energy = speed * speed / (2 * yields);
-        if (away < closed_gap) {
-            found.strikes = found.strikes || energy > touching;
-        } else if (energy > apart || speed * h / 2 - away > unseen) {
-            found.time = std::min(found.time, (away + closed_gap / 2) / speed);
+        const bool touches = away < closed_gap;
+        found.strikes = found.strikes || (touches && taken > touching);
+        // what a blow does not know is not closed for Bullet
+        const bool counts = touches ? away > -closed_gap / 4 && taken > touching
+                                    : taken > apart || speed * h / 2 - away > unseen;
+        if (counts) {
+            found.time = std::min(found.time, (std::max(away, 0.0) + closed_gap / 2) / speed);
         }
         return 0;
     }
@@ -135,6 +143,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     found_islands_ = false;
     found_bodies_.clear();
     foreign_.clear();
+    open_.clear();
     const double least = std::min(touching, apart);
     find_falling(world, btScalar(h));
     const Fastest fastest = find_fastest(world, btScalar(h));
@@ -149,7 +158,11 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);
-        if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
+        const bool closes = of_pair.strikes || of_pair.time <= h;
+        if (closes) note_found(*pair.a, *pair.b);
+        if (!closes && points.nearest.away > 0) {
+            open_.push_back({pair, points.nearest.away, points.nearest.speed});
+        }
     }
     return found;
 }
@@ -266,7 +279,24 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
         note_found(a, b);
         first = std::min(first, h * std::max(earliest, 1 - taken / (2 * (speed + taken))));
     }
+    first = std::min(first, passed(world, h, apart));
     return first < h ? first : 0;
+}
+
+DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,
+                                                    double apart) {
+    double first = h;
+    for (const auto& [pair, away, speed] : open_) {
+        ClosingContacts none;
+        detail::ClosestPoints now(none, apart, apart, 0, h, pair.a, pair.b, btVector3(0, 0, 0));
+        world.contactPairTest(pair.a, pair.b, now);
+        if (!(now.nearest.away < -closed_gap) || !(now.nearest.energy > apart)) continue;
+        const double way = away + closed_gap / 2, gain = (now.nearest.speed - speed) / h;
+        if (!(gain > 0)) continue;
+        note_found(*pair.a, *pair.b);
+        first = std::min(first, 2 * way / (speed + std::sqrt(speed * speed + 2 * gain * way)));
+    }
+    return first;
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld& world) {
