@@ -274,4 +274,35 @@ struct BallOnBar {
     }
 };
 
+/// A bar along z from the origin on, on a point at its start and on one that slides along at its
+/// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
+struct HungOn {
+    Rig rig{{0, btScalar(-9.81), 0}};
+    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<bullet::Member> bar;
+
+    HungOn(const Member& of, double mass) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double length = of.length();
+        const auto half = btScalar(length / 2);
+        btRigidBody& body = rig.body(
+            of.mass(),
+            {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]), btScalar(whole.inertia[2])},
+            {0, 0, half});
+        btRigidBody& weight = rig.body(mass, {1, 1, 1}, {0, 0, half});
+        for (btRigidBody* each : {&body, &weight}) each->forceActivationState(ACTIVE_TAG);
+        bar =
+            std::make_unique<bullet::Member>(body, of, btTransform(here.getBasis(), {0, 0, -half}));
+        bar->attach(0, [](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, at.getOrigin());
+        });
+        hold_across(*bar, length, length, true, true);
+        bar->attach(length / 2, [&weight](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, weight, at.getOrigin(),
+                                                             btVector3(0, 0, 0));
+        });
+        world.add(*bar);
+    }
+};
+
 } // namespace ductile::test

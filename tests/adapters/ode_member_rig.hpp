@@ -269,4 +269,30 @@ struct BallOnBar {
     }
 };
 
+/// A bar along z from the origin on, on a point at its start and on one that slides along at its
+/// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
+struct HungOn {
+    Rig rig{{0, -9.81, 0}};
+    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<ode::Member> bar;
+
+    HungOn(const Member& of, double mass) {
+        dWorldSetAutoDisableFlag(rig.id, 1);
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double length = of.length(), half = length / 2;
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half}),
+                      weight = rig.body(mass, {1, 1, 1}, {0, 0, half}),
+                      carriage = rig.body(1, {1, 1, 1}, {0, 0, length});
+        rig.pin(body, nullptr, {0, 0, 0});
+        rig.pin(body, carriage, {0, 0, length});
+        rig.pin(body, weight, {0, 0, half});
+        const dJointID rail = dJointCreateSlider(rig.id, nullptr);
+        dJointAttach(rail, carriage, nullptr);
+        dJointSetSliderAxis(rail, 0, 0, 1);
+        for (const dBodyID each : {weight, carriage}) world.add(each);
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}});
+        world.add(*bar);
+    }
+};
+
 } // namespace ductile::test::in_ode

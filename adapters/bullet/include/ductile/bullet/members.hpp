@@ -11,7 +11,8 @@
 // What is decided from impulses needs impulses that are solved. A whole member whose impulses, as
 // the user's solver left them, are beyond its strength is first solved for again, at once
 // (front_solver.hpp), and stays so as long as it might be beyond: sweeps that have not converged
-// open nothing.
+// open nothing. One that constraints hold is as soon as it might be: what sweeps leave of theirs
+// sinks, and would be caught with a jerk.
 //
 // Read are the impulses of contact points, the joint feedback of what holds on to a member, its own
 // forces and gravity. What sleeps on a clamped member, or hangs on it, acts on it as it did when it

@@ -261,7 +261,8 @@ DUCTILE_INLINE bool Members::look(double dt) {
         }
         course->of->read(dt, before_, gravity);
         course->of->find_beyond(dt, course->found);
-        if (course->found.empty()) continue;
+        const bool held = course->member != nullptr && !course->member->attachments_.empty();
+        if (course->found.empty() && (course->direct > 0 || !held)) continue;
         any = true;
         if (!is_decided(*course)) course->found.clear();
     }
