@@ -305,4 +305,36 @@ struct HungOn {
     }
 };
 
+/// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
+/// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
+struct LaidOn {
+    Rig rig{{0, btScalar(-9.81), 0}};
+    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<bullet::Member> bar;
+
+    LaidOn(const Member& of, double mass, double gap) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const auto half = btScalar(of.length() / 2);
+        auto* small = rig.shape(std::make_unique<btSphereShape>(btScalar(0.05)));
+        for (const double z : {0.2, of.length() - 0.2}) {
+            for (const double x : {-0.04, 0.04}) {
+                rig.body(0, {0, 0, 0}, {btScalar(x), btScalar(-0.1 - gap), btScalar(z)}, small,
+                         usual, everything);
+            }
+        }
+        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
+        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
+        rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(0.15 + gap), half}, sphere, usual,
+                 everything);
+        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
+        bar = std::make_unique<bullet::Member>(
+            rig.body(of.mass(),
+                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
+                      btScalar(whole.inertia[2])},
+                     {0, 0, half}, box, usual, everything),
+            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
+        world.add(*bar);
+    }
+};
+
 } // namespace ductile::test

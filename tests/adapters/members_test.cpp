@@ -150,6 +150,26 @@ TEST_CASE("a bar with a mass hung on it bears 0.99 of its limit load and sags to
     }
 }
 
+TEST_CASE("a ball laid on a bar that lies on two supports bends it at its limit load alone",
+          "[member]") {
+    // 1.6 m between the supports; of the bar's own weight half bends it, its ends the other way
+    const Member of = free_bar(1e5);
+    constexpr double strength = 500, own = 12 * 9.81 * (0.8 - 0.5);
+    for (const double share : {0.5, 0.9, 0.99, 1.1}) {
+        for (const double gap : {0.0, 1e-5}) {
+            for (const double frame : {1.0 / 60, 1.0 / 240}) {
+                LaidOn scene(of, share * (strength - own) / 0.4 / 9.81, gap);
+                for (int i = 0; i * frame < 1; ++i) scene.world.step(frame);
+                CAPTURE(share, gap, frame);
+                CHECK(scene.world.run().believed());
+                const double absorbed = scene.bar->absorbed_energy();
+                CHECK((absorbed > 20) == (share > 1));
+                CHECK((absorbed < (rough ? 0.2 : 0.02)) == (share < 1));
+            }
+        }
+    }
+}
+
 TEST_CASE("held at both ends an elastic beam bears the blows that its own profile can take",
           "[member]") {
     // at its middle M_p²l/(6 EI), twice what its root alone could, and the wave of 1 %

@@ -295,4 +295,32 @@ struct HungOn {
     }
 };
 
+/// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
+/// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
+struct LaidOn {
+    Rig rig{{0, -9.81, 0}};
+    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<ode::Member> bar;
+
+    LaidOn(const Member& of, double mass, double gap) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
+        for (const double z : {0.2, of.length() - 0.2}) {
+            for (const double x : {-0.04, 0.04}) {
+                dGeomSetPosition(dCreateSphere(rig.space, dReal(0.05)), dReal(x), dReal(-0.1 - gap),
+                                 dReal(z));
+            }
+        }
+        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, 0.15 + gap, half});
+        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+        world.add(ball);
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
+        rig.box(body, {0.05, 0.05, half});
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
+                                            ode::MemberBox{0.05, 0.05});
+        world.add(*bar);
+        rig.meet(world);
+    }
+};
+
 } // namespace ductile::test::in_ode

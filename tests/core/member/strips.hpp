@@ -42,10 +42,11 @@ inline Member heavy_post(int segments = 10, double strength = 500) {
 }
 
 /// The same, not clamped.
-inline Member free_bar() {
+inline Member free_bar(double bending_stiffness = std::numeric_limits<double>::infinity()) {
     MemberParameters p;
     p.segments = lumped_segments(2, 24, 10, {1e-4, 1e-4, 2e-4});
     p.sections.assign(9, UsualAxisJoint(Perfect<double>({.strength = 500})));
+    p.bending_stiffness = bending_stiffness;
     return Member(p);
 }
 
