@@ -316,6 +316,9 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
           "Member.body.mass = 1 kg: must be that of the member, 2 kg");
     CHECK(message_of([&] { bullet::Member(moving, free_bar, here); }) ==
           "Member.start_in_body = 0.5 m: must be 0: the member's centre is to be the body's");
+    const btTransform scaled(btMatrix3x3(2, 0, 0, 0, 2, 0, 0, 0, 2), middle.getOrigin());
+    CHECK(message_of([&] { bullet::Member(moving, free_bar, scaled); }) ==
+          "Member.start_in_body.axes: must be three orthonormal columns, right-handed");
     CHECK(message_of([&] {
               bullet::Member(moving, free_bar, middle, {-1, 1});
           }) == "Member.box.half_width = -1 m: must be finite and > 0");
@@ -342,6 +345,9 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
     rig.engine.removeRigidBody(&moving);
     CHECK(message_of([&] { world.add(member); }).find("addRigidBody it") != std::string::npos);
     rig.engine.addRigidBody(&moving);
+    Rig other;
+    World of_another(other.engine, {.warn = {}});
+    CHECK(message_of([&] { of_another.add(member); }).find("addRigidBody it") != std::string::npos);
     world.add(member);
     CHECK(message_of([&] { world.add(member); }) ==
           "World.add.member: must not be in a world already");

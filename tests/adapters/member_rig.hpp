@@ -243,4 +243,98 @@ struct BallOnPost {
     }
 };
 
+/// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
+struct BallOnBar {
+    Rig rig;
+    bullet::World world;
+    std::unique_ptr<bullet::Member> bar;
+
+    BallOnBar(const Member& of, double mass, double speed, double place)
+        : world(rig.engine, {.tolerance = 0.01, .warn = {}}) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const auto half = btScalar(of.length() / 2);
+        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
+        bar = std::make_unique<bullet::Member>(
+            rig.body(of.mass(),
+                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
+                      btScalar(whole.inertia[2])},
+                     {0, 0, half}, box, usual, everything),
+            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
+        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
+        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
+        btRigidBody& ball =
+            rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(-0.1571), btScalar(place)},
+                     sphere, usual, everything);
+        ball.setLinearVelocity({0, btScalar(speed), 0});
+        world.add(*bar, "bar");
+    }
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// A bar along z from the origin on, on a point at its start and on one that slides along at its
+/// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
+struct HungOn {
+    Rig rig{{0, btScalar(-9.81), 0}};
+    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<bullet::Member> bar;
+
+    HungOn(const Member& of, double mass) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double length = of.length();
+        const auto half = btScalar(length / 2);
+        btRigidBody& body = rig.body(
+            of.mass(),
+            {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]), btScalar(whole.inertia[2])},
+            {0, 0, half});
+        btRigidBody& weight = rig.body(mass, {1, 1, 1}, {0, 0, half});
+        for (btRigidBody* each : {&body, &weight}) each->forceActivationState(ACTIVE_TAG);
+        bar =
+            std::make_unique<bullet::Member>(body, of, btTransform(here.getBasis(), {0, 0, -half}));
+        bar->attach(0, [](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, at.getOrigin());
+        });
+        hold_across(*bar, length, length, true, true);
+        bar->attach(length / 2, [&weight](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, weight, at.getOrigin(),
+                                                             btVector3(0, 0, 0));
+        });
+        world.add(*bar);
+    }
+};
+
+/// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
+/// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
+struct LaidOn {
+    Rig rig{{0, btScalar(-9.81), 0}};
+    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<bullet::Member> bar;
+
+    LaidOn(const Member& of, double mass, double gap) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const auto half = btScalar(of.length() / 2);
+        auto* small = rig.shape(std::make_unique<btSphereShape>(btScalar(0.05)));
+        for (const double z : {0.2, of.length() - 0.2}) {
+            for (const double x : {-0.04, 0.04}) {
+                rig.body(0, {0, 0, 0}, {btScalar(x), btScalar(-0.1 - gap), btScalar(z)}, small,
+                         usual, everything);
+            }
+        }
+        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
+        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
+        rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(0.15 + gap), half}, sphere, usual,
+                 everything);
+        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
+        bar = std::make_unique<bullet::Member>(
+            rig.body(of.mass(),
+                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
+                      btScalar(whole.inertia[2])},
+                     {0, 0, half}, box, usual, everything),
+            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
+        world.add(*bar);
+    }
+};
+
 } // namespace ductile::test

@@ -242,4 +242,85 @@ struct BallOnPost {
     }
 };
 
+/// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
+struct BallOnBar {
+    Rig rig;
+    ode::World world;
+    std::unique_ptr<ode::Member> bar;
+
+    BallOnBar(const Member& of, double mass, double speed, double place)
+        : world(rig.id, {.tolerance = 0.01, .warn = {}}) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
+        rig.box(body, {0.05, 0.05, half});
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
+                                            ode::MemberBox{0.05, 0.05});
+        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, -0.1571, place});
+        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+        set_velocity(ball, {0, speed, 0});
+        world.add(ball);
+        world.add(*bar, "bar");
+        rig.meet(world);
+    }
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// A bar along z from the origin on, on a point at its start and on one that slides along at its
+/// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
+struct HungOn {
+    Rig rig{{0, -9.81, 0}};
+    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<ode::Member> bar;
+
+    HungOn(const Member& of, double mass) {
+        dWorldSetAutoDisableFlag(rig.id, 1);
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double length = of.length(), half = length / 2;
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half}),
+                      weight = rig.body(mass, {1, 1, 1}, {0, 0, half}),
+                      carriage = rig.body(1, {1, 1, 1}, {0, 0, length});
+        rig.pin(body, nullptr, {0, 0, 0});
+        rig.pin(body, carriage, {0, 0, length});
+        rig.pin(body, weight, {0, 0, half});
+        const dJointID rail = dJointCreateSlider(rig.id, nullptr);
+        dJointAttach(rail, carriage, nullptr);
+        dJointSetSliderAxis(rail, 0, 0, 1);
+        for (const dBodyID each : {weight, carriage}) world.add(each);
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}});
+        world.add(*bar);
+    }
+};
+
+/// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
+/// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
+struct LaidOn {
+    Rig rig{{0, -9.81, 0}};
+    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+    std::unique_ptr<ode::Member> bar;
+
+    LaidOn(const Member& of, double mass, double gap) {
+        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
+        for (const double z : {0.2, of.length() - 0.2}) {
+            for (const double x : {-0.04, 0.04}) {
+                dGeomSetPosition(dCreateSphere(rig.space, dReal(0.05)), dReal(x), dReal(-0.1 - gap),
+                                 dReal(z));
+            }
+        }
+        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, 0.15 + gap, half});
+        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+        world.add(ball);
+        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
+        rig.box(body, {0.05, 0.05, half});
+        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
+                                            ode::MemberBox{0.05, 0.05});
+        world.add(*bar);
+        rig.meet(world);
+    }
+};
+
 } // namespace ductile::test::in_ode

@@ -41,6 +41,15 @@ inline Member heavy_post(int segments = 10, double strength = 500) {
     return Member(p);
 }
 
+/// The same, not clamped.
+inline Member free_bar(double bending_stiffness = std::numeric_limits<double>::infinity()) {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-4, 1e-4, 2e-4});
+    p.sections.assign(9, UsualAxisJoint(Perfect<double>({.strength = 500})));
+    p.bending_stiffness = bending_stiffness;
+    return Member(p);
+}
+
 /// 2 m, 24 kg in ten segments of some width, clamped.
 inline Member cantilever(double strength) {
     MemberParameters p;

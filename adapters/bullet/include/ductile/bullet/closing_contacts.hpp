@@ -28,6 +28,10 @@
 // K is that of both bodies free: where one is held s is rather too early, and what is left of the
 // gap closes in a part of its own.
 //
+// A gap that closes slowly as a part begins, and is not aimed at, may be hurried within it by what
+// flows, unknown to Bullet until shapes overlap: where they passed each other with an energy that
+// counts, it closed where a constant gain of speed has it, and the part is cut there, too.
+//
 // Not thread-safe.
 #pragma once
 
@@ -65,10 +69,12 @@ class ClosingContactsFinder {
     /// As PartEngine::closing. A member is struck like an island with plastic joints.
     [[nodiscard]] ClosingContacts find(btDiscreteDynamicsWorld& world, double h, double touching,
                                        double apart);
-    /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed before
-    /// [s]; 0 where none did. Those that close with less energy than `apart` [J] do not count.
-    /// Islands are those of the last `find`.
+    /// When, in the part of `h` [s] that the last tick did, the first gap closed that pushed
+    /// before, or not at all [s]; 0 where none did. Those that close with less energy than `apart`
+    /// [J] do not count. Islands are those of the last `find`.
     [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart);
+    /// Bodies that the last `find` saw may have ended.
+    void forget_open() noexcept { open_.clear(); }
 
     /// Whether a body is in an island with plastic joints.
     [[nodiscard]] bool touches_plastic(btDiscreteDynamicsWorld& world, const btRigidBody& body) {
@@ -99,11 +105,19 @@ class ClosingContactsFinder {
         btCollisionObject* b;
         btScalar reach; ///< how far they can come in time [m]
     };
+    /// One that is apart and not aimed at.
+    struct OpenPair {
+        Pair pair;
+        double away, speed; ///< of their nearest points [m], closing [m/s]
+    };
+    /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
+    [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);
     Members& members_;
     std::vector<const btRigidBody*> joined_;  ///< bodies of plastic joints, sorted
     std::vector<const btRigidBody*> falling_; ///< what nothing holds, and just begins to, sorted
     std::vector<int> islands_;                ///< sorted
     std::vector<Pair> pairs_;
+    std::vector<OpenPair> open_; ///< of the last `find`
     const LocalScope* scope_ = nullptr;
     std::vector<const btRigidBody*> found_bodies_;
     std::vector<btRigidBody*> foreign_;

@@ -3,7 +3,6 @@
 // Bodies of closing_contacts.hpp.
 #pragma once
 
-#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
 
@@ -84,6 +83,10 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     double unseen;  ///< past each other by more than that nobody would find them [m]
     btVector3 fall; ///< acceleration of the first body beside the second [m/s²]
     const btCollisionObject* first;
+    struct Nearest {                                           ///< of the points
+        double away = std::numeric_limits<double>::infinity(); ///< [m]
+        double speed = 0, energy = 0;                          ///< with which it closes [m/s], [J]
+    } nearest{};
     ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
                   const btCollisionObject* a, const btCollisionObject* b, const btVector3& falls)
         : found(result),
@@ -108,6 +111,8 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const double faster = gain(of_a, normal), away = distance(point, *a, *b);
+        const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
+        if (away < nearest.away) nearest = {away, speed, taken};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
             if (!(end * end > 2 * yields * apart)) return 0;
@@ -117,11 +122,13 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
             return 0;
         }
         if (!(speed > 0) || !(yields > 0)) return 0;
-        const double energy = speed * speed / (2 * yields);
-        if (away < closed_gap) {
-            found.strikes = found.strikes || energy > touching;
-        } else if (energy > apart || speed * h / 2 - away > unseen) {
-            found.time = std::min(found.time, (away + closed_gap / 2) / speed);
+        const bool touches = away < closed_gap;
+        found.strikes = found.strikes || (touches && taken > touching);
+        // what a blow does not know is not closed for Bullet
+        const bool counts = touches ? away > -closed_gap / 4 && taken > touching
+                                    : taken > apart || speed * h / 2 - away > unseen;
+        if (counts) {
+            found.time = std::min(found.time, (std::max(away, 0.0) + closed_gap / 2) / speed);
         }
         return 0;
     }
@@ -135,6 +142,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     found_islands_ = false;
     found_bodies_.clear();
     foreign_.clear();
+    open_.clear();
     const double least = std::min(touching, apart);
     find_falling(world, btScalar(h));
     const Fastest fastest = find_fastest(world, btScalar(h));
@@ -149,7 +157,11 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);
-        if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
+        const bool closes = of_pair.strikes || of_pair.time <= h;
+        if (closes) note_found(*pair.a, *pair.b);
+        if (!closes && points.nearest.away > 0) {
+            open_.push_back({pair, points.nearest.away, points.nearest.speed});
+        }
     }
     return found;
 }
@@ -266,122 +278,26 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
         note_found(a, b);
         first = std::min(first, h * std::max(earliest, 1 - taken / (2 * (speed + taken))));
     }
+    first = std::min(first, passed(world, h, apart));
     return first < h ? first : 0;
 }
 
-DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld& world) {
-    found_islands_ = true;
-    joined_.clear();
-    islands_.clear();
-    if (scope_ != nullptr) {
-        for (const btTypedConstraint* constraint : scope_->constraints()) add_joint(*constraint);
-    } else {
-        for (int i = 0; i < world.getNumConstraints(); ++i) add_joint(*world.getConstraint(i));
+DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,
+                                                    double apart) {
+    double first = h;
+    for (const auto& [pair, away, speed] : open_) {
+        ClosingContacts none;
+        detail::ClosestPoints now(none, apart, apart, 0, h, pair.a, pair.b, btVector3(0, 0, 0));
+        world.contactPairTest(pair.a, pair.b, now);
+        if (!(now.nearest.away < -closed_gap) || !(now.nearest.energy > apart)) continue;
+        const double way = away + closed_gap / 2, gain = (now.nearest.speed - speed) / h;
+        if (!(gain > 0)) continue;
+        note_found(*pair.a, *pair.b);
+        first = std::min(first, 2 * way / (speed + std::sqrt(speed * speed + 2 * gain * way)));
     }
-    const auto sort_once = [](auto& items) {
-        std::sort(items.begin(), items.end());
-        items.erase(std::unique(items.begin(), items.end()), items.end());
-    };
-    sort_once(joined_);
-    sort_once(islands_);
-}
-
-DUCTILE_INLINE void ClosingContactsFinder::add_joint(const btTypedConstraint& constraint) {
-    if (constraint.getConstraintType() != plastic_constraint_type || !constraint.isEnabled())
-        return;
-    for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
-        if (detail::pushed(*body) == nullptr) continue;
-        joined_.push_back(body);
-        if (body->getIslandTag() >= 0) islands_.push_back(body->getIslandTag());
-    }
-}
-
-DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
-    return std::binary_search(joined_.begin(), joined_.end(), &body) || members_.is_member(body) ||
-           (body.getIslandTag() >= 0 &&
-            std::binary_search(islands_.begin(), islands_.end(), body.getIslandTag()));
-}
-
-DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObject& object) const {
-    return detail::pushed(object) == nullptr && members_.is_member(object);
-}
-
-DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
-                                                      double least, btScalar fastest) {
-    const auto& objects = world.getCollisionObjectArray();
-    const int count = scope_ != nullptr ? int(scope_->bodies().size()) : objects.size();
-    detail::ShapeReach reach_of, reach_of_mate;
-    constexpr btScalar margin = btScalar(1e-3);
-    pairs_.clear();
-    struct Near final : btBroadphaseAabbCallback {
-        std::vector<btCollisionObject*> found;
-        bool process(const btBroadphaseProxy* proxy) override {
-            found.push_back(static_cast<btCollisionObject*>(proxy->m_clientObject));
-            return true;
-        }
-    } near;
-    btOverlappingPairCache& cache = *world.getPairCache();
-    for (int i = 0; i < count; ++i) {
-        btRigidBody* body =
-            scope_ != nullptr ? scope_->bodies()[std::size_t(i)] : btRigidBody::upcast(objects[i]);
-        if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
-            !(detail::pushed(*body) != nullptr ? is_plastic(*body) : is_still_member(*body))) {
-            continue;
-        }
-        const bool still = detail::pushed(*body) == nullptr;
-        const btScalar turning = detail::turning_speed(*body, reach_of);
-        const btScalar speed = body->getLinearVelocity().length() + turning;
-        const double most = double(speed + fastest);
-        if (!(most * most > 2 * double(body->getInvMass()) * least)) continue;
-        btVector3 low, high;
-        body->getAabb(low, high);
-        const btScalar swept = (speed + fastest) * h + margin;
-        const btVector3 around(swept, swept, swept);
-        near.found.clear();
-        world.getBroadphase()->aabbTest(low - around, high + around, near);
-        for (btCollisionObject* other : near.found) {
-            btRigidBody* mate = btRigidBody::upcast(other);
-            if (other == body || other->getBroadphaseHandle() == nullptr) continue;
-            // seen from there
-            if (still &&
-                (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
-                continue;
-            }
-            // both ways only once
-            if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
-                other->getWorldArrayIndex() < body->getWorldArrayIndex()) {
-                continue;
-            }
-            const btVector3 away =
-                body->getLinearVelocity() -
-                (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
-            const btScalar closing =
-                away.length() + turning + h * (falls(*body) - falls(*other)).length() +
-                (mate != nullptr ? detail::turning_speed(*mate, reach_of_mate) : btScalar(0));
-            const double yields =
-                double(body->getInvMass()) +
-                (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
-            if (!(double(closing * closing) > 2 * yields * least)) continue;
-            const btScalar reach = closing * h + margin;
-            btVector3 from, to;
-            other->getCollisionShape()->getAabb(other->getWorldTransform(), from, to);
-            bool meet = true;
-            for (int k = 0; k < 3; ++k) {
-                meet = meet && from[k] - reach <= high[k] && to[k] + reach >= low[k];
-            }
-            if (!meet || !cache.needsBroadphaseCollision(body->getBroadphaseHandle(),
-                                                         other->getBroadphaseHandle())) {
-                continue;
-            }
-            if (!world.getDispatcher()->needsCollision(body, other)) continue;
-            if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
-                !scope_->has(*other)) {
-                foreign_.push_back(mate); // where it is now is not where it was
-            } else {
-                pairs_.push_back({body, other, reach});
-            }
-        }
-    }
+    return first;
 }
 
 } // namespace ductile::bullet
+
+#include "ductile/bullet/closing_pairs.ipp" // IWYU pragma: keep

@@ -58,7 +58,7 @@ class Member : public DividedMember<OpenSection> {
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is kinematic, is static and the member not
     /// clamped or the other way round, has another mass than the member, its centre elsewhere, or
-    /// is a member already.
+    /// is a member already, or a frame is none.
     Member(btRigidBody& body, ductile::Member member, const btTransform& start_in_body,
            const MemberBox& box = {});
     /// While it is open its pieces end with it, and the body is in no world.

@@ -11,6 +11,7 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/member.hpp"
+#include "ductile/world/joint_checks.hpp"
 
 namespace ductile::bullet {
 
@@ -32,6 +33,8 @@ DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
     box.validate();
     const MemberPiece& whole = course_.pieces().front();
     const JointFrame<double> start = to_core(start_in_body);
+    constexpr double round_off = sizeof(btScalar) == sizeof(double) ? 1e-9 : 1e-5;
+    require_frame("Member.start_in_body", start, round_off);
     const JointFrame<double> in_body = whole_in_body(of, whole, start, double(body.getMass()));
     maker_ = std::make_unique<PieceMaker>(body, of, box, in_body);
     held_ = placed(to_core(body.getCenterOfMassTransform()), start);
@@ -124,7 +127,11 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
     if (!whole()) {
         throw std::invalid_argument("World.add.member: must be whole, no section of it open");
     }
-    if (user_.getBroadphaseHandle() == nullptr) {
+    const int place = user_.getWorldArrayIndex();
+    const bool here = user_.getBroadphaseHandle() != nullptr && place >= 0 &&
+                      place < world.getNumCollisionObjects() &&
+                      world.getCollisionObjectArray()[place] == &user_;
+    if (!here) {
         throw std::invalid_argument(
             "World.add.member: its body must be in the world before: addRigidBody it");
     }

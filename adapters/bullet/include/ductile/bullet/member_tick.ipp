@@ -71,6 +71,9 @@ DUCTILE_INLINE bool MemberTick::close_held(Closing when, bool ahead,
                                            std::vector<DivisionChange>& told) {
     if (member_.joints_.empty()) return false;
     member_.note_sections();
+    for (const OpenSection& open : member_.joints_) { // slower than Bullet's threshold, too
+        if (member_.course_.section(open.section).joint.flowing) open.hinge->keep_awake();
+    }
     const std::vector<int> held = member_.course_.held(when);
     if (held.empty()) {
         member_.note_broken();

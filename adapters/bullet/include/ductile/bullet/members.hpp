@@ -11,7 +11,8 @@
 // What is decided from impulses needs impulses that are solved. A whole member whose impulses, as
 // the user's solver left them, are beyond its strength is first solved for again, at once
 // (front_solver.hpp), and stays so as long as it might be beyond: sweeps that have not converged
-// open nothing.
+// open nothing. So is one that constraints hold as soon as it might be, and one on which contacts
+// still close that could load it: what sweeps leave sinks, and would be caught with a jerk.
 //
 // Read are the impulses of contact points, the joint feedback of what holds on to a member, its own
 // forces and gravity. What sleeps on a clamped member, or hangs on it, acts on it as it did when it
@@ -103,6 +104,7 @@ class Members {
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
         int direct = 0;       ///< ticks for which it is still solved at once
+        double left = 0;      ///< of contacts in this tick, by sweeps [N s]
         bool asked = true;    ///< for its report
         bool watched = false; ///< in every tick
         bool here = false;    ///< in this one
@@ -121,6 +123,8 @@ class Members {
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);
+    /// That sweeps may leave of contacts with a member in a tick of `dt` [s] [N s].
+    [[nodiscard]] static double noticed_impulse(const Course& course, double dt);
     /// False where it has to be solved for at once first.
     [[nodiscard]] bool is_decided(Course& course);
 

@@ -155,6 +155,7 @@ DUCTILE_INLINE auto Members::course_of(const btCollisionObject& object) -> Cours
 DUCTILE_INLINE void Members::list(Course& course) {
     if (course.here) return;
     course.here = true;
+    course.left = 0;
     here_.push_back(&course);
     course.of->begin();
 }
@@ -196,6 +197,45 @@ DUCTILE_INLINE void Members::before_solve() {
 
 // ---- after it
 
+DUCTILE_INLINE double Members::noticed_impulse(const Course& course, double dt) {
+    constexpr double noticed = 0.1; // of the strength, at an arm of its length
+    const MemberCourse& of = course.member->course_;
+    return noticed * of.least_strength() * dt / of.member().length();
+}
+
+namespace detail {
+
+/// What sweeps left of a contact that still closes, at most; 0 where no more than `noticed` [N s]
+/// is moved at all, at an arm of `arm` [m].
+[[nodiscard]] DUCTILE_INLINE double left_by_sweeps(const btPersistentManifold& manifold, double dt,
+                                                   double noticed, double arm) {
+    const btRigidBody *a = btRigidBody::upcast(manifold.getBody0()),
+                      *b = btRigidBody::upcast(manifold.getBody1());
+    const auto velocity = [](const btRigidBody* body, const btVector3& at) {
+        return body == nullptr
+                   ? btVector3(0, 0, 0)
+                   : body->getVelocityInLocalPoint(at - body->getCenterOfMassPosition());
+    };
+    double speed = 0, mass = 0, most = 0;
+    for (const btRigidBody* body : {a, b}) {
+        if (body == nullptr || body->isStaticObject()) continue;
+        mass = std::max(mass, double(body->getMass()));
+        most += double(body->getLinearVelocity().length2()) +
+                arm * arm * double(body->getAngularVelocity().length2());
+    }
+    if (!(4 * most * mass * mass > noticed * noticed)) return 0;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        const btManifoldPoint& point = manifold.getContactPoint(k);
+        const btVector3 away =
+            velocity(a, point.getPositionWorldOnA()) - velocity(b, point.getPositionWorldOnB());
+        const double gap = std::max(0.0, double(point.getDistance()));
+        speed = std::max(speed, -double(point.m_normalWorldOnB.dot(away)) - 2 * gap / dt);
+    }
+    return speed * mass;
+}
+
+} // namespace detail
+
 DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
@@ -226,6 +266,10 @@ DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
             }
             list(*course);
             course->of->touch({&manifold, side_a}, sum);
+            if (!blow && course->direct == 0 && course->member != nullptr) {
+                course->left += detail::left_by_sweeps(manifold, dt, noticed_impulse(*course, dt),
+                                                       2 * course->member->description().length());
+            }
             if (clamped && !blow) acted_[&manifold] = dt;
         }
     }
@@ -253,7 +297,8 @@ DUCTILE_INLINE bool Members::look(double dt) {
     bool any = false;
     for (Course* course : here_) {
         course->found.clear();
-        if (!course->of->may_be_beyond(dt, before_, gravity)) {
+        const bool vain = course->left > 0 && course->left > noticed_impulse(*course, dt);
+        if (!vain && !course->of->may_be_beyond(dt, before_, gravity)) {
             if (course->direct > 0 && --course->direct == 0) {
                 note_bodies(std::size_t(course - members_.data()));
             }
@@ -261,7 +306,8 @@ DUCTILE_INLINE bool Members::look(double dt) {
         }
         course->of->read(dt, before_, gravity);
         course->of->find_beyond(dt, course->found);
-        if (course->found.empty()) continue;
+        const bool held = course->member != nullptr && !course->member->attachments_.empty();
+        if (course->found.empty() && !vain && (course->direct > 0 || !held)) continue;
         any = true;
         if (!is_decided(*course)) course->found.clear();
     }

@@ -139,9 +139,9 @@ class WorldParts final : public PartEngine {
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
     HeldContacts held_;
-    double half_ = 0;     ///< of the last part that stands, since which bodies went straight on [s]
-    double apart_ = 0;    ///< energy with which a gap has to close to count [J]
-    bool closes_ = false; ///< a contact, as the last look ahead found
+    double half_ = 0; ///< of the last part that stands, since which bodies went straight on [s]
+    double touching_ = 0, apart_ = 0; ///< energies that a contact, a gap has to close with [J]
+    bool closes_ = false;             ///< a contact, as the last look ahead found
     PartRisk risk_;
     bool same_forces_ = false;  ///< as in the last frame
     bool keeps_ledger_;         ///< else only parts that are judged are metered

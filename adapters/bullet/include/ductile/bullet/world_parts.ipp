@@ -243,7 +243,10 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         const auto length = double(btScalar(h));
         return instant ? members_.look_blow(length) : members_.look(length);
     };
-    for (tick(h, true); look(); tick(h, true)) do_again();
+    for (tick(h, true); look(); tick(h, true)) {
+        do_again();
+        (void)closing_.find(world_, h, touching_, apart_); // of other bodies
+    }
     while (local_ && join_touched()) tick(h, true);
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
@@ -300,7 +303,9 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
     const double before = meter_.held().total();
-    if (members_.close_held(when)) meter_.bodies_rearranged(before);
+    if (!members_.close_held(when)) return;
+    meter_.bodies_rearranged(before);
+    closing_.forget_open();
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
@@ -359,6 +364,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
 }
 
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    touching_ = touching;
     apart_ = apart;
     const double ahead = decided_ ? h : std::max(h, length_);
     ClosingContacts found = closing_.find(world_, ahead, touching, apart);

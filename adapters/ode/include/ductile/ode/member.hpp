@@ -52,6 +52,12 @@ struct OpenSection {
     std::unique_ptr<PlasticHinge<UsualAxisJoint>> hinge;
 };
 
+/// By what a joint holds a member.
+struct HeldBy {
+    bool holds = false;                             ///< it cannot move, but along
+    Vector3<double> rail = Vector3<double>::Zero(); ///< of length 1; zero: not at all
+};
+
 /// What it says of its sections: member/divided_member.hpp.
 class Member final : public Divisible, public DividedMember<OpenSection> {
   public:
@@ -94,9 +100,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         dJointID joint;
         dBodyID body;
         MemberPlace at;
-        bool acts;            ///< it is enabled
-        bool support = false; ///< by what cannot move
-        Wrench wrench{};      ///< when it was last solved; the ledger may have lent its feedback
+        bool acts;        ///< it is enabled
+        HeldBy support{}; ///< by what
+        Wrench wrench{};  ///< when it was last solved; the ledger may have lent its feedback
     };
     // ---- what the World asks
 

@@ -5,12 +5,31 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "ductile/ode/convert.hpp"
 
 namespace ductile::ode {
+
+namespace detail {
+
+/// What cannot move, or slides along a rail of what cannot and does no more.
+[[nodiscard]] DUCTILE_INLINE HeldBy support_by(dBodyID body) {
+    if (!can_move(body)) return {.holds = true};
+    for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+        const dJointID joint = dBodyGetJoint(body, i);
+        if (dJointGetType(joint) != dJointTypeSlider || dJointIsEnabled(joint) == 0) continue;
+        if (can_move(dJointGetBody(joint, 0)) && can_move(dJointGetBody(joint, 1))) continue;
+        dVector3 axis;
+        dJointGetSliderAxis(joint, axis);
+        return {.holds = true, .rail = to_core(axis)};
+    }
+    return {};
+}
+
+} // namespace detail
 
 DUCTILE_INLINE void Member::apply_forces() {
     for (const Force& force : forces_) {
@@ -34,7 +53,7 @@ DUCTILE_INLINE void Member::after_solve() {
         if (!hold.acts) continue;
         const AttachedBodies bodies = attached_bodies(hold.joint);
         const bool of_a = bodies.a == hold.body;
-        hold.support = !can_move(of_a ? bodies.b : bodies.a);
+        hold.support = detail::support_by(of_a ? bodies.b : bodies.a);
         // what sleeps carries on as when it was solved; between what cannot move nothing is
         if (!detail::is_solved(bodies.a) && !detail::is_solved(bodies.b)) continue;
         hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
@@ -114,12 +133,18 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
     for (const Hold& hold : holds_) {
         if (!hold.acts) continue;
         add_load(hold.wrench, hold.at.segment, dt);
-        if (!hold.support) continue;
+        if (!hold.support.holds) continue;
         loads_.back().support = hold.joint;
         loads_.back().held_at = hold.at.in_segment;
+        constexpr double round_off = 1e-6;
+        const std::size_t piece = course_.piece_of(hold.at.segment);
+        const JointFrame<double> at =
+            placed(steps_[piece].pose, course_.pieces()[piece].segment(hold.at.segment));
+        const auto bears = [&](int axis) {
+            return std::abs(dot(column(at.axes, axis), hold.support.rail)) < round_off;
+        };
         // a hinge may turn, or has stops
-        const dJointType type = dJointGetType(hold.joint);
-        loads_.back().bears = {true, true, type == dJointTypeFixed};
+        loads_.back().bears = {bears(1), bears(2), dJointGetType(hold.joint) == dJointTypeFixed};
     }
     for (const OpenSection& open : joints_) {
         if (!open.hinge->is_awake_member()) continue;

@@ -381,7 +381,9 @@ DUCTILE_INLINE void World::require_all_bodies() {
         for (const int side : {0, 1}) require(dJointGetBody(joint->id(), side));
     }
     if (!maker_) return;
-    for (dGeomID geom : maker_->geoms()) require(dGeomGetBody(geom));
+    for (dGeomID geom : maker_->geoms()) {
+        if (dGeomIsEnabled(geom) != 0) require(dGeomGetBody(geom));
+    }
 }
 
 } // namespace ductile::ode
