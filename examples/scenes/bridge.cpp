@@ -118,7 +118,8 @@ class Bridge final : public Scene {
                                        .mass = per_length * part,
                                        .half = {part / 2 - 0.01, wide / 2, thick / 2},
                                        .at = {at, 0, level},
-                                       .friction = 0.3});
+                                       .friction = 0.3,
+                                       .sharp = true}); // else wheels dip where parts meet
             if (i == 0) continue;
             cast.joints[i - 1] =
                 &stage.connect("joint " + std::to_string(i), cast.parts[i], cast.parts[i - 1],
@@ -132,7 +133,8 @@ class Bridge final : public Scene {
                        .friction = 0.1});
             stage.add({.name = side < 0 ? "left road" : "right road",
                        .half = {10, wide / 2, 0.2},
-                       .at = {side * (12.575 + 10), 0, top - 0.2}});
+                       .at = {side * (12.575 + 10), 0, top - 0.2},
+                       .sharp = true});
         }
         if (mass > 0) {
             cast.vehicle = stage.add({.name = "vehicle",
