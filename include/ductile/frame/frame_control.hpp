@@ -23,7 +23,7 @@
 // the frame tries it no more; (4) by 0.85 √(allowed/error).
 // Start: after a stop, a gap or a blow nothing is known of the forces, so a part of a thousandth of
 // its length comes first, where more than what is allowed is at stake. Where a flow stops in that
-// one too, the next first one is as long as any next part.
+// one too, and a tenth of the budget is gone, the next first one is as long as any next part.
 // Next: longer by 0.85 ∛(allowed/error), as what a part misplaces is of third order, at most
 // three times as long, in the same frame also after all flows have ended, not past the first
 // stop that is predicted, u = -a t, nor past 0.045 rad of what is pushed; the last two parts of

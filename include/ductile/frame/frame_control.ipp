@@ -21,6 +21,7 @@ inline constexpr double contact_share = 0.3;  ///< of the work of contacts that 
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
 inline constexpr double of_stored = 5;        ///< of what springs hold: the same
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
+inline constexpr double many_starts = 0.1;    ///< of the budget: they are not first ones any more
 inline constexpr int most_tries = 12;         ///< of one part
 inline constexpr int tries_at_gaps = 6;       ///< the same, for gaps that closed in it unforeseen
 inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap
@@ -334,8 +335,8 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     const bool says = !starts_ && !jump;
     const double longer = h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3);
     next_ = says ? longer : 0;
-    // unless a flow stopped in it too, as in one after the other where many do
-    start_ = starts_ && fresh_ && !jump ? longer : 0;
+    // unless flows stop in one after the other, at the cost of the budget
+    start_ = starts_ && fresh_ && !jump && used() > detail::many_starts ? longer : 0;
     spin_ = motion.turned / h;
     fitted_ = judged.fitted;
     engine.accept(h);

@@ -190,11 +190,11 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                           : static_cast<const void*>(island.bodies.front());
     const std::shared_ptr<Kept> kept = solver_of(key);
     kept->solver.set_held(held_);
-    // else what overlaps deeply is pushed apart without the joints, which that would strain; where
-    // all that overlaps is, the user wants it so
+    // else what overlaps deeply is pushed apart without the joints, which that would strain
     btContactSolverInfo with_joints = info;
     const bool by_depth = info.m_splitImpulsePenetrationThreshold < 0;
     if (kind_ == TickKind::part && by_depth) with_joints.m_splitImpulse = 0;
+    kept->solver.set_pushes_apart(kind_ == TickKind::step);
     kept->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
                             island.manifolds.data(), int(island.manifolds.size()),
                             island.constraints.data(), int(island.constraints.size()), with_joints,

@@ -50,16 +50,20 @@ namespace detail {
     return impulse;
 }
 
-/// Whether points may have slid as far as Bullet keeps them; what stands is told at once.
+/// As far a point may slide and stay [m]; Bullet's own 2 cm are a share of the bodies.
+inline constexpr double kept_slide = 5e-3;
+
+/// Whether points may have slid as far as that; what stands is told at once.
 [[nodiscard]] DUCTILE_INLINE bool slides_far(const btPersistentManifold& manifold, double time) {
     if (manifold.getNumContacts() == 0) return false;
-    const double most = double(manifold.getContactBreakingThreshold());
+    const double usual = double(manifold.getContactBreakingThreshold());
+    const double most = std::min(usual, kept_slide);
     const ContactBody a = contact_body(*manifold.getBody0()),
                       b = contact_body(*manifold.getBody1());
     constexpr double share = 0.25, reach = 50; // of bodies, in thresholds
     const double way = norm(difference(a.velocity, b.velocity)) * time,
                  turn = (norm(a.spin) + norm(b.spin)) * time;
-    return way + turn * reach * most > share * most;
+    return way + turn * reach * usual > share * most;
 }
 
 /// Whether two bodies have a point nearer than the threshold.
@@ -106,7 +110,10 @@ DUCTILE_INLINE void HeldContacts::let_go(std::span<btPersistentManifold* const> 
         if (!detail::slides_far(*manifold, time)) continue;
         const btCollisionObject &a = *manifold->getBody0(), &b = *manifold->getBody1();
         if (!concerns(a) && !concerns(b)) continue;
+        const btScalar usual = manifold->getContactBreakingThreshold();
+        manifold->setContactBreakingThreshold(std::min(usual, btScalar(detail::kept_slide)));
         manifold->refreshContactPoints(a.getWorldTransform(), b.getWorldTransform());
+        manifold->setContactBreakingThreshold(usual);
     }
 }
 

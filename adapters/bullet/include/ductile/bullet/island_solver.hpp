@@ -44,6 +44,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
 
     /// How contacts turned before the coming solve; null: nobody knows.
     void set_held(const HeldContacts* held) noexcept { held_ = held; }
+    /// Whether what overlaps is pushed apart in a solve of its own.
+    void set_pushes_apart(bool pushes) noexcept { pushes_apart_ = pushes; }
 
     [[nodiscard]] const solve::IslandReport& last() const noexcept { return report_; }
 
@@ -84,6 +86,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::vector<btSolverConstraint*> read_; ///< Bullet's rows, in the order of the island's
     std::size_t first_read_ = 0;
     const HeldContacts* held_ = nullptr;
+    bool pushes_apart_ = true;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };
 

@@ -136,7 +136,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     load_contacts();
     report_ = solver_.solve(island_);
     store();
-    if (info.m_splitImpulse) {
+    if (info.m_splitImpulse && pushes_apart_) {
         solveGroupCacheFriendlySplitImpulseIterations(bodies, body_count, manifolds, manifold_count,
                                                       constraints, constraint_count, info, drawer);
     }
