@@ -28,7 +28,7 @@ void set_motion(btRigidBody& body, const BodyMotion& motion);
 class ShapeOfBoxes final : public btCompoundShape {
   public:
     void add(const btTransform& middle, const btVector3& half_lengths) {
-        constexpr auto hardly = btScalar(1e-3); // else edges are rounded by 4 cm [m]
+        constexpr auto hardly = btScalar(1e-3); // else edges are rounded by up to 4 cm [m]
         boxes_.push_back(std::make_unique<btBoxShape>(half_lengths));
         boxes_.back()->setMargin(hardly);
         addChildShape(middle, boxes_.back().get());

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "ductile/frame/part_settings.hpp"
 #include "ductile/ode/convert.hpp"
@@ -14,10 +16,32 @@
 
 namespace ductile::ode {
 
-/// The world's settings of a part or a blow while this lives.
+namespace detail {
+
+/// What a ball or a fixed joint has of its own, of the world's as it was made.
+struct OwnSettings {
+    dJointID joint;
+    bool ball;
+    dReal erp, cfm;
+
+    OwnSettings(dJointID of, bool is_ball)
+        : joint(of), ball(is_ball), erp(get(dParamERP)), cfm(get(dParamCFM)) {}
+    [[nodiscard]] dReal get(int what) const {
+        return (ball ? dJointGetBallParam : dJointGetFixedParam)(joint, what);
+    }
+    void set(dReal new_erp, dReal new_cfm) const {
+        const auto put = ball ? dJointSetBallParam : dJointSetFixedParam;
+        put(joint, dParamERP, new_erp);
+        put(joint, dParamCFM, new_cfm);
+    }
+};
+
+} // namespace detail
+
+/// The world's settings of a part or a blow while this lives, and those of the user's joints.
 class WorldParts::Settings {
   public:
-    Settings(dWorldID world, double h, bool blow)
+    Settings(dWorldID world, std::span<const dBodyID> bodies, double h, bool blow)
         : world_(world),
           erp_(dWorldGetERP(world)),
           cfm_(dWorldGetCFM(world)),
@@ -25,8 +49,14 @@ class WorldParts::Settings {
         dWorldSetERP(world, dReal(blow ? 0 : part_erp(double(erp_), h)));
         dWorldSetContactSurfaceLayer(world, std::max(layer_, dReal(closed_depth)));
         if (blow) dWorldSetCFM(world, cfm_ * dReal(blow_compliance(h)));
+        for (dBodyID body : bodies) find_own(body);
+        for (const detail::OwnSettings& own : own_) {
+            own.set(dReal(blow ? 0 : part_erp(double(own.erp), h)),
+                    blow ? own.cfm * dReal(blow_compliance(h)) : own.cfm);
+        }
     }
     ~Settings() {
+        for (const detail::OwnSettings& own : own_) own.set(own.erp, own.cfm);
         dWorldSetERP(world_, erp_);
         dWorldSetCFM(world_, cfm_);
         dWorldSetContactSurfaceLayer(world_, layer_);
@@ -35,8 +65,20 @@ class WorldParts::Settings {
     Settings& operator=(const Settings&) = delete;
 
   private:
+    void find_own(dBodyID body) {
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            const dJointType type = dJointGetType(joint);
+            if (type != dJointTypeBall && type != dJointTypeFixed) continue;
+            const bool seen = std::any_of(own_.begin(), own_.end(),
+                                          [joint](const auto& own) { return own.joint == joint; });
+            if (!seen) own_.emplace_back(joint, type == dJointTypeBall);
+        }
+    }
+
     dWorldID world_;
     dReal erp_, cfm_, layer_;
+    std::vector<detail::OwnSettings> own_;
 };
 
 // ---- a frame
@@ -201,7 +243,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     of_.meter.look_at_contacts();
     damp(blow ? 0 : h / length_);
     {
-        const Settings settings(of_.world, h, blow);
+        const Settings settings(of_.world, of_.bodies, h, blow);
         of_.solve(h);
     }
     if (!blow) {
