@@ -8,7 +8,7 @@
 //   error   = Σ R e + |work of rigid rows| + 0.3 |work of contacts|, + h/2 Σ R |u + u'|/2 where a
 //             contact was lost in the part (e: part_row.hpp)                               [J]
 //   scale   = plastic work so far + Σ ahead, ahead = R u²/(2 |a|) where a row that is rigid or
-//             flows slows, R |u| h where it does not, + 5 x what springs hold, + 0.05 of
+//             flows slows, R |u| h where it does not, + 10 x what springs hold, + 0.05 of
 //             R x travel that nobody misses, of rigid rows all, of springs the largest     [J]
 //   stands where  error <= κ tolerance scale,  κ = 0.1
 //

@@ -19,7 +19,7 @@ namespace detail {
 inline constexpr double part_share = 0.1;     ///< κ
 inline constexpr double contact_share = 0.3;  ///< of the work of contacts that counts as error
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
-inline constexpr double of_stored = 5;        ///< of what springs hold: the same
+inline constexpr double of_stored = 10;       ///< of what springs hold: the same
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
 inline constexpr double many_starts = 0.1;    ///< of the budget: they are not first ones any more
 inline constexpr int most_tries = 12;         ///< of one part
