@@ -20,6 +20,7 @@ inline constexpr double part_share = 0.1;     ///< κ
 inline constexpr double contact_share = 0.3;  ///< of the work of contacts that counts as error
 inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
 inline constexpr double of_stored = 10;       ///< of what springs hold: the same
+inline constexpr double near_strength = 0.3;  ///< share of it from which a spring may come to flow
 inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
 inline constexpr double many_starts = 0.1;    ///< of the budget: they are not first ones any more
 inline constexpr int most_tries = 12;         ///< of one part
@@ -239,7 +240,8 @@ DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& moti
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    double ahead = 0, largest = 0, unmissed = motion.closed_work, of_springs = 0;
+    double ahead = 0, of_flows = 0, largest = 0;
+    double unmissed = motion.closed_work, of_springs = 0, nearest = 0;
     judged.least = motion.closed_work;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
@@ -268,7 +270,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.stop = off.stop;
         }
         judged.moves = true;
-        if (!row.elastic || row.flows()) ahead += work_ahead(row, h);
+        const double work = work_ahead(row, h);
+        ahead += work;
+        if (!row.elastic || row.flows()) of_flows += work;
+        if (row.elastic) nearest = std::max(nearest, row.share);
         judged.of_rows = judged.error;
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
         judged.most += row.strength * row.speed() * h;
@@ -288,8 +293,12 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
     const double share = tolerated_share();
-    judged.tolerated = share * (motion.plastic_work + ahead + detail::of_stored * motion.stored +
-                                detail::unmissed * (unmissed + of_springs));
+    double scale = ahead + detail::unmissed * judged.least;
+    if (nearest > detail::near_strength) { // springs may come to flow, by no more than they hold
+        scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
+                                    detail::unmissed * (unmissed + of_springs));
+    }
+    judged.tolerated = share * (motion.plastic_work + scale);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
