@@ -20,6 +20,7 @@ namespace ductile::bullet {
 
 DUCTILE_INLINE bool LocalTick::is_possible(btDiscreteDynamicsWorld& world,
                                            const btConstraintSolver& usual) {
+    const btDispatcher& dispatcher = *world.getDispatcher();
     const auto& bodies = MovingBodies::of(world);
     for (int i = 0; i < bodies.size(); ++i) {
         if (bodies[i]->isKinematicObject() || bodies[i]->getCcdSquareMotionThreshold() > 0) {
@@ -27,7 +28,7 @@ DUCTILE_INLINE bool LocalTick::is_possible(btDiscreteDynamicsWorld& world,
         }
     }
     return typeid(world) == typeid(btDiscreteDynamicsWorld) &&
-           typeid(*world.getDispatcher()) == typeid(btCollisionDispatcher) &&
+           typeid(dispatcher) == typeid(btCollisionDispatcher) &&
            typeid(usual) == typeid(btSequentialImpulseConstraintSolver) &&
            (world.getSolverInfo().m_solverMode & SOLVER_RANDMIZE_ORDER) == 0 &&
            world.getSimulationIslandManager()->getSplitIslands() && world.getForceUpdateAllAabbs();

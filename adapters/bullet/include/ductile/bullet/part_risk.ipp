@@ -22,10 +22,11 @@ DUCTILE_INLINE void PartRisk::note(int place, const PlasticConstraint& joint,
 DUCTILE_INLINE bool PartRisk::is_at_risk(int place, const PlasticConstraint& joint,
                                          btScalar length) {
     Noted& of = noted(place);
-    const bool alone = is_left_alone(joint.getRigidBodyA(), length, of.burdens[0]) &
-                       is_left_alone(joint.getRigidBodyB(), length, of.burdens[1]);
+    // Both are asked always: each notes what its body bears.
+    const bool alone_a = is_left_alone(joint.getRigidBodyA(), length, of.burdens[0]);
+    const bool alone_b = is_left_alone(joint.getRigidBodyB(), length, of.burdens[1]);
     if (!joint.is_awake_member()) return false;
-    return of.joint != &joint || !of.calm || !alone;
+    return of.joint != &joint || !of.calm || !alone_a || !alone_b;
 }
 
 DUCTILE_INLINE auto PartRisk::noted(int place) -> Noted& {
