@@ -8,7 +8,6 @@
 #include <ductile/numeric/block_ldlt.ipp>
 #include <ductile/solve/active_set.ipp>
 #include <ductile/solve/certificate.ipp>
-#include <ductile/solve/contact_sweep.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>

@@ -15,8 +15,8 @@
 // otherwise. A block that comes to its surface starts from there.
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
-// where many rows change over together: then those alone that are most wrong do, and where the
-// rounds end without an answer proximal_newton.hpp has the word.
+// where many rows change over together; where it ends without an answer proximal_newton.hpp has the
+// word.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once
@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "ductile/numeric/anderson.hpp"
+#include "ductile/solve/contact_slips.hpp"
 #include "ductile/solve/island_system.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -32,28 +33,15 @@ namespace ductile::solve {
 /// Not thread-safe. Keeps room between solves.
 class ActiveSet {
   public:
-    struct Limits {
-        int rounds = 30;            ///< at most
-        int patience = 3;           ///< rounds that may pass without fewer rows in the wrong place
-        bool contacts_held = false; ///< they keep their impulses
-    };
-
     /// From the sides, impulses and multipliers in the island. True where each row is where it
     /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
     /// them.
-    [[nodiscard]] bool solve(IslandSystem& system, const Limits& limits);
-
-    /// Factors of the island as it stands: what is free there, and surfaces as they lie. False
-    /// where they are of no use.
-    [[nodiscard]] bool linearise(IslandSystem& system);
+    [[nodiscard]] bool solve(IslandSystem& system);
 
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 
   private:
     void begin();
-    [[nodiscard]] bool held(const IslandBlock& block) const noexcept {
-        return contacts_held_ && block.kind == BlockKind::contact;
-    }
     void place();
     [[nodiscard]] bool solve_free_rows(bool factored);
     [[nodiscard]] bool harden();
@@ -64,24 +52,16 @@ class ActiveSet {
     void set_tangents();
     [[nodiscard]] bool take_step();
     [[nodiscard]] int change_over();
-    struct Place {
-        Side side = Side::free;
-        double off = 0; ///< [m/s | rad/s]
-    };
-    [[nodiscard]] Place where(std::size_t row) const;
-    [[nodiscard]] double read_slips();
-    void shift_contacts();
+    [[nodiscard]] Side where(std::size_t row) const;
 
     IslandSystem* system_ = nullptr;
-    numeric::Anderson slip_, kept_;
-    std::vector<double> shifts_, slips_;              ///< of contacts, in order
+    ContactSlips slips_;
+    numeric::Anderson kept_;
     std::vector<double> keep_, best_kept_, impulses_; ///< of rigid rows
     int rounds_ = 0;
-    bool contacts_held_ = false;
     double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
-    bool cautious_ = false;                   ///< rows that are most wrong go first
 };
 
 } // namespace ductile::solve

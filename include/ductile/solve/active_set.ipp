@@ -27,48 +27,40 @@ inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip
 
 } // namespace detail
 
-DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, const Limits& limits) {
+DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
+    constexpr int most = 30;    // rounds
+    constexpr int patience = 3; // of them, without fewer rows in the wrong place
     system_ = &system;
     rounds_ = 0;
-    contacts_held_ = limits.contacts_held;
     begin();
-    int fewest = std::numeric_limits<int>::max(), patience = limits.patience;
-    slip_.restart();
+    int fewest = std::numeric_limits<int>::max(), left = patience;
     bool same = false; // all sides are as they were, and the factors of use
-    cautious_ = false;
-    while (rounds_ < limits.rounds) {
+    while (rounds_ < most) {
         ++rounds_;
         place();
         const bool solved = solve_free_rows(same);
-        const double moved = read_slips(); // before a guess takes the place of what was solved
-        const int wrong = change_over();
-        if (wrong == 0 && moved <= detail::settled * system.scale()) return solved;
-        same = wrong == 0 && solved;
+        // before a guess takes the place of what was solved
+        const double moved = slips_.read(system);
+        const int wrong = change_over() + (solved ? 0 : 1);
+        if (wrong == 0 && moved <= detail::settled * system.scale()) return true;
+        same = wrong == 0;
         if (wrong == 0) { // contacts alone have to settle
-            slip_.advance(shifts_, slips_);
-            shift_contacts();
+            slips_.follow_ahead(system);
             continue;
         }
-        if (solved) shifts_ = slips_;
-        shift_contacts();
-        slip_.restart();
+        if (solved) {
+            slips_.follow(system);
+        } else {
+            slips_.restart();
+        }
         if (wrong < fewest) {
             fewest = wrong;
-            patience = limits.patience;
-        } else if (--patience <= 0) {
-            if (cautious_) return false;
-            cautious_ = true;
-            fewest = std::numeric_limits<int>::max();
-            patience = limits.rounds;
+            left = patience;
+        } else if (--left <= 0) {
+            return false;
         }
     }
     return false;
-}
-
-DUCTILE_INLINE bool ActiveSet::linearise(IslandSystem& system) {
-    system_ = &system;
-    set_tangents();
-    return system.factor();
 }
 
 /// Sides that are none, and what is not known of blocks on their surface.
@@ -84,7 +76,6 @@ DUCTILE_INLINE void ActiveSet::begin() {
         return block.state == BlockState::apex ||
                (block.state == BlockState::surface && block.multiplier == 0);
     };
-    shifts_.clear();
     hardens_ = true;
     if (std::any_of(island.blocks.begin(), island.blocks.end(), unknown)) {
         system_->update_velocities();
@@ -95,10 +86,10 @@ DUCTILE_INLINE void ActiveSet::begin() {
         if (view.on_surface() && view.block.multiplier == 0) {
             with_form(view, [&view](auto form) { form.guess(view); });
         }
-        if (view.block.kind != BlockKind::contact || contacts_held_) continue;
-        shifts_.push_back(ContactForm::slip(view));
     }
-    shift_contacts();
+    slips_.begin(*system_);
+    static_cast<void>(slips_.read(*system_));
+    slips_.follow(*system_);
 }
 
 DUCTILE_INLINE void ActiveSet::place() {
@@ -116,7 +107,7 @@ DUCTILE_INLINE void ActiveSet::place() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (!held(view.block)) with_form(view, [&view](auto form) { form.place(view); });
+        with_form(view, [&view](auto form) { form.place(view); });
     }
 }
 
@@ -131,12 +122,7 @@ DUCTILE_INLINE void ActiveSet::set_tangents() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (!held(view.block)) {
-            with_form(view, [&view](auto form) { form.set_tangent(view); });
-            continue;
-        }
-        view.clear_terms();
-        for (int i = 0; i < view.count(); ++i) view.release(i, false);
+        with_form(view, [&view](auto form) { form.set_tangent(view); });
     }
 }
 
@@ -153,7 +139,6 @@ DUCTILE_INLINE double ActiveSet::set_right_sides() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (held(view.block)) continue;
         see(with_form(view, [&view](auto form) { return form.set_right(view); }));
     }
     for (const IslandSystem::Row& work : system_->rows()) {
@@ -171,7 +156,6 @@ DUCTILE_INLINE bool ActiveSet::take_step() {
     bool stays = true;
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (held(view.block)) continue;
         if (!with_form(view, [&view](auto form) { return form.take(view); })) stays = false;
     }
     return stays;
@@ -179,12 +163,10 @@ DUCTILE_INLINE bool ActiveSet::take_step() {
 
 /// Where a row is solved, and where it is on the right side [m/s | rad/s].
 DUCTILE_INLINE double ActiveSet::exact() const noexcept {
-    return std::clamp(4 * system_->noise(), detail::exactness * system_->scale(),
-                      10 * detail::sufficient * system_->scale());
+    return std::max(system_->round_off(4), detail::exactness * system_->scale());
 }
 DUCTILE_INLINE double ActiveSet::accepted() const noexcept {
-    return std::clamp(40 * system_->noise(), detail::acceptance * system_->scale(),
-                      10 * detail::sufficient * system_->scale());
+    return std::max(system_->round_off(40), detail::acceptance * system_->scale());
 }
 
 /// To round-off, with the sides as they are; `factored`: by factors that were made for these sides.
@@ -232,7 +214,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         system_->step();
         stays = take_step();
     }
-    return stays && worst <= detail::sufficient * system_->scale();
+    return stays && worst <= std::max(exact(), detail::sufficient * system_->scale());
 }
 
 /// Takes out what rigid rows give: they give nothing at the impulses that are kept, and are kept at
@@ -266,73 +248,39 @@ DUCTILE_INLINE void ActiveSet::end_hardening() {
     least_given_ = std::numeric_limits<double>::infinity();
 }
 
-/// Where a row belongs, and by how much it is wrong where it is [m/s | rad/s].
-DUCTILE_INLINE ActiveSet::Place ActiveSet::where(std::size_t i) const {
+/// Where a row belongs.
+DUCTILE_INLINE Side ActiveSet::where(std::size_t i) const {
     const IslandRow& row = system_->island().rows[i];
     const IslandSystem::Row& work = system_->rows()[i];
-    if (work.own == 0 || !(row.lower < row.upper)) return {row.side, 0};
+    if (work.own == 0 || !(row.lower < row.upper)) return row.side;
     const double least = accepted();
     if (row.side != Side::free) {
         const double off = row.side == Side::lower ? work.residual : -work.residual;
-        return {off > least ? Side::free : row.side, off};
+        return off > least ? Side::free : row.side;
     }
     double cap = 0;
     if (std::isfinite(row.lower)) cap = std::abs(row.lower);
     if (std::isfinite(row.upper)) cap = std::max(cap, std::abs(row.upper));
     const double slack = 1e-10 * cap + least / work.metric;
-    if (row.impulse < row.lower - slack) {
-        return {Side::lower, (row.lower - row.impulse) * work.metric};
-    }
-    if (row.impulse > row.upper + slack) {
-        return {Side::upper, (row.impulse - row.upper) * work.metric};
-    }
-    return {Side::free, 0};
+    if (row.impulse < row.lower - slack) return Side::lower;
+    return row.impulse > row.upper + slack ? Side::upper : Side::free;
 }
 
 DUCTILE_INLINE int ActiveSet::change_over() {
     Island& island = system_->island();
     int wrong = 0;
-    double worst = 0;
-    for (std::size_t i = 0; cautious_ && i < island.rows.size(); ++i) {
-        if (system_->alone(i)) worst = std::max(worst, where(i).off);
-    }
     for (std::size_t i = 0; i < island.rows.size(); ++i) {
         if (!system_->alone(i)) continue;
-        const Place place = where(i);
-        wrong += place.side != island.rows[i].side;
-        if (place.off >= worst / 2) island.rows[i].side = place.side;
+        const Side side = where(i);
+        wrong += side != island.rows[i].side;
+        island.rows[i].side = side;
     }
     const double least = accepted();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (held(view.block)) continue;
         wrong += with_form(view, [&](auto form) { return form.change_over(view, least); });
     }
     return wrong;
-}
-
-/// The slips of the contacts, of open ones too; the largest that differs from its shift [m/s].
-DUCTILE_INLINE double ActiveSet::read_slips() {
-    slips_.clear();
-    double moved = 0;
-    for (std::size_t k = 0; k < system_->island().blocks.size(); ++k) {
-        const BlockView view = view_of(*system_, k);
-        if (view.block.kind != BlockKind::contact || contacts_held_) continue;
-        const double slip = ContactForm::slip(view);
-        moved = std::max(moved, std::abs(slip - shifts_[slips_.size()]));
-        slips_.push_back(slip);
-    }
-    return moved;
-}
-
-DUCTILE_INLINE void ActiveSet::shift_contacts() {
-    std::size_t next = 0;
-    for (const IslandBlock& block : system_->island().blocks) {
-        if (block.kind != BlockKind::contact || contacts_held_) continue;
-        double& shift = shifts_[next++];
-        shift = std::max(shift, 0.0);
-        system_->rows()[std::size_t(block.first)].shift = shift;
-    }
 }
 
 } // namespace ductile::solve

@@ -13,7 +13,6 @@ struct IslandReport {
     int rounds = 0;      ///< of the active set
     int factorisations = 0;
     int safe_ways = 0; ///< how often the active set did not settle, and a safe way was asked
-    int sweeps = 0;    ///< of contacts one after the other
 };
 
 /// An answer is solved where its residual is at most this share of `scale` [-].

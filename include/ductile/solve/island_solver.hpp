@@ -30,7 +30,6 @@
 
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/certificate.hpp"
-#include "ductile/solve/contact_sweep.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
 #include "ductile/solve/island_system.hpp"
@@ -55,7 +54,6 @@ class IslandSolver {
     IslandSystem system_;
     ActiveSet active_set_;
     ProximalNewton proximal_newton_;
-    ContactSweep contact_sweep_;
     std::vector<double> start_, best_;
 };
 

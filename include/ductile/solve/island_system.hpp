@@ -21,6 +21,7 @@
 // supports.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -71,9 +72,11 @@ class IslandSystem {
     [[nodiscard]] bool alone(std::size_t row) const noexcept { return block_of_[row] < 0; }
     /// Largest velocity that a row asks for [m/s | rad/s]; NaN where the input is not finite.
     [[nodiscard]] double scale() const noexcept { return scale_; }
-    /// Round-off of the last residuals: what the largest impulse makes of its bodies, in the digits
-    /// of a double [m/s | rad/s].
-    [[nodiscard]] double noise() const noexcept { return noise_; }
+    /// So many times the round-off of the last residuals, which is what the largest impulse makes
+    /// of its bodies in the digits of a double; at most a thousandth of the scale [m/s | rad/s].
+    [[nodiscard]] double round_off(double times) const noexcept {
+        return std::min(times * noise_, 1e-3 * scale_);
+    }
     [[nodiscard]] int factorisations() const noexcept { return factorisations_; }
 
     /// v = M⁻¹ Jᵀ x.
@@ -91,12 +94,6 @@ class IslandSystem {
     [[nodiscard]] bool factor() noexcept;
     /// dx from `right` and `extra`, with the last factors.
     void step() noexcept;
-    /// Change of the bodies' velocities for an impulse of one in `row`, with the last factors: what
-    /// is free answers. Valid until the next call.
-    [[nodiscard]] const std::vector<Vector6<double>>& response(std::size_t row) noexcept;
-    /// J of `row` times a change of the bodies' velocities.
-    [[nodiscard]] double along(std::size_t row,
-                               const std::vector<Vector6<double>>& change) const noexcept;
 
     /// 1/2 vᵀ M v + 1/2 xᵀ C x - bᵀ x with the residuals of now [J]: never more than 0 at the
     /// answer. The bodies' kinetic energy changes by no more than this.

@@ -286,24 +286,6 @@ DUCTILE_INLINE void IslandSystem::step() noexcept {
     apply(&Row::rest, &Row::change);
 }
 
-DUCTILE_INLINE const std::vector<Vector6<double>>& IslandSystem::response(std::size_t i) noexcept {
-    for (Vector6<double>& change : change_) change.setZero();
-    const IslandRow& row = island_->rows[i];
-    if (row.a >= 0) change_[std::size_t(row.a)] += row.on_a;
-    if (row.b >= 0) change_[std::size_t(row.b)] += row.on_b;
-    factors_.solve(change_);
-    return change_;
-}
-
-DUCTILE_INLINE double IslandSystem::along(
-    std::size_t i, const std::vector<Vector6<double>>& change) const noexcept {
-    const IslandRow& row = island_->rows[i];
-    double sum = 0;
-    if (row.a >= 0) sum += row.on_a.dot(change[std::size_t(row.a)]);
-    if (row.b >= 0) sum += row.on_b.dot(change[std::size_t(row.b)]);
-    return sum;
-}
-
 DUCTILE_INLINE double IslandSystem::energy() const noexcept {
     double twice = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {

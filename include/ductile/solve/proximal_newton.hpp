@@ -10,11 +10,12 @@
 //   1/2 vᵀ M v + Σ φ(b - J v),   x(v) = Π((u + σ x')/(C + σ)) in the metric C + σ,   M v = Jᵀ x(v)
 //
 // on which Newton with a line search cannot fail: along a step its slope rises, so that the line
-// search is a root of the slope. σ falls from a tenth of the rows' own effect to a millionth while
-// x' becomes better, so that few rows change sides in a round; at the answer x = x', and σ has no
-// part in it.
+// search is a root of the slope. σ falls from a tenth of the rows' own effect to below the softness
+// of any row while x' becomes better, so that few rows change sides in a round; at the answer x =
+// x', and σ has no part in it. It rises again after a round that Newton did not end: at corners of
+// a surface its tangent is not all that is to be known.
 //
-// The shifts of contacts are those in the system; following the slips is the caller's loop.
+// The shifts of contacts follow their slips from round to round.
 //
 // Source: proximal method of multipliers: Rockafellar (1976), doi:10.1287/moor.1.2.97; Newton on
 // its rounds: Li, Sun & Toh (2018), doi:10.1137/16M1097572; as a function of the velocities:
@@ -23,6 +24,7 @@
 
 #include <vector>
 
+#include "ductile/solve/contact_slips.hpp"
 #include "ductile/solve/island_system.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -31,9 +33,9 @@ namespace ductile::solve {
 /// Not thread-safe. Keeps room between solves.
 class ProximalNewton {
   public:
-    /// Leaves impulses, sides and states of the answer in the island. For the last digits the
-    /// active set starts from there. `contacts_held`: they keep their impulses.
-    void solve(IslandSystem& system, bool contacts_held = false);
+    /// Leaves impulses, sides, states and shifts of the answer in the island. For the last digits
+    /// the active set starts from there. `softness`: σ at first, of the rows' own effect [-].
+    void solve(IslandSystem& system, double softness);
 
     [[nodiscard]] int iterations() const noexcept { return iterations_; } ///< of the last solve
 
@@ -43,12 +45,10 @@ class ProximalNewton {
         double softness = 0, from = 0; ///< σ, x'
     };
 
-    [[nodiscard]] bool held(const IslandBlock& block) const noexcept {
-        return contacts_held_ && block.kind == BlockKind::contact;
-    }
+    enum class Round { ended, not_ended, no_use };
     void soften(double softness);
     [[nodiscard]] double given() const;
-    [[nodiscard]] bool minimise(double enough);
+    [[nodiscard]] Round minimise(double enough);
     void respond();
     [[nodiscard]] double slope(double share);
     void search(double first);
@@ -59,8 +59,9 @@ class ProximalNewton {
     std::vector<Row> rows_;
     std::vector<double> start_, change_, speed_; ///< x, dx, J dv of a step
     std::vector<double> impulses_;               ///< x that belongs to v
+    double apart_ = 0; ///< what those lack to x(v), as a velocity, of the scale [-]
+    ContactSlips slips_;
     int iterations_ = 0;
-    bool contacts_held_ = false;
 };
 
 } // namespace ductile::solve

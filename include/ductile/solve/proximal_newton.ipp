@@ -8,16 +8,17 @@
 #include <limits>
 
 #include "ductile/solve/block_form.hpp"
+#include "ductile/solve/island_report.hpp"
 #include "ductile/solve/proximal_newton.hpp"
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, bool contacts_held) {
-    constexpr double first = 0.1, last = 1e-9, stiffer = 0.1, roughly = 1e-3, fair = 1e-6,
-                     well = 1e-10;
+DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness) {
+    constexpr double most_soft = 0.1, alike = 1e-9, last = 1e-14, stiffer = 0.1, closer = 0.01;
+    // of the largest velocity
+    constexpr double roughly = 1e-3, fair = 1e-6, well = 1e-9, apart = solved_residual / 10;
     constexpr int most = 30;
     system_ = &system;
-    contacts_held_ = contacts_held;
     iterations_ = 0;
     const std::vector<IslandRow>& rows = system.island().rows;
     rows_.clear();
@@ -26,17 +27,35 @@ DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, bool contacts_he
         rows_.push_back({system.rows()[i].compliance, system.rows()[i].metric});
         impulses_.push_back(rows[i].impulse);
     }
-    double softness = first;
-    double enough = roughly, before = roughly; // of the largest velocity
+    slips_.begin(system);
+    double enough = roughly, before = roughly;
+    double least_apart = std::numeric_limits<double>::infinity();
     for (int round = 0; round < most; ++round) {
         soften(softness);
-        if (!minimise(enough)) break;
-        const double left = given() / system.scale();
+        const Round newton = minimise(enough);
+        if (newton == Round::no_use) break;
+        see();
+        respond(); // sides and states
+        const double left = std::max(given(), slips_.read(system)) / system.scale();
+        const bool there = left <= well && enough <= well;
         const bool slow = softness <= last && left <= fair && left > before / 2;
-        if ((left <= well && enough <= well) || slow) break;
+        if (there ? apart_ <= apart || !(apart_ < least_apart / 2) : slow) break;
+        if (there) least_apart = apart_;
+        if (softness <= alike) {
+            slips_.follow_ahead(system);
+        } else {
+            slips_.follow(system);
+        }
         before = left;
-        enough = std::clamp(stiffer * left, well, roughly);
-        softness = std::max(stiffer * softness, last);
+        if (newton == Round::not_ended) {
+            softness = std::min(softness / stiffer, most_soft);
+        } else if (there) { // the less σ, the more impulses follow from a velocity's last digits
+            enough *= stiffer;
+            continue;
+        } else {
+            softness = std::max(stiffer * softness, last);
+        }
+        enough = std::clamp(closer * left, well, roughly);
     }
     see();
     respond(); // sides and states
@@ -105,12 +124,7 @@ DUCTILE_INLINE void ProximalNewton::respond() {
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);
-        if (!held(view.block)) {
-            with_form(view, [&view](auto form) { form.respond(view); });
-            continue;
-        }
-        view.clear_terms();
-        for (int i = 0; i < view.count(); ++i) view.release(i, false);
+        with_form(view, [&view](auto form) { form.respond(view); });
     }
 }
 
@@ -146,9 +160,9 @@ DUCTILE_INLINE void ProximalNewton::search(double first) {
     }
 }
 
-/// False where the island is no use. Newton until the velocities stay, `enough` of the largest.
-DUCTILE_INLINE bool ProximalNewton::minimise(double enough) {
-    constexpr int most = 40;
+/// Newton until the velocities stay, `enough` of the largest.
+DUCTILE_INLINE auto ProximalNewton::minimise(double enough) -> Round {
+    constexpr int most = 30;
     std::vector<IslandRow>& rows = system_->island().rows;
     see();
     respond();
@@ -158,7 +172,7 @@ DUCTILE_INLINE bool ProximalNewton::minimise(double enough) {
             system_->rows()[k].right = 0;
             system_->rows()[k].extra = rows[k].impulse - impulses_[k];
         }
-        if (!system_->factor()) return false;
+        if (!system_->factor()) return Round::no_use;
         system_->step();
         start_ = impulses_;
         change_.clear();
@@ -171,15 +185,23 @@ DUCTILE_INLINE bool ProximalNewton::minimise(double enough) {
             first += speed_[k] * (impulses_[k] - rows[k].impulse);
             if (!(std::abs(work.rest) <= fastest)) fastest = std::abs(work.rest);
         }
-        if (std::isnan(fastest)) return false;
-        if (!(first < 0)) return true;
+        if (std::isnan(fastest)) return Round::no_use;
+        if (!(first < 0)) {
+            apart_ = 0;
+            return Round::ended;
+        }
         if (!(fastest > enough * system_->scale())) {
             static_cast<void>(slope(1)); // whole: impulses that balance each other follow too
-            return true;
+            apart_ = 0;
+            for (std::size_t k = 0; k < rows.size(); ++k) {
+                const double off = std::abs(rows[k].impulse - impulses_[k]);
+                apart_ = std::max(apart_, system_->rows()[k].own * off / system_->scale());
+            }
+            return Round::ended;
         }
         search(first);
     }
-    return true;
+    return Round::not_ended;
 }
 
 } // namespace ductile::solve

@@ -181,7 +181,51 @@ struct Random {
     }
 };
 
-/// J M⁻¹ Jᵀ + C of all rows.
+/// Bodies at the points of a grid, each joined to the next ones on ellipsoids of six axes, rigid
+/// but for `softness` of a row's own effect [-]; three of them are struck. The semi-axes are some
+/// `strength` [N s] and a tenth of it [N m s].
+inline Island struck_grid(std::mt19937& random, int nx, int ny, int nz, double strength,
+                          double softness) {
+    constexpr double speed = 5;
+    const auto between = [&random](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    Island result;
+    std::vector<Vector3<double>> moved;
+    for (int i = 0; i < nx * ny * nz; ++i) {
+        result.bodies.push_back(body(between(1, 10), 0.3));
+        moved.emplace_back(0, 0, 0);
+    }
+    for (int i = 0; i < 3; ++i) {
+        const auto struck = std::size_t(between(0, double(moved.size())));
+        moved[struck] = {between(-speed, speed), between(-speed, speed), between(-speed, speed)};
+    }
+    const auto link = [&](int a, int b, int axis) {
+        const int first = add_joint(result, a, b, unit(axis) / 2, unit(axis) / -2);
+        IslandBlock block{.first = first, .count = 6};
+        for (int k = 0; k < 6; ++k) {
+            IslandRow& row = result.rows[std::size_t(first + k)];
+            row.softness = softness * own_effect(result, row) * between(0.1, 1.1);
+            row.target = -row.on_a.head<3>().dot(moved[std::size_t(a)]) -
+                         row.on_b.head<3>().dot(moved[std::size_t(b)]);
+            block.size[std::size_t(k)] = strength * (k < 3 ? 1 : 0.1) * between(0.5, 1.5);
+        }
+        result.blocks.push_back(block);
+    };
+    const auto number = [nx, ny](int i, int j, int k) { return (k * ny + j) * nx + i; };
+    for (int k = 0; k < nz; ++k) {
+        for (int j = 0; j < ny; ++j) {
+            for (int i = 0; i < nx; ++i) {
+                const int here = number(i, j, k);
+                if (i + 1 < nx) link(here, number(i + 1, j, k), 0);
+                if (j + 1 < ny) link(here, number(i, j + 1, k), 1);
+                if (k + 1 < nz) link(here, number(i, j, k + 1), 2);
+            }
+        }
+    }
+    return result;
+}
+
 /// Boxes that stand on four corners each, `stack` of them on each of `beams` beams in a row that
 /// joints hold, struck in all directions: a step of 1/60 s.
 inline Island stacked_boxes(std::mt19937& random, int beams, int stack) {
@@ -226,6 +270,7 @@ inline Island stacked_boxes(std::mt19937& random, int beams, int stack) {
     return result;
 }
 
+/// J M⁻¹ Jᵀ + C of all rows.
 inline Eigen::MatrixXd system_matrix(const Island& island) {
     const auto n = Eigen::Index(island.rows.size());
     Eigen::MatrixXd a = Eigen::MatrixXd::Zero(n, n);
