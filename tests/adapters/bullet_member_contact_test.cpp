@@ -161,8 +161,9 @@ TEST_CASE("a bar that rests on friction does not creep, split or fused", "[bulle
         const btVector3 rest = scene.middle();
         for (int i = 0; i < 240; ++i) scene.step(dt);
         CAPTURE(tolerance);
-        // In steps as they are Bullet lifts the bent bar off a point, drops it by 0.17 mm in the next
-        // step and catches it, some ten times a second: 0.45 mm in the second that is looked at.
+        // In steps as they are Bullet lifts the bent bar off a point, drops it by 0.17 mm in the
+        // next step and catches it, some ten times a second: 0.45 mm in the second that is looked
+        // at.
         const bool lifted = rough || tolerance == 0;
         CHECK((scene.middle() - rest).length() < (lifted ? 1e-3 : 1e-6));
         CHECK(scene.member->whole());
