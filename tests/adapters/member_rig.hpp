@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -169,6 +170,7 @@ inline void hold_across(bullet::Member& member, double place, double z, bool sli
 /// and a mass of 100 kg fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
+    std::vector<std::string> said; ///< by the World
     bullet::World world;
     std::unique_ptr<AlwaysJointed> always;
     std::unique_ptr<bullet::Member> member;
@@ -176,7 +178,8 @@ struct HeldTwice {
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
               bool slides = true)
-        : world(rig.engine, {.tolerance = tolerance, .warn = {}}),
+        : world(rig.engine, {.tolerance = tolerance,
+                             .warn = [this](const std::string& line) { said.push_back(line); }}),
           mass(&rig.body(100, {10, 10, 10}, {0, 0, btScalar(place)})) {
         const btVector3 none(0, 0, 0);
         const double length = of.length();

@@ -8,8 +8,12 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include "ductile/material/named.hpp"
+#include "ductile/section/rectangle.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -122,6 +126,57 @@ TEST_CASE("held at both ends a beam is whole under 0.999 of its limit load and m
             CHECK(longest <= ActiveSections().hold);
             // of the step that proves that it holds, by its rows' softness [rad]
             CHECK(beam.absorbed_energy() <= (rough ? 1e-6 : 1e-9) * strength);
+        }
+    }
+}
+
+TEST_CASE("held along at both ends a beam that flows is said to be locked", "[member]") {
+    // it would stretch; inextensible it stops within a millimetre, whatever the load
+    const Member of = beam_to_hold(10);
+    constexpr double limit = 100e3;
+    for (const double frame : {1.0 / 60, 1.0 / 1000}) {
+        for (const double share : {0.999, 1.001, 1.01, 1.5}) {
+            for (const bool slides : {false, true}) {
+                HeldTwice beam(of, true, 0.01, 2, slides);
+                for (int i = 0; i < 12; ++i) {
+                    beam.push(share * limit);
+                    beam.world.step(frame);
+                }
+                CAPTURE(frame, share, slides, beam.absorbed_energy());
+                const bool locks = share > 1 && !slides;
+                REQUIRE(beam.said.size() == (locks ? 1 : 0));
+                if (locks)
+                    CHECK(beam.said[0].find("let one of its ends slide") != std::string::npos);
+                CHECK(beam.world.run().believed() == !locks);
+            }
+        }
+    }
+}
+
+TEST_CASE("a beam has a section at its fixed end, or it is said that it has none", "[member]") {
+    // of ten segments without one the end is as strong as a beam shorter by 0.4 m of 4
+    const Rectangle<double> section({.width = 0.05, .height = 0.05});
+    const Material<double> steel(s355<double>());
+    const double limit = 8 * plastic_moment(section, steel) / 4;
+    for (const bool fixed_end : {true, false}) {
+        const Member of = beam(
+            section, steel, {.length = 4, .segments = 10, .clamped = true, .fixed_end = fixed_end});
+        for (const double share : {0.999, 1.001}) {
+            HeldTwice held(of, true, 0.01, 2);
+            for (int i = 0; i < 30; ++i) {
+                held.push(share * limit);
+                held.world.step(1.0 / 60);
+            }
+            CAPTURE(fixed_end, share, held.member->absorbed_energy());
+            REQUIRE(held.said.size() == (fixed_end ? 0 : 1));
+            if (!fixed_end) {
+                CHECK(held.said[0].find("fixed 0.4 m from its nearest section") !=
+                      std::string::npos);
+                continue;
+            }
+            CHECK(held.world.run().believed());
+            CHECK((held.member->absorbed_energy() > 1) == (share > 1));
+            CHECK((held.member->absorbed_energy() < 1e-3) == (share < 1));
         }
     }
 }

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
@@ -164,6 +165,7 @@ struct Struck {
 /// and a mass of 100 kg fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
+    std::vector<std::string> said; ///< by the World
     ode::World world;
     std::unique_ptr<AlwaysJointed> always;
     std::unique_ptr<ode::Member> member;
@@ -171,7 +173,8 @@ struct HeldTwice {
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
               bool slides = true)
-        : world(rig.id, {.tolerance = tolerance, .warn = {}}),
+        : world(rig.id, {.tolerance = tolerance,
+                         .warn = [this](const std::string& line) { said.push_back(line); }}),
           mass(rig.body(100, {10, 10, 10}, {0, 0, place})) {
         const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, of.length()});
         for (const dBodyID body : {mass, carriage}) world.add(body);

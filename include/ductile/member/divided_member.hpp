@@ -57,6 +57,17 @@ struct MemberBox {
     return frame;
 }
 
+/// What a World says of a member that is kept from turning `at` a place: nothing where a section is
+/// beside it.
+[[nodiscard]] inline std::string said_of_fixed(const Member& member, const MemberPlace& at) {
+    constexpr double beside = 2e-3; // of its length: by twice that what it bears may be too much
+    const double off = member.from_section(at);
+    if (!(off > beside * member.length())) return {};
+    return "ductile: a member is fixed " + number_text(off, 3) +
+           " m from its nearest section, and bears more than its plastic moment there; give it a "
+           "section beside the joint (BeamParameters::fixed_end)";
+}
+
 /// An engine's hinge turns about z, a member bends about x.
 [[nodiscard]] inline JointFrame<double> hinge_frame(const JointFrame<double>& section) {
     JointFrame<double> turned{.origin = section.origin};
@@ -156,9 +167,15 @@ class DividedMember {
 
     /// Of all sections.
     [[nodiscard]] JointReport<double> report() const {
+        constexpr double hair = 1e-6; // [rad]; rows that hold move by less
         JointReport<double> all;
         for (const OpenSection& open : joints_) {
-            const JointReport<double> report = open.hinge->queries().report();
+            JointReport<double> report = open.hinge->queries().report();
+            if (report.outcome == Outcome::yielding && report.plastic_travel > hair &&
+                course_.is_locked(open.section)) {
+                report.outcome = Outcome::unreliable;
+                all.locked = true;
+            }
             all.first_yield = all.first_yield || report.first_yield;
             all.coarse = all.coarse || report.coarse;
             all.residual = std::max(all.residual, report.residual);

@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -52,8 +53,9 @@ class Members {
     Members(const Members&) = delete;
     Members& operator=(const Members&) = delete;
 
+    /// What is to be said of it.
     /// @throws as World::add.
-    void add(Member& member, std::function<void()> ends);
+    [[nodiscard]] std::vector<std::string> add(Member& member, std::function<void()> ends);
     void remove(Member& member);
     /// It enters and leaves the world by itself.
     void add(Divisible& structure);

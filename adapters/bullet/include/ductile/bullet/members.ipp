@@ -21,7 +21,7 @@ DUCTILE_INLINE void Members::add(Course course) {
     look_at_all_ = true;
     note_bodies(members_.size() - 1);
 }
-DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
+DUCTILE_INLINE std::vector<std::string> Members::add(Member& member, std::function<void()> ends) {
     member.enter(world_);
     member.ends_ = std::move(ends);
     member.pushed_ = [this, &member] { pushed_.push_back(&member); };
@@ -35,8 +35,9 @@ DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
     };
     if (!member.forces_.empty()) pushed_.push_back(&member);
     auto tick = std::make_unique<MemberTick>(member);
-    Divisible* of = tick.get();
+    MemberTick* of = tick.get();
     add({.of = of, .member = &member, .tick = std::move(tick)});
+    return of->remarks();
 }
 DUCTILE_INLINE void Members::add(Divisible& structure) {
     add({.of = &structure, .member = nullptr});
