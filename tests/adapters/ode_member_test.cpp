@@ -720,6 +720,15 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[o
     CHECK(message_of([&] { ode::Member(moving, free_bar, skewed); }) ==
           "Member.start_in_body.axes: must be three orthonormal columns, right-handed");
 
+    const dBodyID of_one_geom = rig.body(2, {1, 1, 1}, {3, 0, 0});
+    dBodySetAngularVel(of_one_geom, 0, 1, 0);
+    rig.box(of_one_geom, {0.05, 0.05, 0.5});
+    CHECK(message_of([&] { ode::Member(of_one_geom, free_bar, middle); }) ==
+          "Member.box: must be given where one geom of its body is as long as the member, as it "
+          "would go with one segment");
+    CHECK(dBodyGetPosition(of_one_geom)[0] == 3);
+    CHECK(double(dGeomGetPosition(dBodyGetFirstGeom(of_one_geom))[0]) == 3);
+
     ode::Member member(moving, free_bar, middle);
     CHECK(message_of([&] { ode::Member(moving, free_bar, middle); }) ==
           "Member.body: must not be a member already");

@@ -57,6 +57,7 @@ class PieceMaker {
           first_in_body_(whole_in_body),
           straight_(user.getCollisionShape()),
           mass_(user.getMass()) {
+        if (box_.is_there()) find_overhang();
         const btVector3& inverse = user.getInvInertiaDiagLocal();
         for (int i = 0; i < 3; ++i) inertia_[i] = inverse[i] > 0 ? 1 / inverse[i] : btScalar(0);
     }
@@ -84,6 +85,7 @@ class PieceMaker {
     [[nodiscard]] PieceBody make(const PlacedPiece& placed);
 
   private:
+    void find_overhang();
     [[nodiscard]] std::unique_ptr<btCompoundShape> make_shape(const MemberPiece& piece);
     void enter_world(btRigidBody& body) const;
 
@@ -95,6 +97,7 @@ class PieceMaker {
     int group_ = 0, mask_ = 0; ///< of the user's body
     btVector3 gravity_{0, 0, 0};
     btCollisionShape* straight_; ///< the user's
+    MemberOverhang over_;        ///< of that
     btScalar mass_;              ///< as the user made it
     btVector3 inertia_{0, 0, 0};
     std::unique_ptr<btCompoundShape> bent_; ///< of the user's body, once it is bent

@@ -64,7 +64,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is null, is kinematic and the member not
     /// clamped or the other way round, has another mass than the member, its centre elsewhere, or
-    /// is a member already, or a frame is none.
+    /// is a member already, or a frame is none; or as MemberGeoms.
     Member(dBodyID body, ductile::Member member, const JointFrame<double>& start_in_body,
            const MemberBox& box = {});
     DUCTILE_INLINE ~Member() override;
