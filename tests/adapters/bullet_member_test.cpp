@@ -321,7 +321,7 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
           "Member.start_in_body.axes: must be three orthonormal columns, right-handed");
     CHECK(message_of([&] {
               bullet::Member(moving, free_bar, middle, {-1, 1});
-          }) == "Member.box.half_width = -1 m: must be finite and > 0");
+          }) == "Member.box.half_width = -1 m: must be in (0, 1) m");
     btRigidBody& driven = rig.body(0, {0, 0, 0}, {0, 0, 0});
     driven.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
     CHECK(message_of([&] { bullet::Member(driven, clamped, here); }) ==

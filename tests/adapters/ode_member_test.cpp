@@ -714,7 +714,7 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[o
           "Member.start_in_body = 0.5 m: must be 0: the member's centre is to be the body's");
     CHECK(message_of([&] {
               ode::Member(moving, free_bar, middle, {-1, 1});
-          }) == "Member.box.half_width = -1 m: must be finite and > 0");
+          }) == "Member.box.half_width = -1 m: must be in (0, 1) m");
     JointFrame<double> skewed = middle;
     skewed.axes(0, 1) = 0.5;
     CHECK(message_of([&] { ode::Member(moving, free_bar, skewed); }) ==

@@ -28,11 +28,11 @@ struct MemberBox {
     double half_width = 0, half_height = 0;
 
     [[nodiscard]] bool is_there() const noexcept { return half_width > 0; }
-    /// @throws std::invalid_argument where one is out of range.
-    void validate() const {
+    /// @throws std::invalid_argument where one is out of range: as wide as `of` is long.
+    void validate(const Member& of) const {
         if (half_width == 0 && half_height == 0) return;
-        check::positive("Member.box.half_width", half_width, "m");
-        check::positive("Member.box.half_height", half_height, "m");
+        check::between("Member.box.half_width", half_width, 0.0, of.length(), "m");
+        check::between("Member.box.half_height", half_height, 0.0, of.length(), "m");
     }
 };
 

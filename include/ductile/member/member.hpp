@@ -215,6 +215,7 @@ requires std::same_as<typename T::Scalar, double>
                     "more than its section's radius of gyration, " +
                         number_text(std::sqrt(std::max(x, y)), 3) + " m");
     }
+    check::size_of_beam("Beam", parameters.length, material.density() * area);
     constexpr double stub_length = 1e-6, stub_mass = 1e-3; // of the beam's
     const double stub = parameters.fixed_end ? stub_length * parameters.length : 0,
                  length = parameters.length - stub, mass = material.density() * area * length;

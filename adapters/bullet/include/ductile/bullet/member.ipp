@@ -30,7 +30,7 @@ DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
     if (Member::of(&body) != nullptr) {
         throw std::invalid_argument("Member.body: must not be a member already");
     }
-    box.validate();
+    box.validate(of);
     const MemberPiece& whole = course_.pieces().front();
     const JointFrame<double> start = to_core(start_in_body);
     constexpr double round_off = sizeof(btScalar) == sizeof(double) ? 1e-9 : 1e-5;

@@ -52,7 +52,7 @@ DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
     }
     constexpr double round_off = 1e-9;
     require_frame("Member.start_in_body", start_in_body, round_off);
-    box.validate();
+    box.validate(of);
     dBodyGetMass(body, &mass_);
     const MemberPiece& whole = course_.pieces().front();
     first_in_body_ = whole_in_body_ = whole_in_body(of, whole, start_in_body, double(mass_.mass));
