@@ -373,11 +373,12 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
         CHECK_FALSE(member->whole());
         if (world_first) {
             world.reset();
-            CHECK(member->absorbed_energy() > 0); // it still says where it is
+            CHECK(member->absorbed_energy() > 0);
+            CHECK(member->whole()); // bent as it is
             CHECK(member->pose(5).getOrigin().y() > 0);
             World another(rig.engine, {.warn = {}});
-            CHECK(message_of([&] { another.add(*member); }) ==
-                  "World.add.member: must be whole, no section of it open");
+            another.add(*member);
+            another.step(1e-3);
             member.reset();
         } else {
             member.reset();
@@ -385,7 +386,7 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
             world.reset();
         }
         CHECK(rig.engine.getNumConstraints() == 0);
-        CHECK(rig.engine.getNumCollisionObjects() == 1);
+        CHECK(rig.engine.getNumCollisionObjects() == 2);
         rig.engine.stepSimulation(btScalar(1e-3), 0);
     }
 }
