@@ -391,46 +391,6 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
     }
 }
 
-TEST_CASE("a member that was saved goes on bit for bit, open, half-way and whole again",
-          "[bullet][member]") {
-    const Member of = strip(10);
-    for (const int before : {0, 4, 40, 900}) {
-        Struck scene(of, true);
-        scene.strike(4);
-        for (int i = 0; i < before; ++i) scene.world.step(1e-4);
-        CAPTURE(before);
-        CHECK(scene.member->whole() == (before == 0 || before == 900));
-        const btTransform pose = scene.mass->getWorldTransform();
-        const btVector3 velocity = scene.mass->getLinearVelocity() + btVector3(0, 0.1F, 0),
-                        spin = scene.mass->getAngularVelocity();
-        const bullet::MemberSnapshot saved(*scene.member);
-        std::vector<double> runs[3];
-        for (auto& run : runs) {
-            saved.put_back(*scene.member);
-            scene.mass->setCenterOfMassTransform(pose);
-            scene.mass->setInterpolationWorldTransform(pose);
-            scene.mass->setLinearVelocity(velocity);
-            scene.mass->setAngularVelocity(spin);
-            scene.mass->setInterpolationLinearVelocity(velocity);
-            scene.mass->setInterpolationAngularVelocity(spin);
-            for (int i = 0; i < 100; ++i) {
-                scene.world.step(1e-4);
-                run.push_back(double(scene.mass->getLinearVelocity().y()));
-                run.push_back(scene.member->absorbed_energy());
-                run.push_back(scene.member->open_sections());
-                for (int k = 0; k < of.segments(); ++k) {
-                    run.push_back(double(scene.member->pose(k).getOrigin().y()));
-                }
-            }
-        }
-        const auto differs = [&](const std::vector<double>& run) {
-            return std::mismatch(run.begin(), run.end(), runs[0].begin()).first - run.begin();
-        };
-        CHECK(differs(runs[1]) == int(runs[0].size()));
-        CHECK(differs(runs[2]) == int(runs[0].size()));
-    }
-}
-
 TEST_CASE("a bent member that is given its straight state has its own body again",
           "[bullet][member]") {
     BallOnPost scene(heavy_post(), 100, 2);

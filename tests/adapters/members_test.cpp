@@ -380,3 +380,60 @@ TEST_CASE("a section breaks with the same energy whether it closed in between or
     }
     CHECK(absorbed[1] == Approx(absorbed[0]).epsilon(rough ? 5e-3 : 1e-4));
 }
+
+TEST_CASE("a member that was saved goes on bit for bit, open, half-way and whole again",
+          "[member]") {
+    const Member of = strip(most_segments);
+    for (const int before : {0, 4, 40, 900}) {
+        Struck scene(of, true);
+        scene.strike(4);
+        for (int i = 0; i < before; ++i) scene.world.step(1e-4);
+        CAPTURE(before);
+        CHECK(scene.member->whole() == (before == 0 || before == 900));
+        const KeptBody mass(scene.mass);
+        const Snapshot saved(*scene.member);
+        const double absorbed = scene.absorbed_energy(), tip = across(*scene.member, 1);
+        std::vector<double> runs[3];
+        for (auto& run : runs) {
+            saved.put_back(*scene.member);
+            mass.put_back();
+            CHECK(scene.absorbed_energy() == Approx(absorbed).epsilon(rough ? 1e-6 : 1e-12));
+            CHECK(across(*scene.member, 1) == Approx(tip).margin(rough ? 1e-6 : 1e-12));
+            if (before == 900) scene.strike(4); // what lies there
+            for (int i = 0; i < 100; ++i) {
+                scene.world.step(1e-4);
+                run.push_back(scene.absorbed_energy());
+                run.push_back(scene.member->open_sections());
+                for (int k = 0; k < of.segments(); ++k) run.push_back(across(*scene.member, k));
+            }
+        }
+        CHECK(runs[0].back() != 0);
+        const auto differs = [&](const std::vector<double>& run) {
+            return std::mismatch(run.begin(), run.end(), runs[0].begin()).first - run.begin();
+        };
+        CHECK(differs(runs[1]) == int(runs[0].size()));
+        CHECK(differs(runs[2]) == int(runs[0].size()));
+    }
+}
+
+TEST_CASE("what follows a member that was put back is what followed it first", "[member]") {
+    for (const int before : {0, 4, 40}) {
+        Struck scene(strip(5), true);
+        scene.strike(4);
+        for (int i = 0; i < before; ++i) scene.world.step(1e-4);
+        const KeptBody mass(scene.mass);
+        const Snapshot saved(*scene.member);
+        double absorbed[2] = {}, bent[2] = {};
+        for (int run : {0, 1}) {
+            for (int i = 0; i < 400; ++i) scene.world.step(1e-4);
+            absorbed[run] = scene.absorbed_energy();
+            bent[run] = scene.bend(0);
+            saved.put_back(*scene.member);
+            mass.put_back();
+        }
+        CAPTURE(before);
+        CHECK(absorbed[0] > 1);
+        CHECK(absorbed[1] == Approx(absorbed[0]).epsilon(rough ? 1e-3 : 1e-6));
+        CHECK(bent[1] == Approx(bent[0]).epsilon(rough ? 1e-3 : 1e-6));
+    }
+}

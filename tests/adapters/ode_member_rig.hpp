@@ -130,6 +130,20 @@ struct AlwaysJointed {
     std::vector<std::unique_ptr<Hinge>> hinges;
 };
 
+using Snapshot = ode::MemberSnapshot;
+/// Across a member, where a segment of it is [m].
+inline double across(const ode::Member& member, int segment) {
+    return member.pose(segment).origin[1];
+}
+/// A body that is no member's, as it was.
+struct KeptBody {
+    dBodyID body;
+    ode::BodySnapshot as_it_was;
+
+    explicit KeptBody(dBodyID of) : body(of), as_it_was(of) {}
+    void put_back() const { as_it_was.put_back(body); }
+};
+
 /// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
 struct Struck {
     Rig rig;

@@ -120,6 +120,8 @@ class MemberBook {
 /// `OpenSection`: has the `section` [index] and, by a pointer, the engine's plastic `hinge` there.
 template <class OpenSection>
 class DividedMember {
+    using HingeState = decltype(std::declval<OpenSection>().hinge->state());
+
   public:
     [[nodiscard]] const Member& description() const noexcept { return course_.member(); }
     [[nodiscard]] bool whole() const noexcept { return course_.whole(); }
@@ -151,6 +153,13 @@ class DividedMember {
         }
         return state;
     }
+    /// All of it but its bodies, as an engine's snapshot keeps it. Plain value.
+    struct Saved {
+        MemberState state;
+        MemberVibration vibration;
+        RedundantForces redundant;
+        std::vector<HingeState> joints; ///< of open sections, from the start
+    };
     /// Largest share of what acted on it that was left over in the last step that was looked at
     /// closely (internal_forces.hpp): impulses that it does not know of.
     [[nodiscard]] double left_over() const noexcept { return course_.left_over(); }
@@ -196,6 +205,30 @@ class DividedMember {
             if (!open.hinge->is_awake_member()) section.joint.flowing = false; // not any more
             section.bend = open.hinge->rotation();
         }
+    }
+    [[nodiscard]] Saved save() const {
+        Saved saved{state(), course_.vibration(), course_.redundant(), {}};
+        for (std::size_t section = 0; section < saved.state.size(); ++section) {
+            for (const OpenSection& open : joints_) {
+                if (open.section == int(section)) saved.joints.push_back(open.hinge->state());
+            }
+        }
+        return saved;
+    }
+    /// The adapter then makes its bodies, and calls put_joints_back.
+    /// @throws std::invalid_argument where that was of a member of other sections.
+    void put_back(const Saved& saved) {
+        if (saved.state.size() != std::size_t(description().sections())) {
+            check::fail("MemberSnapshot.member.sections", double(description().sections()), "",
+                        std::to_string(saved.state.size()) + ", as of the member that was saved");
+        }
+        joints_.clear(); // all anew: what follows must not hang on what there is now
+        course_.restore(saved.state);
+        course_.restore(saved.vibration);
+        course_.restore(saved.redundant);
+    }
+    void put_joints_back(const Saved& saved) {
+        for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].hinge->restore(saved.joints[i]);
     }
     /// @throws std::invalid_argument where the place is beyond the ends, the force not finite.
     [[nodiscard]] Force force_at(const Vector3<double>& force, double place) const {
