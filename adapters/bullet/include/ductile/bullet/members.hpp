@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -86,7 +87,8 @@ class Members {
 
     void before_solve();
     [[nodiscard]] bool look(double dt);
-    void begin_blow();
+    /// Members among bodies that close, or that these touch, are solved at once.
+    void begin_blow(std::span<const btRigidBody* const> closing);
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
     [[nodiscard]] bool close_held(Closing when = Closing::after_step);

@@ -316,8 +316,22 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE void Members::begin_blow() {
+DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing) {
     for (Course& course : members_) course.of->begin_blow();
+    const auto solve_at_once = [this](const btCollisionObject& object) {
+        if (Course* course = course_of(object)) (void)is_decided(*course);
+    };
+    const auto closes = [closing](const btCollisionObject* object) {
+        return std::find(closing.begin(), closing.end(), object) != closing.end();
+    };
+    for (const btRigidBody* body : closing) solve_at_once(*body);
+    btDispatcher& dispatcher = *world_.getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        if (manifold.getNumContacts() == 0) continue;
+        if (closes(manifold.getBody0())) solve_at_once(*manifold.getBody1());
+        if (closes(manifold.getBody1())) solve_at_once(*manifold.getBody0());
+    }
 }
 
 DUCTILE_INLINE bool Members::look_blow(double dt) {
