@@ -13,6 +13,7 @@
 #include <ductile/ode/joint_constraint.ipp>
 #include <ductile/ode/member.ipp>
 #include <ductile/ode/member_geoms.ipp>
+#include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>

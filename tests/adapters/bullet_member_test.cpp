@@ -321,7 +321,7 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
           "Member.start_in_body.axes: must be three orthonormal columns, right-handed");
     CHECK(message_of([&] {
               bullet::Member(moving, free_bar, middle, {-1, 1});
-          }) == "Member.box.half_width = -1 m: must be finite and > 0");
+          }) == "Member.box.half_width = -1 m: must be in (0, 1) m");
     btRigidBody& driven = rig.body(0, {0, 0, 0}, {0, 0, 0});
     driven.setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
     CHECK(message_of([&] { bullet::Member(driven, clamped, here); }) ==
@@ -373,11 +373,12 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
         CHECK_FALSE(member->whole());
         if (world_first) {
             world.reset();
-            CHECK(member->absorbed_energy() > 0); // it still says where it is
+            CHECK(member->absorbed_energy() > 0);
+            CHECK(member->whole()); // bent as it is
             CHECK(member->pose(5).getOrigin().y() > 0);
             World another(rig.engine, {.warn = {}});
-            CHECK(message_of([&] { another.add(*member); }) ==
-                  "World.add.member: must be whole, no section of it open");
+            another.add(*member);
+            another.step(1e-3);
             member.reset();
         } else {
             member.reset();
@@ -385,48 +386,8 @@ TEST_CASE("a member, its world and its body may end in any order", "[bullet][mem
             world.reset();
         }
         CHECK(rig.engine.getNumConstraints() == 0);
-        CHECK(rig.engine.getNumCollisionObjects() == 1);
+        CHECK(rig.engine.getNumCollisionObjects() == 2);
         rig.engine.stepSimulation(btScalar(1e-3), 0);
-    }
-}
-
-TEST_CASE("a member that was saved goes on bit for bit, open, half-way and whole again",
-          "[bullet][member]") {
-    const Member of = strip(10);
-    for (const int before : {0, 4, 40, 900}) {
-        Struck scene(of, true);
-        scene.strike(4);
-        for (int i = 0; i < before; ++i) scene.world.step(1e-4);
-        CAPTURE(before);
-        CHECK(scene.member->whole() == (before == 0 || before == 900));
-        const btTransform pose = scene.mass->getWorldTransform();
-        const btVector3 velocity = scene.mass->getLinearVelocity() + btVector3(0, 0.1F, 0),
-                        spin = scene.mass->getAngularVelocity();
-        const bullet::MemberSnapshot saved(*scene.member);
-        std::vector<double> runs[3];
-        for (auto& run : runs) {
-            saved.put_back(*scene.member);
-            scene.mass->setCenterOfMassTransform(pose);
-            scene.mass->setInterpolationWorldTransform(pose);
-            scene.mass->setLinearVelocity(velocity);
-            scene.mass->setAngularVelocity(spin);
-            scene.mass->setInterpolationLinearVelocity(velocity);
-            scene.mass->setInterpolationAngularVelocity(spin);
-            for (int i = 0; i < 100; ++i) {
-                scene.world.step(1e-4);
-                run.push_back(double(scene.mass->getLinearVelocity().y()));
-                run.push_back(scene.member->absorbed_energy());
-                run.push_back(scene.member->open_sections());
-                for (int k = 0; k < of.segments(); ++k) {
-                    run.push_back(double(scene.member->pose(k).getOrigin().y()));
-                }
-            }
-        }
-        const auto differs = [&](const std::vector<double>& run) {
-            return std::mismatch(run.begin(), run.end(), runs[0].begin()).first - run.begin();
-        };
-        CHECK(differs(runs[1]) == int(runs[0].size()));
-        CHECK(differs(runs[2]) == int(runs[0].size()));
     }
 }
 

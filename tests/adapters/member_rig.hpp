@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -106,6 +107,32 @@ struct AlwaysJointed {
     btRigidBody* last = nullptr;
 };
 
+using Snapshot = bullet::MemberSnapshot;
+/// Across a member, where a segment of it is [m].
+inline double across(const bullet::Member& member, int segment) {
+    return double(member.pose(segment).getOrigin().y());
+}
+/// A body that is no member's, as it was.
+struct KeptBody {
+    btRigidBody* body;
+    btTransform pose;
+    btVector3 velocity, spin;
+
+    explicit KeptBody(btRigidBody* of)
+        : body(of),
+          pose(of->getCenterOfMassTransform()),
+          velocity(of->getLinearVelocity()),
+          spin(of->getAngularVelocity()) {}
+    void put_back() const {
+        body->setCenterOfMassTransform(pose);
+        body->setInterpolationWorldTransform(pose);
+        body->setLinearVelocity(velocity);
+        body->setAngularVelocity(spin);
+        body->setInterpolationLinearVelocity(velocity);
+        body->setInterpolationAngularVelocity(spin);
+    }
+};
+
 /// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
 struct Struck {
     Rig rig;
@@ -169,6 +196,7 @@ inline void hold_across(bullet::Member& member, double place, double z, bool sli
 /// and a mass of 100 kg fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
+    std::vector<std::string> said; ///< by the World
     bullet::World world;
     std::unique_ptr<AlwaysJointed> always;
     std::unique_ptr<bullet::Member> member;
@@ -176,7 +204,8 @@ struct HeldTwice {
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
               bool slides = true)
-        : world(rig.engine, {.tolerance = tolerance, .warn = {}}),
+        : world(rig.engine, {.tolerance = tolerance,
+                             .warn = [this](const std::string& line) { said.push_back(line); }}),
           mass(&rig.body(100, {10, 10, 10}, {0, 0, btScalar(place)})) {
         const btVector3 none(0, 0, 0);
         const double length = of.length();
@@ -210,10 +239,44 @@ struct HeldTwice {
     }
 };
 
-/// A ball that strikes the end of a clamped post, 0 ... 2 s.
-struct BallOnPost {
+/// Along z from the origin on, its box, where it has one, going on by `over` at both ends [m].
+inline std::unique_ptr<bullet::Member> bar_of(Rig& rig, const Member& of, bool box,
+                                              double over = 0) {
+    const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+    const auto half = btScalar(of.length() / 2);
+    btCollisionShape* shape = box ? rig.shape(std::make_unique<btBoxShape>(
+                                        btVector3(0.05f, 0.05f, half + btScalar(over))))
+                                  : nullptr;
+    btRigidBody& body = rig.body(
+        of.mass(),
+        {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]), btScalar(whole.inertia[2])},
+        {0, 0, half}, shape, box ? usual : 0, box ? everything : 0);
+    return std::make_unique<bullet::Member>(
+        body, of, btTransform(here.getBasis(), {0, 0, -half}),
+        box ? bullet::MemberBox{0.05, 0.05} : bullet::MemberBox{});
+}
+inline btRigidBody& ball_of(Rig& rig, double mass, const btVector3& at) {
+    const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
+    return rig.body(mass, {inertia, inertia, inertia}, at,
+                    rig.shape(std::make_unique<btSphereShape>(btScalar(0.1))), usual, everything);
+}
+
+struct Scene {
     Rig rig;
     bullet::World world;
+
+    explicit Scene(const btVector3& gravity, double tolerance = 0.01,
+                   double rest_damping = ductile::rest_damping<double>)
+        : rig(gravity),
+          world(rig.engine, {.tolerance = tolerance, .rest_damping = rest_damping, .warn = {}}) {}
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// A ball that strikes the end of a clamped post, 0 ... 2 s.
+struct BallOnPost : Scene {
     std::unique_ptr<bullet::Member> post;
     btRigidBody* ball;
 
@@ -223,13 +286,8 @@ struct BallOnPost {
     /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
     BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
                double gap, double place, bool held_twice)
-        : world(rig.engine, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
-        constexpr double radius = 0.1;
-        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(radius)));
-        btVector3 inertia;
-        sphere->calculateLocalInertia(btScalar(mass), inertia);
-        ball = &rig.body(mass, inertia, {0, btScalar(-half - radius - gap), btScalar(place)},
-                         sphere, usual, everything);
+        : Scene({0, 0, 0}, tolerance, 0) {
+        ball = &ball_of(rig, mass, {0, btScalar(-half - 0.1 - gap), btScalar(place)});
         ball->setLinearVelocity({0, btScalar(speed), 0});
         post = std::make_unique<bullet::Member>(
             rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(half, of.length()), usual, everything), of,
@@ -237,62 +295,33 @@ struct BallOnPost {
         if (held_twice) hold_across(*post, of.length(), of.length(), true, false);
         world.add(*post, "post");
     }
-    void go(double time, double frame) {
-        const int count = int(std::lround(time / frame));
-        for (int i = 0; i < count; ++i) world.step(frame);
-    }
 };
 
 /// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
-struct BallOnBar {
-    Rig rig;
-    bullet::World world;
+struct BallOnBar : Scene {
     std::unique_ptr<bullet::Member> bar;
+    btRigidBody* ball;
 
-    BallOnBar(const Member& of, double mass, double speed, double place)
-        : world(rig.engine, {.tolerance = 0.01, .warn = {}}) {
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
-        const auto half = btScalar(of.length() / 2);
-        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
-        bar = std::make_unique<bullet::Member>(
-            rig.body(of.mass(),
-                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
-                      btScalar(whole.inertia[2])},
-                     {0, 0, half}, box, usual, everything),
-            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
-        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
-        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
-        btRigidBody& ball =
-            rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(-0.1571), btScalar(place)},
-                     sphere, usual, everything);
-        ball.setLinearVelocity({0, btScalar(speed), 0});
+    BallOnBar(const Member& of, double mass, double speed, double place, double over = 0)
+        : Scene({0, 0, 0}), bar(bar_of(rig, of, true, over)) {
+        ball = &ball_of(rig, mass, {0, btScalar(-0.1571), btScalar(place)});
+        ball->setLinearVelocity({0, btScalar(speed), 0});
         world.add(*bar, "bar");
-    }
-    void go(double time, double frame) {
-        const int count = int(std::lround(time / frame));
-        for (int i = 0; i < count; ++i) world.step(frame);
     }
 };
 
 /// A bar along z from the origin on, on a point at its start and on one that slides along at its
 /// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
-struct HungOn {
-    Rig rig{{0, btScalar(-9.81), 0}};
-    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+struct HungOn : Scene {
     std::unique_ptr<bullet::Member> bar;
 
-    HungOn(const Member& of, double mass) {
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+    HungOn(const Member& of, double mass)
+        : Scene({0, btScalar(-9.81), 0}), bar(bar_of(rig, of, false)) {
         const double length = of.length();
-        const auto half = btScalar(length / 2);
-        btRigidBody& body = rig.body(
-            of.mass(),
-            {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]), btScalar(whole.inertia[2])},
-            {0, 0, half});
-        btRigidBody& weight = rig.body(mass, {1, 1, 1}, {0, 0, half});
-        for (btRigidBody* each : {&body, &weight}) each->forceActivationState(ACTIVE_TAG);
-        bar =
-            std::make_unique<bullet::Member>(body, of, btTransform(here.getBasis(), {0, 0, -half}));
+        btRigidBody& weight = rig.body(mass, {1, 1, 1}, {0, 0, btScalar(length / 2)});
+        for (btRigidBody* each : {bar->pieces().front(), &weight}) {
+            each->forceActivationState(ACTIVE_TAG);
+        }
         bar->attach(0, [](btRigidBody& piece, const btTransform& at) {
             return std::make_unique<btPoint2PointConstraint>(piece, at.getOrigin());
         });
@@ -307,14 +336,10 @@ struct HungOn {
 
 /// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
 /// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
-struct LaidOn {
-    Rig rig{{0, btScalar(-9.81), 0}};
-    bullet::World world{rig.engine, {.tolerance = 0.01, .warn = {}}};
+struct LaidOn : Scene {
     std::unique_ptr<bullet::Member> bar;
 
-    LaidOn(const Member& of, double mass, double gap) {
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
-        const auto half = btScalar(of.length() / 2);
+    LaidOn(const Member& of, double mass, double gap) : Scene({0, btScalar(-9.81), 0}) {
         auto* small = rig.shape(std::make_unique<btSphereShape>(btScalar(0.05)));
         for (const double z : {0.2, of.length() - 0.2}) {
             for (const double x : {-0.04, 0.04}) {
@@ -322,17 +347,8 @@ struct LaidOn {
                          usual, everything);
             }
         }
-        auto* sphere = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
-        const auto inertia = btScalar(0.4 * mass * 0.1 * 0.1);
-        rig.body(mass, {inertia, inertia, inertia}, {0, btScalar(0.15 + gap), half}, sphere, usual,
-                 everything);
-        auto* box = rig.shape(std::make_unique<btBoxShape>(btVector3(0.05f, 0.05f, half)));
-        bar = std::make_unique<bullet::Member>(
-            rig.body(of.mass(),
-                     {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]),
-                      btScalar(whole.inertia[2])},
-                     {0, 0, half}, box, usual, everything),
-            of, btTransform(here.getBasis(), {0, 0, -half}), bullet::MemberBox{0.05, 0.05});
+        ball_of(rig, mass, {0, btScalar(0.15 + gap), btScalar(of.length() / 2)});
+        bar = bar_of(rig, of, true);
         world.add(*bar);
     }
 };

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
@@ -129,6 +130,20 @@ struct AlwaysJointed {
     std::vector<std::unique_ptr<Hinge>> hinges;
 };
 
+using Snapshot = ode::MemberSnapshot;
+/// Across a member, where a segment of it is [m].
+inline double across(const ode::Member& member, int segment) {
+    return member.pose(segment).origin[1];
+}
+/// A body that is no member's, as it was.
+struct KeptBody {
+    dBodyID body;
+    ode::BodySnapshot as_it_was;
+
+    explicit KeptBody(dBodyID of) : body(of), as_it_was(of) {}
+    void put_back() const { as_it_was.put_back(body); }
+};
+
 /// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
 struct Struck {
     Rig rig;
@@ -164,6 +179,7 @@ struct Struck {
 /// and a mass of 100 kg fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
+    std::vector<std::string> said; ///< by the World
     ode::World world;
     std::unique_ptr<AlwaysJointed> always;
     std::unique_ptr<ode::Member> member;
@@ -171,7 +187,8 @@ struct HeldTwice {
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
               bool slides = true)
-        : world(rig.id, {.tolerance = tolerance, .warn = {}}),
+        : world(rig.id, {.tolerance = tolerance,
+                         .warn = [this](const std::string& line) { said.push_back(line); }}),
           mass(rig.body(100, {10, 10, 10}, {0, 0, place})) {
         const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, of.length()});
         for (const dBodyID body : {mass, carriage}) world.add(body);
@@ -204,10 +221,39 @@ struct HeldTwice {
     }
 };
 
-/// A ball that strikes the end of a clamped post, 0 ... 2 s.
-struct BallOnPost {
+/// Along z from the origin on, its box, where it has one, going on by `over` at both ends [m].
+inline std::unique_ptr<ode::Member> bar_of(const Rig& rig, const Member& of, bool box,
+                                           double over = 0) {
+    const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+    const double half = of.length() / 2;
+    const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
+    if (box) rig.box(body, {0.05, 0.05, half + over});
+    return std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
+                                         box ? ode::MemberBox{0.05, 0.05} : ode::MemberBox{});
+}
+inline dBodyID ball_of(const Rig& rig, double mass, const V3& at) {
+    const double inertia = 0.4 * mass * 0.1 * 0.1;
+    const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, at);
+    dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+    return ball;
+}
+
+struct Scene {
     Rig rig;
     ode::World world;
+
+    explicit Scene(const V3& gravity, double tolerance = 0.01,
+                   double rest_damping = ductile::rest_damping<double>)
+        : rig(gravity),
+          world(rig.id, {.tolerance = tolerance, .rest_damping = rest_damping, .warn = {}}) {}
+    void go(double time, double frame) {
+        const int count = int(std::lround(time / frame));
+        for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// A ball that strikes the end of a clamped post, 0 ... 2 s.
+struct BallOnPost : Scene {
     std::unique_ptr<ode::Member> post;
     dBodyID ball;
 
@@ -217,11 +263,7 @@ struct BallOnPost {
     /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
     BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
                double gap, double place, bool held_twice)
-        : world(rig.id, {.tolerance = tolerance, .rest_damping = 0, .warn = {}}) {
-        constexpr double radius = 0.1;
-        const double inertia = 0.4 * mass * radius * radius;
-        ball = rig.body(mass, {inertia, inertia, inertia}, {0, -half - radius - gap, place});
-        dGeomSetBody(dCreateSphere(rig.space, dReal(radius)), ball);
+        : Scene({0, 0, 0}, tolerance, 0), ball(ball_of(rig, mass, {0, -half - 0.1 - gap, place})) {
         set_velocity(ball, {0, speed, 0});
         world.add(ball);
         const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
@@ -236,52 +278,34 @@ struct BallOnPost {
         world.add(*post, "post");
         rig.meet(world);
     }
-    void go(double time, double frame) {
-        const int count = int(std::lround(time / frame));
-        for (int i = 0; i < count; ++i) world.step(frame);
-    }
 };
 
 /// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
-struct BallOnBar {
-    Rig rig;
-    ode::World world;
+struct BallOnBar : Scene {
     std::unique_ptr<ode::Member> bar;
+    dBodyID ball;
 
-    BallOnBar(const Member& of, double mass, double speed, double place)
-        : world(rig.id, {.tolerance = 0.01, .warn = {}}) {
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
-        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
-        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
-        rig.box(body, {0.05, 0.05, half});
-        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
-                                            ode::MemberBox{0.05, 0.05});
-        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, -0.1571, place});
-        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
+    BallOnBar(const Member& of, double mass, double speed, double place, double over = 0)
+        : Scene({0, 0, 0}),
+          bar(bar_of(rig, of, true, over)),
+          ball(ball_of(rig, mass, {0, -0.1571, place})) {
         set_velocity(ball, {0, speed, 0});
         world.add(ball);
         world.add(*bar, "bar");
         rig.meet(world);
     }
-    void go(double time, double frame) {
-        const int count = int(std::lround(time / frame));
-        for (int i = 0; i < count; ++i) world.step(frame);
-    }
 };
 
 /// A bar along z from the origin on, on a point at its start and on one that slides along at its
 /// end, and a mass [kg] fixed by a point to its middle; gravity across it. They may sleep.
-struct HungOn {
-    Rig rig{{0, -9.81, 0}};
-    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+struct HungOn : Scene {
     std::unique_ptr<ode::Member> bar;
 
-    HungOn(const Member& of, double mass) {
+    HungOn(const Member& of, double mass) : Scene({0, -9.81, 0}) {
         dWorldSetAutoDisableFlag(rig.id, 1);
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+        bar = bar_of(rig, of, false);
         const double length = of.length(), half = length / 2;
-        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half}),
-                      weight = rig.body(mass, {1, 1, 1}, {0, 0, half}),
+        const dBodyID body = bar->body_of(0), weight = rig.body(mass, {1, 1, 1}, {0, 0, half}),
                       carriage = rig.body(1, {1, 1, 1}, {0, 0, length});
         rig.pin(body, nullptr, {0, 0, 0});
         rig.pin(body, carriage, {0, 0, length});
@@ -290,34 +314,24 @@ struct HungOn {
         dJointAttach(rail, carriage, nullptr);
         dJointSetSliderAxis(rail, 0, 0, 1);
         for (const dBodyID each : {weight, carriage}) world.add(each);
-        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}});
         world.add(*bar);
     }
 };
 
 /// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
 /// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
-struct LaidOn {
-    Rig rig{{0, -9.81, 0}};
-    ode::World world{rig.id, {.tolerance = 0.01, .warn = {}}};
+struct LaidOn : Scene {
     std::unique_ptr<ode::Member> bar;
 
-    LaidOn(const Member& of, double mass, double gap) {
-        const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
-        const double half = of.length() / 2, inertia = 0.4 * mass * 0.1 * 0.1;
+    LaidOn(const Member& of, double mass, double gap) : Scene({0, -9.81, 0}) {
         for (const double z : {0.2, of.length() - 0.2}) {
             for (const double x : {-0.04, 0.04}) {
                 dGeomSetPosition(dCreateSphere(rig.space, dReal(0.05)), dReal(x), dReal(-0.1 - gap),
                                  dReal(z));
             }
         }
-        const dBodyID ball = rig.body(mass, {inertia, inertia, inertia}, {0, 0.15 + gap, half});
-        dGeomSetBody(dCreateSphere(rig.space, dReal(0.1)), ball);
-        world.add(ball);
-        const dBodyID body = rig.body(of.mass(), whole.inertia, {0, 0, half});
-        rig.box(body, {0.05, 0.05, half});
-        bar = std::make_unique<ode::Member>(body, of, JointFrame<double>{.origin = {0, 0, -half}},
-                                            ode::MemberBox{0.05, 0.05});
+        world.add(ball_of(rig, mass, {0, 0.15 + gap, of.length() / 2}));
+        bar = bar_of(rig, of, true);
         world.add(*bar);
         rig.meet(world);
     }

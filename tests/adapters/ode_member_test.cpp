@@ -551,31 +551,49 @@ TEST_CASE("contacts that the program makes itself go to the piece that was struc
     CHECK(absorbed[1] == Approx(absorbed[0]).epsilon(1e-9)); // in another order
 }
 
+namespace {
+
+/// A lamp hangs on a hinge with stops at the end of a free bar, at whose start a sign is fixed, and
+/// that a mass on a ball joint strikes at its middle.
+struct LampOnBar {
+    Rig rig;
+    World world{rig.id, {.warn = {}}};
+    dBodyID mass, lamp, sign;
+    dJointID ball, hinge, fixed;
+    std::unique_ptr<ode::Member> bar;
+
+    LampOnBar()
+        : mass(rig.body(1, {1, 1, 1}, {0, 0, 0.49})),
+          lamp(rig.body(0.2, {0.01, 0.01, 0.01}, {0.2, 0, 1})),
+          sign(rig.body(0.2, {0.01, 0.01, 0.01}, {0, 0, -0.1})) {
+        for (const dBodyID one : {mass, lamp, sign}) world.add(one);
+        bar = bar_of(rig, strip(6, false), false);
+        const dBodyID body = bar->body_of(0);
+        ball = rig.pin(mass, body, {0, 0, 0.49});
+        hinge = dJointCreateHinge(rig.id, nullptr);
+        dJointAttach(hinge, lamp, body);
+        dJointSetHingeAnchor(hinge, 0, 0, 1);
+        dJointSetHingeAxis(hinge, 0, 1, 0);
+        dJointSetHingeParam(hinge, dParamLoStop, dReal(-1));
+        dJointSetHingeParam(hinge, dParamHiStop, dReal(1));
+        fixed = dJointCreateFixed(rig.id, nullptr);
+        dJointAttach(fixed, body, sign);
+        dJointSetFixed(fixed);
+        bar->attach(0, fixed);
+        world.add(*bar);
+        set_velocity(mass, {0, 9, 0});
+        dBodySetAngularVel(lamp, 0, 2, 0);
+    }
+};
+
+} // namespace
+
 TEST_CASE("joints of the user's go to the piece that has their place", "[ode][member]") {
-    // a lamp hangs on a hinge with stops at the end of a free bar that a mass strikes
-    const Member of = strip(6, false);
-    const Rig rig;
-    World world(rig.id, {.warn = {}});
-    const dBodyID body = body_of(rig, of, {0, 0, 0.5});
-    const dBodyID mass = rig.body(1, {1, 1, 1}, {0, 0, 0.5}),
-                  lamp = rig.body(0.2, {0.01, 0.01, 0.01}, {0.2, 0, 1}),
-                  sign = rig.body(0.2, {0.01, 0.01, 0.01}, {0, 0, -0.1});
-    for (const dBodyID one : {mass, lamp, sign}) world.add(one);
-    ode::Member member(body, of, {.origin = {0, 0, -0.5}});
-    const dJointID ball = rig.pin(mass, body, {0, 0, 0.5});
-    const dJointID hinge = dJointCreateHinge(rig.id, nullptr);
-    dJointAttach(hinge, lamp, body);
-    dJointSetHingeAnchor(hinge, 0, 0, 1);
-    dJointSetHingeAxis(hinge, 0, 1, 0);
-    dJointSetHingeParam(hinge, dParamLoStop, dReal(-1));
-    dJointSetHingeParam(hinge, dParamHiStop, dReal(1));
-    const dJointID fixed = dJointCreateFixed(rig.id, nullptr);
-    dJointAttach(fixed, body, sign);
-    dJointSetFixed(fixed);
-    member.attach(0, fixed);
-    world.add(member);
-    set_velocity(mass, {0, 9, 0});
-    dBodySetAngularVel(lamp, 0, 2, 0);
+    LampOnBar scene;
+    World& world = scene.world;
+    const ode::Member& member = *scene.bar;
+    const dJointID ball = scene.ball, hinge = scene.hinge, fixed = scene.fixed;
+    const dBodyID sign = scene.sign;
     bool opened = false;
     double angle = 0, jump = 0, apart = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -608,6 +626,84 @@ TEST_CASE("joints of the user's go to the piece that has their place", "[ode][me
     CHECK(apart < 1e-5); // the engine's own drift
     CHECK(std::abs(world.ledger().unexplained()) < 1e-9);
     CHECK(std::abs(world.ledger().booked(Account::members)) < 1e-4);
+}
+
+TEST_CASE("one that was saved holds on again to balls, hinges and what is fixed, bit for bit",
+          "[ode][member]") {
+    LampOnBar scene;
+    for (const int more : {0, 3, 60}) {
+        for (int i = 0; i < more; ++i) scene.world.step(1e-4);
+        CHECK(scene.bar->whole() == (more == 0));
+        const KeptBody mass(scene.mass), lamp(scene.lamp), sign(scene.sign);
+        const ode::MemberSnapshot saved(*scene.bar);
+        std::vector<double> runs[3], first;
+        for (auto* run : {&first, &runs[0], &runs[1], &runs[2]}) {
+            if (run != &first) {
+                saved.put_back(*scene.bar);
+                for (const KeptBody* one : {&mass, &lamp, &sign}) one->put_back();
+            }
+            for (int i = 0; i < 200; ++i) {
+                scene.world.step(1e-4);
+                run->push_back(scene.bar->absorbed_energy());
+                run->push_back(double(dJointGetHingeAngle(scene.hinge)));
+                run->push_back(double(dBodyGetPosition(scene.sign)[1]));
+            }
+        }
+        CAPTURE(more);
+        CHECK(first[597] > 0.1);
+        for (const std::size_t k : {597, 598, 599}) { // what is fixed is so where bodies drifted to
+            CHECK(runs[0][k] == Approx(first[k]).epsilon(1e-4));
+        }
+        CHECK(runs[1] == runs[0]);
+        CHECK(runs[2] == runs[0]);
+        saved.put_back(*scene.bar);
+        for (const KeptBody* one : {&mass, &lamp, &sign}) one->put_back();
+    }
+}
+
+TEST_CASE("one of one long geom that was saved is struck again bit for bit", "[ode][member]") {
+    Scene scene({0, 0, 0}, 0);
+    const auto bar = bar_of(scene.rig, free_bar(), true);
+    const dBodyID ball = ball_of(scene.rig, 20, {0, -0.1571, 1.9});
+    set_velocity(ball, {0, 3, 0});
+    scene.world.add(ball);
+    scene.world.add(*bar);
+    scene.rig.meet(scene.world);
+    int open = 0;
+    for (const int more : {0, 30, 40, 400}) { // before, while and after it flows
+        for (int i = 0; i < more; ++i) scene.world.step(1e-4);
+        open += !bar->whole();
+        const KeptBody kept(ball);
+        const ode::MemberSnapshot saved(*bar);
+        std::vector<double> runs[3];
+        for (auto& run : runs) {
+            saved.put_back(*bar);
+            kept.put_back();
+            for (int i = 0; i < 300; ++i) {
+                scene.world.step(1e-4);
+                run.push_back(bar->absorbed_energy());
+                run.push_back(across(*bar, 9));
+                run.push_back(double(dBodyGetLinearVel(ball)[1]));
+            }
+        }
+        CAPTURE(more);
+        CHECK(runs[0][897] > 1);
+        CHECK(runs[1] == runs[0]);
+        CHECK(runs[2] == runs[0]);
+        saved.put_back(*bar);
+        kept.put_back();
+    }
+    CHECK(open > 0);
+    CHECK(open < 4);
+}
+
+TEST_CASE("what a snapshot cannot be put back into is said", "[ode][member]") {
+    Struck four(strip(4), true), five(strip(5), true);
+    const ode::MemberSnapshot of_four(*four.member);
+    CHECK(message_of([&] { of_four.put_back(*five.member); }) ==
+          "MemberSnapshot.member.sections = 5: must be 4, as of the member that was saved");
+    four.world.remove(*four.member);
+    CHECK_THROWS_WITH(of_four.put_back(*four.member), "MemberSnapshot.member: must be in a World");
 }
 
 TEST_CASE("halves of a member meet from the break on, neighbours do not before", "[ode][member]") {
@@ -714,11 +810,20 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[o
           "Member.start_in_body = 0.5 m: must be 0: the member's centre is to be the body's");
     CHECK(message_of([&] {
               ode::Member(moving, free_bar, middle, {-1, 1});
-          }) == "Member.box.half_width = -1 m: must be finite and > 0");
+          }) == "Member.box.half_width = -1 m: must be in (0, 1) m");
     JointFrame<double> skewed = middle;
     skewed.axes(0, 1) = 0.5;
     CHECK(message_of([&] { ode::Member(moving, free_bar, skewed); }) ==
           "Member.start_in_body.axes: must be three orthonormal columns, right-handed");
+
+    const dBodyID of_one_geom = rig.body(2, {1, 1, 1}, {3, 0, 0});
+    dBodySetAngularVel(of_one_geom, 0, 1, 0);
+    rig.box(of_one_geom, {0.05, 0.05, 0.5});
+    CHECK(message_of([&] { ode::Member(of_one_geom, free_bar, middle); }) ==
+          "Member.box: must be given where one geom of its body is as long as the member, as it "
+          "would go with one segment");
+    CHECK(dBodyGetPosition(of_one_geom)[0] == 3);
+    CHECK(double(dGeomGetPosition(dBodyGetFirstGeom(of_one_geom))[0]) == 3);
 
     ode::Member member(moving, free_bar, middle);
     CHECK(message_of([&] { ode::Member(moving, free_bar, middle); }) ==

@@ -28,11 +28,11 @@ struct MemberBox {
     double half_width = 0, half_height = 0;
 
     [[nodiscard]] bool is_there() const noexcept { return half_width > 0; }
-    /// @throws std::invalid_argument where one is out of range.
-    void validate() const {
+    /// @throws std::invalid_argument where one is out of range: as wide as `of` is long.
+    void validate(const Member& of) const {
         if (half_width == 0 && half_height == 0) return;
-        check::positive("Member.box.half_width", half_width, "m");
-        check::positive("Member.box.half_height", half_height, "m");
+        check::between("Member.box.half_width", half_width, 0.0, of.length(), "m");
+        check::between("Member.box.half_height", half_height, 0.0, of.length(), "m");
     }
 };
 
@@ -55,6 +55,17 @@ struct MemberBox {
     }
     frame.origin.setZero();
     return frame;
+}
+
+/// What a World says of a member that is kept from turning `at` a place: nothing where a section is
+/// beside it.
+[[nodiscard]] inline std::string said_of_fixed(const Member& member, const MemberPlace& at) {
+    constexpr double beside = 2e-3; // of its length: by twice that what it bears may be too much
+    const double off = member.from_section(at);
+    if (!(off > beside * member.length())) return {};
+    return "ductile: a member is fixed " + number_text(off, 3) +
+           " m from its nearest section, and bears more than its plastic moment there; give it a "
+           "section beside the joint (BeamParameters::fixed_end)";
 }
 
 /// An engine's hinge turns about z, a member bends about x.
@@ -109,6 +120,8 @@ class MemberBook {
 /// `OpenSection`: has the `section` [index] and, by a pointer, the engine's plastic `hinge` there.
 template <class OpenSection>
 class DividedMember {
+    using HingeState = decltype(std::declval<OpenSection>().hinge->state());
+
   public:
     [[nodiscard]] const Member& description() const noexcept { return course_.member(); }
     [[nodiscard]] bool whole() const noexcept { return course_.whole(); }
@@ -140,6 +153,13 @@ class DividedMember {
         }
         return state;
     }
+    /// All of it but its bodies, as an engine's snapshot keeps it. Plain value.
+    struct Saved {
+        MemberState state;
+        MemberVibration vibration;
+        RedundantForces redundant;
+        std::vector<HingeState> joints; ///< of open sections, from the start
+    };
     /// Largest share of what acted on it that was left over in the last step that was looked at
     /// closely (internal_forces.hpp): impulses that it does not know of.
     [[nodiscard]] double left_over() const noexcept { return course_.left_over(); }
@@ -156,9 +176,15 @@ class DividedMember {
 
     /// Of all sections.
     [[nodiscard]] JointReport<double> report() const {
+        constexpr double hair = 1e-6; // [rad]; rows that hold move by less
         JointReport<double> all;
         for (const OpenSection& open : joints_) {
-            const JointReport<double> report = open.hinge->queries().report();
+            JointReport<double> report = open.hinge->queries().report();
+            if (report.outcome == Outcome::yielding && report.plastic_travel > hair &&
+                course_.is_locked(open.section)) {
+                report.outcome = Outcome::unreliable;
+                all.locked = true;
+            }
             all.first_yield = all.first_yield || report.first_yield;
             all.coarse = all.coarse || report.coarse;
             all.residual = std::max(all.residual, report.residual);
@@ -179,6 +205,30 @@ class DividedMember {
             if (!open.hinge->is_awake_member()) section.joint.flowing = false; // not any more
             section.bend = open.hinge->rotation();
         }
+    }
+    [[nodiscard]] Saved save() const {
+        Saved saved{state(), course_.vibration(), course_.redundant(), {}};
+        for (std::size_t section = 0; section < saved.state.size(); ++section) {
+            for (const OpenSection& open : joints_) {
+                if (open.section == int(section)) saved.joints.push_back(open.hinge->state());
+            }
+        }
+        return saved;
+    }
+    /// The adapter then makes its bodies, and calls put_joints_back.
+    /// @throws std::invalid_argument where that was of a member of other sections.
+    void put_back(const Saved& saved) {
+        if (saved.state.size() != std::size_t(description().sections())) {
+            check::fail("MemberSnapshot.member.sections", double(description().sections()), "",
+                        std::to_string(saved.state.size()) + ", as of the member that was saved");
+        }
+        joints_.clear(); // all anew: what follows must not hang on what there is now
+        course_.restore(saved.state);
+        course_.restore(saved.vibration);
+        course_.restore(saved.redundant);
+    }
+    void put_joints_back(const Saved& saved) {
+        for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].hinge->restore(saved.joints[i]);
     }
     /// @throws std::invalid_argument where the place is beyond the ends, the force not finite.
     [[nodiscard]] Force force_at(const Vector3<double>& force, double place) const {

@@ -126,6 +126,14 @@ class Member {
         }
         return k;
     }
+    /// How far a place in a segment is from the farther one of its sections [m].
+    [[nodiscard]] double from_section(const MemberPlace& at) const noexcept {
+        const double half = segment(at.segment).length / 2, z = at.in_segment[2];
+        double far = 0;
+        if (at.segment > 0) far = std::max(far, half + z);
+        if (at.segment < sections()) far = std::max(far, half - z);
+        return far;
+    }
     /// The same, and where in it; `name`: what is asked for.
     /// @throws std::invalid_argument where that is beyond the ends.
     [[nodiscard]] MemberPlace on_axis(const char* name, double place) const {
@@ -152,6 +160,9 @@ struct BeamParameters {
     /// halvings.
     int halvings = 0;
     bool clamped = false; ///< at its start
+    /// A section at its end too, before a stub of 1e-6 of its length: for a joint that keeps the
+    /// end from turning.
+    bool fixed_end = false;
     /// Plastic rotation at which a section breaks [rad], > 0; infinite: never.
     double largest_bending = std::numeric_limits<double>::infinity();
 };
@@ -204,10 +215,20 @@ requires std::same_as<typename T::Scalar, double>
                     "more than its section's radius of gyration, " +
                         number_text(std::sqrt(std::max(x, y)), 3) + " m");
     }
+    check::size_of_beam("Beam", parameters.length, material.density() * area);
+    constexpr double stub_length = 1e-6, stub_mass = 1e-3; // of the beam's
+    const double stub = parameters.fixed_end ? stub_length * parameters.length : 0,
+                 length = parameters.length - stub, mass = material.density() * area * length;
     MemberParameters member;
     member.segments =
-        lumped_segments(parameters.length, material.density() * area * parameters.length,
-                        parameters.segments, parameters.halvings, {x, y, x + y});
+        lumped_segments(length, mass, parameters.segments, parameters.halvings, {x, y, x + y});
+    if (parameters.fixed_end) { // of the inertia of a segment of its mass
+        MemberSegment end = lumped_segments(length, stub_mass * mass * parameters.segments,
+                                            parameters.segments, {x, y, x + y})
+                                .front();
+        end.length = stub;
+        member.segments.push_back(end);
+    }
     if (parameters.clamped) {
         member.segments.insert(member.segments.begin(),
                                MemberSegment{.length = 0, .mass = 0, .held = true});

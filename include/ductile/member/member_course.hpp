@@ -93,6 +93,9 @@ class MemberCourse {
         vibration_.ahead = whole() ? 0 : vibration_.ahead - lost;
         return lost;
     }
+    /// Between supports that hold it along, as the last `beyond` saw them: a section that flows
+    /// there would have to stretch.
+    [[nodiscard]] bool is_locked(int section) const noexcept { return locked_.holds(section); }
     /// Largest left_over of the last `beyond` [-].
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
 
@@ -102,6 +105,7 @@ class MemberCourse {
                                    std::span<const MemberLoad> loads, double dt) {
         found_.clear();
         left_over_ = 0;
+        find_locked(loads);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             left_over_ = std::max(left_over_, forces_.left_over());
@@ -188,6 +192,14 @@ class MemberCourse {
     }
 
   private:
+    void find_locked(std::span<const MemberLoad> loads) noexcept {
+        locked_ = {member_.clamped() ? 0 : member_.segments(), no_section};
+        for (const MemberLoad& load : loads) {
+            if (load.support == nullptr || !load.bears[1]) continue;
+            locked_.first = std::min(locked_.first, load.segment);
+            locked_.last = std::max(locked_.last, load.segment - 1);
+        }
+    }
     /// Of a whole member, whose forces were just found.
     [[nodiscard]] bool is_borne(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                                 double dt) {
@@ -271,6 +283,7 @@ class MemberCourse {
     double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
     MemberVibration vibration_;
     RedundantForces redundant_;
+    MemberRun locked_{0, no_section};                       ///< sections
     bool is_opened_ = false;                                ///< the whole member, by the step
     InternalForces closed_forces_;                          ///< of that, solved when it was whole
     std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands

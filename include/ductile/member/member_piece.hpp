@@ -124,11 +124,24 @@ struct StraightStretch {
     double length = 0;         ///< [m], > 0
 };
 
+/// How far what a member collides with goes beyond its ends, its own axes [m], >= 0.
+struct MemberOverhang {
+    double before = 0, beyond = 0;
+
+    /// Of what reaches from `low` to `high` along the member, whose start is at 0. That of a
+    /// clamped one stays in the ground.
+    [[nodiscard]] static MemberOverhang of(const Member& member, double low, double high) noexcept {
+        const double hair = 1e-6 * member.length();
+        const auto over = [hair](double length) { return length > hair ? length : 0.0; };
+        return {member.clamped() ? 0 : over(-low), over(high - member.length())};
+    }
+};
+
 /// Of a piece from its start, a held segment left out. A solid for each of them has no inner faces
 /// but where it is bent: two solids in a row, one body, would push aside whatever has its edge
 /// where they meet.
-[[nodiscard]] inline std::vector<StraightStretch> straight_stretches(const Member& member,
-                                                                     const MemberPiece& piece) {
+[[nodiscard]] inline std::vector<StraightStretch> straight_stretches(
+    const Member& member, const MemberPiece& piece, const MemberOverhang& over = {}) {
     constexpr double straight_enough = 1e-6; // [rad]
     std::vector<StraightStretch> result;
     for (int k = piece.run.first; k <= piece.run.last; ++k) {
@@ -145,6 +158,14 @@ struct StraightStretch {
         stretch.middle.origin =
             sum(start.origin, scaled(stretch.length / 2, column(stretch.middle.axes, 2)));
     }
+    const auto lengthen = [](StraightStretch& stretch, double by, int way) {
+        stretch.length += by;
+        stretch.middle.origin =
+            sum(stretch.middle.origin, scaled(way * by / 2, column(stretch.middle.axes, 2)));
+    };
+    if (result.empty()) return result;
+    if (piece.run.first == 0) lengthen(result.front(), over.before, -1);
+    if (piece.run.last == member.segments() - 1) lengthen(result.back(), over.beyond, 1);
     return result;
 }
 

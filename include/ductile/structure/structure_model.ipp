@@ -55,7 +55,8 @@ DUCTILE_INLINE void StructureModel::add(std::string name, NodeId start, NodeId e
         const double across = norm(cross(*p.up, difference(to, from))) / (norm(*p.up) * length);
         if (!(across > 1e-6)) detail::refuse(field + "up", detail::text(*p.up), "across its axis");
     }
-    if (p.mass_per_length) check::positive(field + "mass_per_length", *p.mass_per_length, "kg/m");
+    check::size_of_beam("StructureModel.member(" + name + ")", length,
+                        p.mass_per_length.value_or(section.density * section.area));
     check::non_negative(field + "carried_mass", p.carried_mass, "kg");
     check::positive_or_infinite(field + "largest_bending", p.largest_bending, "rad");
     check::positive_or_infinite(field + "largest_twist", p.largest_twist, "rad");

@@ -64,4 +64,19 @@ Scalar between(std::string_view field, Scalar value, Scalar lower, Scalar upper,
     return value;
 }
 
+/// What a beam can be: longer than 1 km, or 25 m² of steel across, it is one described in
+/// millimetres; `owner` has the fields `length` [m] and `mass_per_length` [kg/m].
+inline void size_of_beam(const std::string& owner, double length, double mass_per_length) {
+    constexpr double longest = 1000, heaviest = 2e5;
+    positive(owner + ".length", length, "m");
+    if (length > longest) {
+        fail(owner + ".length", length, "m", "in (0, 1000] m: lengths are metres");
+    }
+    positive(owner + ".mass_per_length", mass_per_length, "kg/m");
+    if (mass_per_length > heaviest) {
+        fail(owner + ".mass_per_length", mass_per_length, "kg/m",
+             "in (0, 200000] kg/m: a section's dimensions are metres");
+    }
+}
+
 } // namespace ductile::check

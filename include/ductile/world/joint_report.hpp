@@ -24,6 +24,7 @@ struct JointReport {
     S residual = 0;           ///< worst violation of any of its rows, as Step::residual
     S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
+    bool locked = false;   ///< a member flowed that nothing lets stretch (member_course.hpp)
     S plastic_travel = 0;  ///< p [m | rad]
     S absorbed_energy = 0; ///< D [J]
     S step_error = 0;      ///< share of p that the steps so far may have misplaced [-]

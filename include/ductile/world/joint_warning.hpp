@@ -17,7 +17,10 @@ namespace ductile {
 
 [[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
     std::ostringstream line;
-    if (!(event.report.residual <= std::numeric_limits<double>::max())) {
+    if (event.report.locked) {
+        line << "flowed at t = " << event.time
+             << " s between supports that hold it along, where it would have to stretch";
+    } else if (!(event.report.residual <= std::numeric_limits<double>::max())) {
         line << "was shown numbers that are not finite at t = " << event.time
              << " s, and keeps its state";
     } else if (event.report.unseen_turn > 0) {
@@ -41,6 +44,7 @@ namespace ductile {
 [[nodiscard]] inline const char* unreliable_advice(const JointEvent<double>& event,
                                                    bool in_frames) {
     const JointReport<double>& report = event.report;
+    if (report.locked) return "let one of its ends slide";
     if (!(report.residual <= std::numeric_limits<double>::max())) {
         return "look for what moved or pushed its bodies so";
     }

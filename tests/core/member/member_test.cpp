@@ -226,6 +226,12 @@ TEST_CASE("a beam is finer towards an end that is struck, and as heavy and long"
     const Rectangle<double> millimetres({.width = 64, .height = 4});
     CHECK(message_of([&] { (void)beam(millimetres, steel, {.length = 2}); }) ==
           "Beam.length = 2 m: must be more than its section's radius of gyration, 18.5 m");
+    CHECK(message_of([&] { (void)beam(millimetres, steel, {.length = 5000}); }) ==
+          "Beam.length = 5000 m: must be in (0, 1000] m: lengths are metres");
+    CHECK(
+        message_of([&] { (void)beam(millimetres, steel, {.length = 500}); }) ==
+        "Beam.mass_per_length = 2009600 kg/m: must be in (0, 200000] kg/m: a section's dimensions "
+        "are metres");
 }
 
 TEST_CASE("in a blow the section nearest to it opens, in a step the worst", "[member]") {

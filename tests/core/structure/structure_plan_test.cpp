@@ -315,6 +315,15 @@ TEST_CASE("What is wrong is named with its value and what it may be", "[structur
           "StructureModel.member(beam).up = (0, 0, 1): must be across its axis");
     CHECK(adding({.mass_per_length = 0.0}) ==
           "StructureModel.member(beam).mass_per_length = 0 kg/m: must be finite and > 0");
+    CHECK(
+        adding({.mass_per_length = 1e6}) ==
+        "StructureModel.member(beam).mass_per_length = 1000000 kg/m: must be in (0, 200000] kg/m: "
+        "a section's dimensions are metres");
+    StructureModel long_one;
+    const NodeId start = long_one.node({0, 0, 0}), end = long_one.node({0, 0, 4000});
+    CHECK(
+        message_of([&] { long_one.member("beam", start, end, bar, steel); }) ==
+        "StructureModel.member(beam).length = 4000 m: must be in (0, 1000] m: lengths are metres");
     CHECK(adding({.carried_mass = NAN}) ==
           "StructureModel.member(beam).carried_mass = nan kg: must be finite and >= 0");
     CHECK(adding({.gap = 2}) ==

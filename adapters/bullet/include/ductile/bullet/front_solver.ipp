@@ -94,29 +94,29 @@ class StruckContacts {
     std::vector<Struck> struck_;
 };
 
-/// While this lives contacts that are open are twice as far apart.
+/// While this lives contacts that are open are twice as far apart, so that half a part closes them,
+/// and may overlap then by as much as gaps are aimed beyond their closing.
 class HalfwayContacts {
   public:
-    HalfwayContacts(btPersistentManifold** manifolds, int count)
-        : manifolds_(manifolds), count_(count) {
-        scale(2);
+    HalfwayContacts(btPersistentManifold** manifolds, int count) {
+        for (int i = 0; i < count; ++i) {
+            for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
+                btManifoldPoint& point = manifolds[i]->getContactPoint(k);
+                const btScalar distance = point.getDistance();
+                if (!(distance > 0)) continue;
+                apart_.emplace_back(&point, distance);
+                point.setDistance(2 * distance + btScalar(closed_gap));
+            }
+        }
     }
-    ~HalfwayContacts() { scale(btScalar(0.5)); }
+    ~HalfwayContacts() {
+        for (const auto& [point, distance] : apart_) point->setDistance(distance);
+    }
     HalfwayContacts(const HalfwayContacts&) = delete;
     HalfwayContacts& operator=(const HalfwayContacts&) = delete;
 
   private:
-    void scale(btScalar by) {
-        for (int i = 0; i < count_; ++i) {
-            for (int k = 0; k < manifolds_[i]->getNumContacts(); ++k) {
-                btManifoldPoint& point = manifolds_[i]->getContactPoint(k);
-                if (point.getDistance() > 0) point.setDistance(by * point.getDistance());
-            }
-        }
-    }
-
-    btPersistentManifold** manifolds_;
-    int count_;
+    std::vector<std::pair<btManifoldPoint*, btScalar>> apart_;
 };
 
 /// While this lives contacts that are open do not rebound: Bullet asks e v - d/h of them before

@@ -20,6 +20,8 @@
 // for the piece that has their place. Forces: apply_force, as a body's own loses the point where it
 // acted.
 //
+// Where it ends or leaves its World while it is open it is one body first, bent as it is.
+//
 // Not thread-safe. Must end before its body and before Bullet's world.
 #pragma once
 
@@ -61,7 +63,6 @@ class Member : public DividedMember<OpenSection> {
     /// is a member already, or a frame is none.
     Member(btRigidBody& body, ductile::Member member, const btTransform& start_in_body,
            const MemberBox& box = {});
-    /// While it is open its pieces end with it, and the body is in no world.
     ~Member();
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;

@@ -30,7 +30,7 @@ DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
     if (Member::of(&body) != nullptr) {
         throw std::invalid_argument("Member.body: must not be a member already");
     }
-    box.validate();
+    box.validate(of);
     const MemberPiece& whole = course_.pieces().front();
     const JointFrame<double> start = to_core(start_in_body);
     constexpr double round_off = sizeof(btScalar) == sizeof(double) ? 1e-9 : 1e-5;
@@ -94,6 +94,10 @@ DUCTILE_INLINE void Member::require_possible() const {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
     }
     if (user_.isKinematicObject()) throw std::logic_error("Member.body: must not be kinematic");
+    if (!whole() && user_.getBroadphaseHandle() != nullptr) {
+        throw std::logic_error(
+            "Member.body: must not be in the world while the member is open: removeRigidBody it");
+    }
     for (const PieceBody& piece : pieces_) {
         if (piece.own == nullptr || piece.body->getBroadphaseHandle() != nullptr) continue;
         throw std::logic_error(
@@ -124,9 +128,6 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
     if (world_ != nullptr) {
         throw std::invalid_argument("World.add.member: must not be in a world already");
     }
-    if (!whole()) {
-        throw std::invalid_argument("World.add.member: must be whole, no section of it open");
-    }
     const int place = user_.getWorldArrayIndex();
     const bool here = user_.getBroadphaseHandle() != nullptr && place >= 0 &&
                       place < world.getNumCollisionObjects() &&
@@ -141,17 +142,15 @@ DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
     make_attachments();
 }
 
-/// Bodies of pieces stay, so that what it says stays.
 DUCTILE_INLINE void Member::leave() {
     if (world_ == nullptr) return;
     pushed_ = rearranged_ = nullptr;
     ends_ = nullptr;
-    for (Attachment& attachment : attachments_) drop_attachment(attachment);
     note_sections();
-    joints_.clear();
-    for (PieceBody& piece : pieces_) {
-        if (piece.own != nullptr) world_->removeRigidBody(piece.body);
-    }
+    std::vector<int> all;
+    for (const OpenSection& open : joints_) all.push_back(open.section);
+    if (!whole()) close(all, false);
+    for (Attachment& attachment : attachments_) drop_attachment(attachment);
     world_ = nullptr;
 }
 

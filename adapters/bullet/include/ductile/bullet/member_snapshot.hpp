@@ -32,11 +32,8 @@ class MemberSnapshot {
         btTransform pose;
         btVector3 velocity, spin;
     };
-    MemberState state_;
-    MemberVibration vibration_;
-    RedundantForces redundant_;
-    std::vector<Body> bodies_;                                ///< by piece
-    std::vector<PlasticHinge<UsualAxisJoint>::State> joints_; ///< of open sections, from the start
+    Member::Saved saved_;
+    std::vector<Body> bodies_; ///< by piece
 };
 
 } // namespace ductile::bullet

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ductile/bullet/divisible.hpp"
@@ -22,6 +23,9 @@ namespace ductile::bullet {
 class MemberTick final : public Divisible {
   public:
     explicit MemberTick(Member& member);
+
+    /// Lines for the World's user.
+    [[nodiscard]] std::vector<std::string> remarks() const;
 
     [[nodiscard]] DUCTILE_INLINE std::span<const PieceBody> pieces() const override;
     [[nodiscard]] DUCTILE_INLINE bool idle() const override;
@@ -60,6 +64,7 @@ class MemberTick final : public Divisible {
 
   private:
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
+    [[nodiscard]] static bool is_support(const Member::Attachment& attachment);
     [[nodiscard]] static std::array<bool, 3> borne_by(btTypedConstraint& constraint,
                                                       const btTransform& pose);
     /// Sums what acted, and lists it where `lists`.

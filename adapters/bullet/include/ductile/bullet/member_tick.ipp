@@ -230,6 +230,25 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
     }
 }
 
+/// It holds on to what cannot move, and does not break.
+DUCTILE_INLINE bool MemberTick::is_support(const Member::Attachment& attachment) {
+    const btTypedConstraint& constraint = *attachment.constraint;
+    const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+    return (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
+           constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
+}
+DUCTILE_INLINE std::vector<std::string> MemberTick::remarks() const {
+    std::vector<std::string> lines;
+    for (const Member::Attachment& attachment : member_.attachments_) {
+        const MemberPlace& at = attachment.at;
+        if (!is_support(attachment)) continue;
+        if (!borne_by(*attachment.constraint, member_.pose(at.segment))[2]) continue;
+        const std::string said = said_of_fixed(member_.description(), at);
+        if (!said.empty()) lines.push_back(said);
+    }
+    return lines;
+}
+
 /// What a constraint locks of a force along y and z of the segment at `pose`, a moment about x.
 DUCTILE_INLINE std::array<bool, 3> MemberTick::borne_by(btTypedConstraint& constraint,
                                                         const btTransform& pose) {
@@ -285,9 +304,7 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         if (moves(a) || moves(b)) attachment.told = *attachment.feedback;
         const int segment = attachment.at.segment;
         add(constraint, attachment.told, member.course_.piece_of(segment), segment);
-        const bool support = (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
-                             constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
-        if (!lists || !support) continue;
+        if (!lists || !is_support(attachment)) continue;
         loads_.back().support = &attachment;
         loads_.back().held_at = attachment.at.in_segment;
         loads_.back().bears = borne_by(*attachment.constraint, member.pose(segment));

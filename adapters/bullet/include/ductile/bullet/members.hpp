@@ -28,6 +28,8 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <span>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -52,8 +54,9 @@ class Members {
     Members(const Members&) = delete;
     Members& operator=(const Members&) = delete;
 
+    /// What is to be said of it.
     /// @throws as World::add.
-    void add(Member& member, std::function<void()> ends);
+    [[nodiscard]] std::vector<std::string> add(Member& member, std::function<void()> ends);
     void remove(Member& member);
     /// It enters and leaves the world by itself.
     void add(Divisible& structure);
@@ -84,7 +87,8 @@ class Members {
 
     void before_solve();
     [[nodiscard]] bool look(double dt);
-    void begin_blow();
+    /// Members among bodies that close, or that these touch, are solved at once.
+    void begin_blow(std::span<const btRigidBody* const> closing);
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
     [[nodiscard]] bool close_held(Closing when = Closing::after_step);

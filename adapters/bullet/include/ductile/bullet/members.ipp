@@ -21,7 +21,7 @@ DUCTILE_INLINE void Members::add(Course course) {
     look_at_all_ = true;
     note_bodies(members_.size() - 1);
 }
-DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
+DUCTILE_INLINE std::vector<std::string> Members::add(Member& member, std::function<void()> ends) {
     member.enter(world_);
     member.ends_ = std::move(ends);
     member.pushed_ = [this, &member] { pushed_.push_back(&member); };
@@ -35,8 +35,9 @@ DUCTILE_INLINE void Members::add(Member& member, std::function<void()> ends) {
     };
     if (!member.forces_.empty()) pushed_.push_back(&member);
     auto tick = std::make_unique<MemberTick>(member);
-    Divisible* of = tick.get();
+    MemberTick* of = tick.get();
     add({.of = of, .member = &member, .tick = std::move(tick)});
+    return of->remarks();
 }
 DUCTILE_INLINE void Members::add(Divisible& structure) {
     add({.of = &structure, .member = nullptr});
@@ -315,8 +316,22 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE void Members::begin_blow() {
+DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing) {
     for (Course& course : members_) course.of->begin_blow();
+    const auto solve_at_once = [this](const btCollisionObject& object) {
+        if (Course* course = course_of(object)) (void)is_decided(*course);
+    };
+    const auto closes = [closing](const btCollisionObject* object) {
+        return std::find(closing.begin(), closing.end(), object) != closing.end();
+    };
+    for (const btRigidBody* body : closing) solve_at_once(*body);
+    btDispatcher& dispatcher = *world_.getDispatcher();
+    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+        if (manifold.getNumContacts() == 0) continue;
+        if (closes(manifold.getBody0())) solve_at_once(*manifold.getBody1());
+        if (closes(manifold.getBody1())) solve_at_once(*manifold.getBody0());
+    }
 }
 
 DUCTILE_INLINE bool Members::look_blow(double dt) {

@@ -24,18 +24,38 @@ using ductile::MemberBox;
 void copy_manners(const btRigidBody& from, btRigidBody& body);
 void set_motion(btRigidBody& body, const BodyMotion& motion);
 
+/// Its contacts are known before they touch, as those of a box alone: a compound asks a part of it
+/// where its bounds meet.
+class PieceBox final : public btBoxShape {
+  public:
+    explicit PieceBox(const btVector3& half_lengths) : btBoxShape(half_lengths) {
+        constexpr auto hardly = btScalar(1e-3); // else edges are rounded by up to 4 cm [m]
+        setMargin(hardly);
+    }
+    void getAabb(const btTransform& at, btVector3& low, btVector3& high) const override {
+        constexpr auto early = btScalar(1e-3); // [m]
+        btBoxShape::getAabb(at, low, high);
+        low -= btVector3(early, early, early);
+        high += btVector3(early, early, early);
+    }
+    /// As Bullet's, of which GCC warns.
+    void getPlane(btVector3& normal, btVector3& support, int i) const override {
+        normal.setZero();
+        normal[i / 2] = i % 2 == 0 ? btScalar(1) : btScalar(-1);
+        support = localGetSupportingVertex(-normal);
+    }
+};
+
 /// Of boxes that are its own.
 class ShapeOfBoxes final : public btCompoundShape {
   public:
     void add(const btTransform& middle, const btVector3& half_lengths) {
-        constexpr auto hardly = btScalar(1e-3); // else edges are rounded by up to 4 cm [m]
-        boxes_.push_back(std::make_unique<btBoxShape>(half_lengths));
-        boxes_.back()->setMargin(hardly);
+        boxes_.push_back(std::make_unique<PieceBox>(half_lengths));
         addChildShape(middle, boxes_.back().get());
     }
 
   private:
-    std::vector<std::unique_ptr<btBoxShape>> boxes_;
+    std::vector<std::unique_ptr<PieceBox>> boxes_;
 };
 
 struct PieceBody {
@@ -57,6 +77,7 @@ class PieceMaker {
           first_in_body_(whole_in_body),
           straight_(user.getCollisionShape()),
           mass_(user.getMass()) {
+        if (box_.is_there()) find_overhang();
         const btVector3& inverse = user.getInvInertiaDiagLocal();
         for (int i = 0; i < 3; ++i) inertia_[i] = inverse[i] > 0 ? 1 / inverse[i] : btScalar(0);
     }
@@ -84,6 +105,7 @@ class PieceMaker {
     [[nodiscard]] PieceBody make(const PlacedPiece& placed);
 
   private:
+    void find_overhang();
     [[nodiscard]] std::unique_ptr<btCompoundShape> make_shape(const MemberPiece& piece);
     void enter_world(btRigidBody& body) const;
 
@@ -95,6 +117,7 @@ class PieceMaker {
     int group_ = 0, mask_ = 0; ///< of the user's body
     btVector3 gravity_{0, 0, 0};
     btCollisionShape* straight_; ///< the user's
+    MemberOverhang over_;        ///< of that
     btScalar mass_;              ///< as the user made it
     btVector3 inertia_{0, 0, 0};
     std::unique_ptr<btCompoundShape> bent_; ///< of the user's body, once it is bent

@@ -12,10 +12,17 @@
 
 namespace ductile::bullet {
 
+DUCTILE_INLINE void PieceMaker::find_overhang() {
+    const MemberPiece whole = make_piece(member_, straight(member_), {0, member_.segments() - 1});
+    const JointFrame<double> start = placed(first_in_body_, whole.section(member_, 0, false));
+    btVector3 low, high;
+    straight_->getAabb(to_bullet(start).inverse(), low, high);
+    over_ = MemberOverhang::of(member_, double(low.z()), double(high.z()));
+}
 DUCTILE_INLINE std::unique_ptr<btCompoundShape> PieceMaker::make_shape(const MemberPiece& piece) {
     auto shape = std::make_unique<ShapeOfBoxes>();
     if (box_.is_there()) {
-        for (const StraightStretch& stretch : straight_stretches(member_, piece)) {
+        for (const StraightStretch& stretch : straight_stretches(member_, piece, over_)) {
             shape->add(to_bullet(stretch.middle),
                        {btScalar(box_.half_width), btScalar(box_.half_height),
                         btScalar(stretch.length / 2)});

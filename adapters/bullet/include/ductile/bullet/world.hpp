@@ -93,7 +93,7 @@ class World final : public SteppedWorld {
     /// @throws std::invalid_argument where it is in a world already, a constraint that it did not
     /// make holds its body, or this world is a btMultiBodyDynamicsWorld.
     void add(Member& member, std::string name = {});
-    /// Of a member that is open the pieces end, and its body is in no world.
+    /// One that is open is one body first, bent as it is.
     void remove(Member& member);
     /// Looks after a structure that opens its joints (structure_in_time.hpp, which calls this).
     /// @throws as add of a member.

@@ -141,7 +141,9 @@ DUCTILE_INLINE void World::remove(Divisible& structure,
 DUCTILE_INLINE void World::add(Member& member, std::string name) {
     require_members();
     front_->set_direct(&members_.direct());
-    members_.add(member, [this, &member] { remove(member); });
+    for (const auto& line : members_.add(member, [this, &member] { remove(member); })) {
+        supervisor().say(line);
+    }
     supervisor().add(&member, std::move(name), [this, &member] { return members_.report(member); });
 }
 DUCTILE_INLINE void World::remove(Member& member) {

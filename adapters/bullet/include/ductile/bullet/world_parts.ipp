@@ -298,7 +298,7 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
     if (members_.empty()) return;
     close_held(Closing::before_blow);
     save();
-    members_.begin_blow();
+    members_.begin_blow(closing_.found_bodies());
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {

@@ -29,6 +29,7 @@
 
 #include <ode/ode.h>
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,19 +53,34 @@ struct OpenSection {
     std::unique_ptr<PlasticHinge<UsualAxisJoint>> hinge;
 };
 
+/// Where in the world a joint of the user's holds: a ball, a hinge or a fixed one. Plain value.
+class JointPlace {
+  public:
+    explicit JointPlace(dJointID joint);
+    /// It holds there then, bodies being where they were, but for `changed`, one of the two.
+    void attach(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) const;
+
+  private:
+    void attach_ball(dJointID joint, dBodyID first, dBodyID second) const;
+    void attach_hinge(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) const;
+
+    std::array<dReal, 3> on_first_{}, on_second_{}, axis_{};
+    dReal angle_ = 0;
+};
+
 /// By what a joint holds a member.
 struct HeldBy {
     bool holds = false;                             ///< it cannot move, but along
     Vector3<double> rail = Vector3<double>::Zero(); ///< of length 1; zero: not at all
 };
 
-/// What it says of its sections: member/divided_member.hpp.
+/// What it says of its sections: member/divided_member.hpp. All of it: member_snapshot.hpp.
 class Member final : public Divisible, public DividedMember<OpenSection> {
   public:
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is null, is kinematic and the member not
     /// clamped or the other way round, has another mass than the member, its centre elsewhere, or
-    /// is a member already, or a frame is none.
+    /// is a member already, or a frame is none; or as MemberGeoms.
     Member(dBodyID body, ductile::Member member, const JointFrame<double>& start_in_body,
            const MemberBox& box = {});
     DUCTILE_INLINE ~Member() override;
@@ -89,6 +105,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void apply_force(const Vector3<double>& force, double place);
 
   private:
+    friend class MemberSnapshot;
     using Hinge = PlasticHinge<UsualAxisJoint>;
     struct PieceBody {
         dBodyID body = nullptr;

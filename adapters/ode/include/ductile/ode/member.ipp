@@ -20,6 +20,20 @@ namespace detail {
     return body;
 }
 
+/// What cannot move, or slides along a rail of what cannot and does no more.
+[[nodiscard]] DUCTILE_INLINE HeldBy support_by(dBodyID body) {
+    if (!can_move(body)) return {.holds = true};
+    for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+        const dJointID joint = dBodyGetJoint(body, i);
+        if (dJointGetType(joint) != dJointTypeSlider || dJointIsEnabled(joint) == 0) continue;
+        if (can_move(dJointGetBody(joint, 0)) && can_move(dJointGetBody(joint, 1))) continue;
+        dVector3 axis;
+        dJointGetSliderAxis(joint, axis);
+        return {.holds = true, .rail = to_core(axis)};
+    }
+    return {};
+}
+
 } // namespace detail
 
 DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
@@ -38,7 +52,7 @@ DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
     }
     constexpr double round_off = 1e-9;
     require_frame("Member.start_in_body", start_in_body, round_off);
-    box.validate();
+    box.validate(of);
     dBodyGetMass(body, &mass_);
     const MemberPiece& whole = course_.pieces().front();
     first_in_body_ = whole_in_body_ = whole_in_body(of, whole, start_in_body, double(mass_.mass));
@@ -123,6 +137,13 @@ DUCTILE_INLINE void Member::enter(World& world) {
     }
     require_possible();
     world_ = &world;
+    for (const Hold& hold : holds_) {
+        if (dJointGetType(hold.joint) != dJointTypeFixed) continue;
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        if (!detail::support_by(bodies.a == hold.body ? bodies.b : bodies.a).holds) continue;
+        const std::string said = said_of_fixed(description(), hold.at);
+        if (!said.empty()) world.supervisor().say(said);
+    }
 }
 DUCTILE_INLINE void Member::leave() {
     if (world_ == nullptr) return;

@@ -6,8 +6,8 @@
 //   no box   each geom of the body belongs to the segment nearest to its middle, and goes with it
 //   a box    they are the member's while it is whole and straight, and disabled while it is open or
 //            bent; then each stretch without a bend has a box, that of its first segment, made in
-//            the space of the first of them, with its data and bits. For one long geom in place of
-//            one per segment.
+//            the space of the first of them, with its data and bits; those at the ends reach as
+//            far as the user's geoms. For one long geom in place of one per segment.
 //
 // Not thread-safe.
 #pragma once
@@ -24,6 +24,7 @@ namespace ductile::ode {
 class MemberGeoms {
   public:
     /// `whole`, which is straight, is at `in_body` in the user's body.
+    /// @throws std::invalid_argument where there is no box, and one geom as long as the member.
     MemberGeoms(dBodyID user, const ductile::Member& member, const MemberBox& box,
                 const MemberPiece& whole, const JointFrame<double>& in_body);
     MemberGeoms(const MemberGeoms&) = delete;
@@ -43,6 +44,7 @@ class MemberGeoms {
         bool enabled = true;
     };
 
+    void find_overhang(const JointFrame<double>& start_in_body);
     void make_boxes();
     void destroy_boxes();
     static void place(dGeomID geom, dBodyID body, const JointFrame<double>& in_body);
@@ -50,6 +52,7 @@ class MemberGeoms {
     dBodyID user_;
     const ductile::Member& member_;
     MemberBox box_;
+    MemberOverhang over_; ///< of the user's geoms
     std::vector<Geom> users_;
     std::vector<dGeomID> boxes_; ///< by segment; null: none; disabled: another's is as long
 };

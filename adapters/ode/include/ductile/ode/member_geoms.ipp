@@ -3,9 +3,15 @@
 // Bodies of member_geoms.hpp.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <span>
+#include <stdexcept>
+
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/member_geoms.hpp"
 #include "ductile/ode/piece.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
 
@@ -24,6 +30,34 @@ DUCTILE_INLINE MemberGeoms::MemberGeoms(dBodyID user, const ductile::Member& mem
             transposed_times(segment.axes, difference(entry.in_body.origin, segment.origin)),
             transposed_times(segment.axes, entry.in_body.axes)};
     }
+    find_overhang(placed(in_body, whole.section(member, 0, false)));
+}
+
+/// Looked for where the member is along z of the world from the origin on.
+DUCTILE_INLINE void MemberGeoms::find_overhang(const JointFrame<double>& start_in_body) {
+    constexpr double as_long = 0.9; // as the member
+    double low = 0, high = 0, longest = 0;
+    WorldSnapshot pose;
+    pose.take(std::span(&user_, 1), {});
+    const JointFrame<double> body = frame_around({}, start_in_body);
+    dMatrix3 turned;
+    detail::to_ode(body.axes, turned);
+    dBodySetRotation(user_, turned);
+    dBodySetPosition(user_, dReal(body.origin.x()), dReal(body.origin.y()), dReal(body.origin.z()));
+    for (const Geom& entry : users_) {
+        std::array<dReal, 6> bounds{};
+        dGeomGetAABB(entry.geom, bounds.data());
+        low = std::min(low, double(bounds[4]));
+        high = std::max(high, double(bounds[5]));
+        longest = std::max(longest, double(bounds[5] - bounds[4]));
+    }
+    pose.put_poses_back();
+    if (!box_.is_there() && longest > as_long * member_.length()) {
+        throw std::invalid_argument(
+            "Member.box: must be given where one geom of its body is as long as the member, as it "
+            "would go with one segment");
+    }
+    over_ = MemberOverhang::of(member_, low, high);
 }
 
 DUCTILE_INLINE void MemberGeoms::place(dGeomID geom, dBodyID body,
@@ -49,7 +83,7 @@ DUCTILE_INLINE void MemberGeoms::put(const MemberPiece& piece, dBodyID body,
             dGeomDisable(boxes_[std::size_t(k)]);
             dGeomSetBody(boxes_[std::size_t(k)], nullptr);
         }
-        for (const StraightStretch& stretch : straight_stretches(member_, piece)) {
+        for (const StraightStretch& stretch : straight_stretches(member_, piece, over_)) {
             const dGeomID of_it = boxes_[std::size_t(stretch.run.first)];
             if (of_it == nullptr) continue;
             dGeomBoxSetLengths(of_it, dReal(2 * box_.half_width), dReal(2 * box_.half_height),

@@ -13,24 +13,6 @@
 
 namespace ductile::ode {
 
-namespace detail {
-
-/// What cannot move, or slides along a rail of what cannot and does no more.
-[[nodiscard]] DUCTILE_INLINE HeldBy support_by(dBodyID body) {
-    if (!can_move(body)) return {.holds = true};
-    for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
-        const dJointID joint = dBodyGetJoint(body, i);
-        if (dJointGetType(joint) != dJointTypeSlider || dJointIsEnabled(joint) == 0) continue;
-        if (can_move(dJointGetBody(joint, 0)) && can_move(dJointGetBody(joint, 1))) continue;
-        dVector3 axis;
-        dJointGetSliderAxis(joint, axis);
-        return {.holds = true, .rail = to_core(axis)};
-    }
-    return {};
-}
-
-} // namespace detail
-
 DUCTILE_INLINE void Member::apply_forces() {
     for (const Force& force : forces_) {
         const dBodyID body = body_of(force.at.segment);

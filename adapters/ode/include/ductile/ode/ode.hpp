@@ -11,6 +11,7 @@
 #include "ductile/ode/joint_constraint.hpp"
 #include "ductile/ode/member.hpp"
 #include "ductile/ode/member_geoms.hpp"
+#include "ductile/ode/member_snapshot.hpp"
 #include "ductile/ode/members.hpp"
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/ode/plastic_constraint.hpp"

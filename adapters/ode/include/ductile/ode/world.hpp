@@ -142,6 +142,7 @@ class World final : public SteppedWorld {
     }
 
     friend class Member;
+    friend class MemberSnapshot;
     friend class StructureInTime;
     /// Of a member or a structure: it is not reported by itself.
     void take_in(PlasticConstraint& joint);

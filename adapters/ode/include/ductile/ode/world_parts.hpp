@@ -116,6 +116,7 @@ class WorldParts final : public PartEngine {
     void tick(double h, bool blow);
     void damp(double share);
     void drop_forces();
+    void see_contacts();
     /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
     /// back where that throws.
     void look(const WorldSnapshot* moved = nullptr);

@@ -330,6 +330,8 @@ void WorldParts::rearrange(const Change& change) {
     change();
     of_.meter.bodies_rearranged(before);
     begin_bodies();
+    looked_ = false;
+    see_contacts(); // those that were seen were of other bodies
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) try {

@@ -83,7 +83,9 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         if (!blow && plastic) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
-            surface.motionN += dReal(turned(named, h) - std::max(0.0, 2 * gap / h));
+            // what a blow strikes as closed closes no more
+            const double closes = gap < closed_depth / 2 ? 0 : 2 * gap / h;
+            surface.motionN += dReal(turned(named, h) - closes);
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -129,16 +131,22 @@ DUCTILE_INLINE void WorldParts::open_others() {
     }
 }
 
-DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
-    apart_ = apart;
-    ClosingContacts found;
-    if (!of_.maker) return found;
+/// As the coming part begins.
+DUCTILE_INLINE void WorldParts::see_contacts() {
+    if (!of_.maker) return;
     if (!std::exchange(looked_, true)) look();
     seen_.clear();
-    if (!closing_.any_plastic()) return found;
+    if (!closing_.any_plastic()) return;
     for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
     detail::sort_by_bodies(seen_);
     closing_.remember();
+}
+
+DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    apart_ = apart;
+    see_contacts();
+    ClosingContacts found;
+    if (!of_.maker || !closing_.any_plastic()) return found;
     found.strikes = closing_.strikes(touching);
     if (found.strikes) return found;
     found.time = closing_.next_gap(apart);

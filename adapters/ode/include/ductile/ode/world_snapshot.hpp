@@ -23,12 +23,28 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
+
+/// A body as it is, to the last bit. Plain value.
+class BodySnapshot {
+  public:
+    explicit BodySnapshot(dBodyID body);
+    void put_pose_back(dBodyID body) const;
+    /// Its forces are zero then.
+    void put_back(dBodyID body) const;
+
+  private:
+    std::array<dReal, 3> place_, velocity_, spin_;
+    std::array<dReal, 4> quaternion_;
+    std::array<dReal, 12> matrix_; ///< by rows of four
+    bool enabled_;
+};
 
 class WorldSnapshot {
   public:
@@ -39,15 +55,7 @@ class WorldSnapshot {
     void put_poses_back() const;
 
   private:
-    struct Body {
-        dBodyID body;
-        std::array<dReal, 3> place, velocity, spin;
-        std::array<dReal, 4> quaternion;
-        std::array<dReal, 12> matrix; ///< by rows of four
-        bool enabled;
-    };
-
-    std::vector<Body> bodies_;
+    std::vector<std::pair<dBodyID, BodySnapshot>> bodies_;
     std::vector<PlasticConstraint*> joints_;
     unsigned long seed_ = 0;
 };
