@@ -55,14 +55,14 @@ struct RunReport {
     double tolerance = 0;    ///< that was asked for [-]
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
-    /// By contacts that nobody drives, beyond what they took; 0 where no ledger is kept, no number
-    /// where that is none [J].
+    /// By contacts that nobody drives, beyond what they took, pair by pair; 0 where no ledger is
+    /// kept, no number where that is none [J].
     double brought_in = 0;
     /// By plastic joints that nobody drives, beyond what they took beside their flow; 0 where no
     /// ledger is kept [J].
     double given = 0;
     double stored = 0; ///< most that elastic joints held [J]
-    double least = 0;  ///< strength × travel that nobody misses, of all joints [J]
+    double least = 0;  ///< strength × travel that nobody misses, the most of one row [J]
 
     /// Whether what the parts could not resolve, and what contacts and joints brought in beside
     /// what nobody misses, is within the tolerance of the plastic work (of joints: and of what they

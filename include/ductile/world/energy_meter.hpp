@@ -30,6 +30,7 @@
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/ledger.hpp"
+#include "ductile/world/pair_accounts.hpp"
 
 namespace ductile {
 
@@ -183,6 +184,7 @@ class EnergyMeter {
         detail::AddressBook course_numbers, plastic_numbers;
         std::vector<Course> courses;
         std::vector<PlasticStart> plastic_start;
+        PairAccounts::Accounts pairs;
         double dt = 0;
     };
     void swap_record() noexcept;
@@ -211,7 +213,9 @@ class EnergyMeter {
 
     Kept kept_;
     Record record_;
-    double sign_ = 1;            ///< -1: what is booked is taken back
+    double sign_ = 1;     ///< -1: what is booked is taken back
+    bool narrow_ = false; ///< the lists are of some of the bodies alone
+    PairAccounts pairs_;
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
     double step_plastic_ = 0; ///< [J]

@@ -33,6 +33,7 @@ DUCTILE_INLINE void AddressBook::clear() { numbers_.clear(); }
 DUCTILE_INLINE void EnergyMeter::open() {
     ledger_.open(held());
     last_ = ledger_.held();
+    pairs_ = {};
 }
 
 DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
@@ -52,6 +53,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 
 DUCTILE_INLINE void EnergyMeter::before_step() {
     step_plastic_ = 0;
+    pairs_.begin_step(!narrow_);
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
     course_numbers_.clear();
@@ -91,6 +93,7 @@ DUCTILE_INLINE void EnergyMeter::keep() {
 DUCTILE_INLINE void EnergyMeter::put_back() {
     ledger_ = kept_.ledger;
     last_ = kept_.last;
+    pairs_.take_back();
     // joints that came since keep their numbers
     std::fill(std::copy(kept_.taken.begin(), kept_.taken.end(), taken_.begin()), taken_.end(), 0.0);
 }
@@ -143,6 +146,7 @@ DUCTILE_INLINE void EnergyMeter::book_lists(double dt) {
     contacts_.clear();
     list_contacts(dt, contacts_);
     for (MeteredContact& contact : contacts_) book_contact(contact);
+    ledger_.set_brought_in(pairs_.brought_in());
 }
 
 // ---- a step of some of the bodies
@@ -152,6 +156,7 @@ DUCTILE_INLINE void EnergyMeter::swap_record() noexcept {
     std::swap(plastic_numbers_, record_.plastic_numbers);
     courses_.swap(record_.courses);
     plastic_start_.swap(record_.plastic_start);
+    pairs_.swap_step(record_.pairs);
 }
 
 DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
@@ -161,6 +166,7 @@ DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
 
 DUCTILE_INLINE void EnergyMeter::narrow(bool all) {
     outside_ = {};
+    narrow_ = !all;
     if (all) return;
     const HeldEnergy<double> listed = held();
     outside_ = {last_.kinetic - listed.kinetic, last_.potential - listed.potential,
@@ -277,8 +283,13 @@ DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
                                              velocity_sum(contact.b, contact.point_b));
     contact.taken = -dot(contact.normal, twice) / 2;
-    ledger_.book_contact(sign_ * contact.taken, contact.driven);
+    add(Account::contact, contact.taken);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
+    if (sign_ < 0) {
+        pairs_.take_back({contact.a, contact.b});
+    } else if (!contact.driven) {
+        pairs_.book({contact.a, contact.b}, contact.taken);
+    }
 }
 
 DUCTILE_INLINE double EnergyMeter::step_of_contacts(
