@@ -209,11 +209,13 @@ TEST_CASE("A box that lands as good as flush strikes with its whole face", "[con
         CHECK(rig.world().run().believed());
         return joint.absorbed_energy();
     };
+    // the digits of a float's places are as large as what the tilt lifts
+    constexpr double alike = StructureRig::single ? 0.01 : 0.004;
     const double flush = work(V3::Zero(), dt);
     for (const V3& tilt : {V3(1e-6, 1e-6, 0), V3(-1e-6, 0, 0), V3(2e-5, -2e-5, 0)}) {
         for (const double frame : {dt, dt / 4}) {
             CAPTURE(tilt.transpose(), frame);
-            CHECK(work(tilt, frame) == Approx(flush).epsilon(0.004));
+            CHECK(work(tilt, frame) == Approx(flush).epsilon(alike));
         }
     }
 }

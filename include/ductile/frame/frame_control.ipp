@@ -185,7 +185,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         const double early = judged.closed;
         if (tries >= detail::tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
-        run_.least = std::max(run_.least, judged.of_one); // of what sleeps too
+        run_.least = std::max(run_.least, judged.least); // of what sleeps too
+        run_.of_one = std::max(run_.of_one, judged.of_one);
         // of one that turned too far it says nothing, and such a part is no way out
         if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
         const bool good =

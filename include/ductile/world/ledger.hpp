@@ -75,8 +75,8 @@ class Ledger {
     [[nodiscard]] S supplied() const noexcept { return supplied_; }
     [[nodiscard]] S booked(Account account) const noexcept { return booked_[std::size_t(account)]; }
 
-    /// By contacts that nobody drives, beyond what they took, pair by pair; a part of
-    /// Account::contact [J].
+    /// By contacts of islands with plastic joints that nobody drives, beyond what they took, pair
+    /// by pair; a part of Account::contact [J].
     void set_brought_in(S energy) noexcept { brought_in_ = energy; }
     [[nodiscard]] S brought_in() const noexcept { return brought_in_; }
 
