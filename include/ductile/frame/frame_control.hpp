@@ -30,7 +30,9 @@
 // stop that is predicted, u = -a t, nor past 0.045 rad of what is pushed; the last two parts of
 // a frame share what is left of it. A frame at whose begin nothing is at stake is tried whole.
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
-// length, such as a kick from elsewhere. The first length is done, and said.
+// length, such as a kick from elsewhere. The first length is done, and said. Unless rigid rows take
+// it as a frame begins, of velocities that hands gave since the last one: these are struck first, in
+// the shortest part.
 // Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
 // its accelerations are not compared with what follows.
 // Before a part: a contact that touches and closes gets a blow, at most three in one instant; a gap
@@ -85,8 +87,8 @@ class FrameControl {
         run_.unreliable += joints;
     }
 
-    /// What contacts that nobody drives took so far; no number: nothing is known [J].
-    void tell_contacts(double took) noexcept { run_.brought_in = took > 0 ? 0.0 : 0.0 - took; }
+    /// What contacts that nobody drives brought in so far; no number: nothing is known [J].
+    void tell_contacts(double brought_in) noexcept { run_.brought_in = brought_in; }
 
     /// Somebody changed the bodies: what the last parts say of the next one is forgotten.
     void forget() noexcept;
@@ -102,6 +104,7 @@ class FrameControl {
         double allowed = 0;   ///< that grows as the budget goes
         double tolerated = 0; ///< that does not
         double least = 0;     ///< strength x travel that nobody misses, of all rows
+        double of_one = 0;    ///< the largest of these
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         double turned = 0;   ///< of turns that were too far, in those that a part may have; 0: none

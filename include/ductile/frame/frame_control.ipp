@@ -186,6 +186,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries >= detail::tries_at_gaps) judged.closed = 0;
         allowed_ = judged.allowed;
         run_.least = std::max(run_.least, judged.least); // of what sleeps too
+        run_.of_one = std::max(run_.of_one, judged.of_one);
         // of one that turned too far it says nothing, and such a part is no way out
         if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
         const bool good =
@@ -207,9 +208,12 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         stop_failed_ = stop_failed_ || at_stop;
         constexpr double of_length = 0.1, of_error = 0.7;
         if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
-            jump = true;
-            at_event = at_gap;
-            h = first;
+            // velocities that do not fit, as hands gave them between frames, are struck
+            const bool unfit = report_.parts == 0 && !fitted_ &&
+                               motion.rigid_work > of_error * judged.error;
+            jump = !unfit;
+            at_event = at_gap && jump;
+            h = jump ? first : shortest;
         } else {
             // nothing is known of what was before: a short part first
             const bool start = tries == 0 && past_.empty() && judged.closed == 0;
@@ -242,11 +246,12 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     Judgement judged;
     double ahead = 0, of_flows = 0, largest = 0;
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0;
-    judged.least = motion.closed_work;
+    judged.least = judged.of_one = motion.closed_work;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         const double least = row.strength * row.least;
         judged.least += least;
+        judged.of_one = std::max(judged.of_one, least);
         if (row.elastic) { // the first one that yields
             of_springs = std::max(of_springs, least);
         } else {

@@ -55,21 +55,22 @@ struct RunReport {
     double tolerance = 0;    ///< that was asked for [-]
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
-    /// By contacts that nobody drives, beyond what they took; 0 where no ledger is kept, no number
-    /// where that is none [J].
+    /// By contacts of islands with plastic joints that nobody drives, beyond what they took, pair
+    /// by pair; 0 where no ledger is kept, no number where that is none [J].
     double brought_in = 0;
     /// By plastic joints that nobody drives, beyond what they took beside their flow; 0 where no
     /// ledger is kept [J].
     double given = 0;
     double stored = 0; ///< most that elastic joints held [J]
     double least = 0;  ///< strength × travel that nobody misses, of all joints [J]
+    double of_one = 0; ///< the most of that of one row [J]
 
     /// Whether what the parts could not resolve, and what contacts and joints brought in beside
     /// what nobody misses, is within the tolerance of the plastic work (of joints: and of what they
     /// stored), and no joint was unreliable. False too where an estimate is no number.
     [[nodiscard]] bool believed() const noexcept {
         return left.energy <= tolerance * plastic_work &&
-               brought_in <= tolerance * (plastic_work + least) &&
+               brought_in <= tolerance * (plastic_work + of_one) &&
                given <= tolerance * (plastic_work + stored + least) && error < unlimited &&
                unreliable == 0;
     }

@@ -30,6 +30,7 @@
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/ledger.hpp"
+#include "ductile/world/pair_accounts.hpp"
 
 namespace ductile {
 
@@ -183,6 +184,7 @@ class EnergyMeter {
         detail::AddressBook course_numbers, plastic_numbers;
         std::vector<Course> courses;
         std::vector<PlasticStart> plastic_start;
+        PairAccounts::Accounts pairs;
         double dt = 0;
     };
     void swap_record() noexcept;
@@ -190,6 +192,10 @@ class EnergyMeter {
     void add(Account account, double energy) { ledger_.book(account, sign_ * energy); }
 
     [[nodiscard]] Course* course_of(const void* body);
+    /// What hangs together by joints and contacts, and with a plastic joint.
+    void find_islands();
+    [[nodiscard]] std::size_t island_of(std::size_t course);
+    [[nodiscard]] bool is_plastic(const void* body);
     /// Null where it is no plastic joint of the step.
     [[nodiscard]] const PlasticStart* start_of(const PairQueries* joint) const;
     void take_back(const void* body, const VelocityChange<double>& change);
@@ -211,7 +217,9 @@ class EnergyMeter {
 
     Kept kept_;
     Record record_;
-    double sign_ = 1;            ///< -1: what is booked is taken back
+    double sign_ = 1;     ///< -1: what is booked is taken back
+    bool narrow_ = false; ///< the lists are of some of the bodies alone
+    PairAccounts pairs_;
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
     double step_plastic_ = 0; ///< [J]
@@ -219,6 +227,8 @@ class EnergyMeter {
     detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;
     std::vector<PlasticStart> plastic_start_;
+    std::vector<std::size_t> island_;         ///< by course: another one of its island, or itself
+    std::vector<char> plastic_island_;        ///< by course that is its own
     std::vector<double> taken_;               ///< [J]
     mutable std::vector<MeteredBody> bodies_; ///< room that is used again, as are the next
     mutable std::vector<MeteredPlasticJoint> plastic_;

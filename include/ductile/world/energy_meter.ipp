@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "ductile/vocabulary/linkage.hpp"
@@ -33,6 +34,7 @@ DUCTILE_INLINE void AddressBook::clear() { numbers_.clear(); }
 DUCTILE_INLINE void EnergyMeter::open() {
     ledger_.open(held());
     last_ = ledger_.held();
+    pairs_ = {};
 }
 
 DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
@@ -52,6 +54,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 
 DUCTILE_INLINE void EnergyMeter::before_step() {
     step_plastic_ = 0;
+    pairs_.begin_step(!narrow_);
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
     course_numbers_.clear();
@@ -91,6 +94,7 @@ DUCTILE_INLINE void EnergyMeter::keep() {
 DUCTILE_INLINE void EnergyMeter::put_back() {
     ledger_ = kept_.ledger;
     last_ = kept_.last;
+    pairs_.take_back();
     // joints that came since keep their numbers
     std::fill(std::copy(kept_.taken.begin(), kept_.taken.end(), taken_.begin()), taken_.end(), 0.0);
 }
@@ -142,7 +146,9 @@ DUCTILE_INLINE void EnergyMeter::book_lists(double dt) {
     for (const MeteredJoint& joint : joints_) book_joint(joint, dt);
     contacts_.clear();
     list_contacts(dt, contacts_);
+    find_islands();
     for (MeteredContact& contact : contacts_) book_contact(contact);
+    ledger_.set_brought_in(pairs_.brought_in());
 }
 
 // ---- a step of some of the bodies
@@ -152,6 +158,7 @@ DUCTILE_INLINE void EnergyMeter::swap_record() noexcept {
     std::swap(plastic_numbers_, record_.plastic_numbers);
     courses_.swap(record_.courses);
     plastic_start_.swap(record_.plastic_start);
+    pairs_.swap_step(record_.pairs);
 }
 
 DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
@@ -161,6 +168,7 @@ DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
 
 DUCTILE_INLINE void EnergyMeter::narrow(bool all) {
     outside_ = {};
+    narrow_ = !all;
     if (all) return;
     const HeldEnergy<double> listed = held();
     outside_ = {last_.kinetic - listed.kinetic, last_.potential - listed.potential,
@@ -189,6 +197,38 @@ DUCTILE_INLINE void EnergyMeter::moved_back() {
 DUCTILE_INLINE EnergyMeter::Course* EnergyMeter::course_of(const void* body) {
     const std::size_t number = course_numbers_.find(body);
     return number != detail::AddressBook::unknown ? &courses_[number] : nullptr;
+}
+
+DUCTILE_INLINE void EnergyMeter::find_islands() {
+    island_.resize(courses_.size());
+    std::iota(island_.begin(), island_.end(), std::size_t(0));
+    const auto join = [this](const void* a, const void* b) {
+        const std::size_t of_a = course_numbers_.find(a), of_b = course_numbers_.find(b);
+        constexpr std::size_t unknown = detail::AddressBook::unknown;
+        if (of_a != unknown && of_b != unknown) island_[island_of(of_a)] = island_of(of_b);
+    };
+    for (const MeteredJoint& joint : joints_) join(joint.a, joint.b);
+    for (const MeteredContact& contact : contacts_) join(contact.a, contact.b);
+    for (const auto& [joint, a, b] : plastic_) join(a, b);
+    plastic_island_.assign(courses_.size(), 0);
+    for (const auto& [joint, a, b] : plastic_) {
+        for (const void* body : {a, b}) {
+            const std::size_t course = course_numbers_.find(body);
+            if (course != detail::AddressBook::unknown) plastic_island_[island_of(course)] = 1;
+        }
+    }
+}
+
+DUCTILE_INLINE std::size_t EnergyMeter::island_of(std::size_t course) {
+    for (; island_[course] != course; course = island_[course]) {
+        island_[course] = island_[island_[course]];
+    }
+    return course;
+}
+
+DUCTILE_INLINE bool EnergyMeter::is_plastic(const void* body) {
+    const std::size_t course = course_numbers_.find(body);
+    return course != detail::AddressBook::unknown && plastic_island_[island_of(course)] != 0;
 }
 
 DUCTILE_INLINE const EnergyMeter::PlasticStart* EnergyMeter::start_of(
@@ -277,8 +317,17 @@ DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
                                              velocity_sum(contact.b, contact.point_b));
     contact.taken = -dot(contact.normal, twice) / 2;
-    ledger_.book_contact(sign_ * contact.taken, contact.driven);
+    add(Account::contact, contact.taken);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
+    const bool plastic = is_plastic(contact.a) || is_plastic(contact.b);
+    // one account for all that no plastic joint holds
+    const PairAccounts::Pair pair =
+        plastic ? PairAccounts::Pair(contact.a, contact.b) : PairAccounts::Pair();
+    if (sign_ < 0 && plastic) {
+        pairs_.take_back(pair);
+    } else if (!contact.driven) {
+        pairs_.book(pair, sign_ * contact.taken);
+    }
 }
 
 DUCTILE_INLINE double EnergyMeter::step_of_contacts(

@@ -59,17 +59,12 @@ class Ledger {
     /// Starts a new account with what the world holds now; forgets all entries.
     void open(const HeldEnergy<S>& held) noexcept {
         opened_ = now_ = held;
-        supplied_ = undriven_contact_ = 0;
+        supplied_ = brought_in_ = 0;
         booked_.fill(0);
     }
 
     /// Books energy that left the bodies; negative where they gained it [J].
     void book(Account account, S energy) noexcept { booked_[std::size_t(account)] += energy; }
-    /// The same of a contact's normal force; `driven`: a body whose motion is prescribed presses.
-    void book_contact(S energy, bool driven) noexcept {
-        book(Account::contact, energy);
-        if (!driven) undriven_contact_ += energy;
-    }
     /// Books energy brought in from outside, as by a motor or an applied force [J].
     void supply(S energy) noexcept { supplied_ += energy; }
     /// Tells what the world holds now.
@@ -80,9 +75,10 @@ class Ledger {
     [[nodiscard]] S supplied() const noexcept { return supplied_; }
     [[nodiscard]] S booked(Account account) const noexcept { return booked_[std::size_t(account)]; }
 
-    /// Of Account::contact, what nobody drives [J]: negative where an engine pushed bodies out of
-    /// each other with more than they lost as they met.
-    [[nodiscard]] S undriven_contact() const noexcept { return undriven_contact_; }
+    /// By contacts of islands with plastic joints that nobody drives, beyond what they took, pair
+    /// by pair; a part of Account::contact [J].
+    void set_brought_in(S energy) noexcept { brought_in_ = energy; }
+    [[nodiscard]] S brought_in() const noexcept { return brought_in_; }
 
     /// Energy that no entry names [J]; round-off in a complete ledger.
     [[nodiscard]] S unexplained() const noexcept {
@@ -94,7 +90,7 @@ class Ledger {
   private:
     HeldEnergy<S> opened_;
     HeldEnergy<S> now_;
-    S supplied_ = 0, undriven_contact_ = 0;
+    S supplied_ = 0, brought_in_ = 0;
     std::array<S, std::size_t(Account::count)> booked_{};
 };
 

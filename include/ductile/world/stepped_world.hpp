@@ -158,7 +158,7 @@ class SteppedWorld : private JointKeeper {
         frames_->count_unreliable(supervisor_.watch().unreliable());
         supervisor_.set_time(end);
         if (const Ledger<double>* kept = kept_ledger()) {
-            frames_->tell_contacts(tell_of_ledger() ? kept->undriven_contact()
+            frames_->tell_contacts(tell_of_ledger() ? kept->brought_in()
                                                     : std::numeric_limits<double>::quiet_NaN());
         }
         supervisor_.close();

@@ -20,18 +20,6 @@ TEST_CASE("what no entry names is unexplained", "[energy]") {
     CHECK(ledger.booked(Account::plastic) == 0);
 }
 
-TEST_CASE("a contact's energy is told apart where a driven body presses", "[energy]") {
-    Ledger<double> ledger;
-    ledger.open({.kinetic = 100});
-    ledger.book_contact(30, false);
-    ledger.book_contact(-50, true);
-    ledger.book_contact(-40, false);
-    CHECK(ledger.booked(Account::contact) == -60);
-    CHECK(ledger.undriven_contact() == -10);
-    ledger.open(ledger.held());
-    CHECK(ledger.undriven_contact() == 0);
-}
-
 TEST_CASE("accounts have names", "[energy]") {
     CHECK(to_string(Account::plastic) == "plastic");
     CHECK(to_string(Account::friction) == "friction");

@@ -8,8 +8,9 @@
 //   K = 1/effective mass of the point
 //
 // Many of Bullet's algorithms know no contact before shapes overlap, so a gap is aimed at a hair
-// beyond its closing, and what touches overlaps. What was just put down on something has no speed
-// yet, and would fall through it for a part: its gap closes by its weight.
+// beyond its closing, so that what touches overlaps: with all corners, where faces are flush. What
+// was just put down on something has no speed yet, and would fall through it for a part: its gap
+// closes by its weight.
 //
 // What closes with little energy counts all the same where a part, half of which comes before
 // contacts are looked for, would carry a body past it: a light bar before a heavy hammer.
@@ -108,7 +109,7 @@ class ClosingContactsFinder {
     /// One that is apart and not aimed at.
     struct OpenPair {
         Pair pair;
-        double away, speed; ///< of their nearest points [m], closing [m/s]
+        double way, speed; ///< until their nearest points are closed [m], closing [m/s]
     };
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
     [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);

@@ -35,6 +35,11 @@ namespace detail {
     return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
 }
 
+[[nodiscard]] DUCTILE_INLINE btVector3 spin(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body != nullptr ? body->getAngularVelocity() : btVector3(0, 0, 0);
+}
+
 /// 1/effective mass along `normal` at `point`, of one of the bodies [1/kg].
 [[nodiscard]] DUCTILE_INLINE double yield_at(const btCollisionObject& object,
                                              const btVector3& point, const btVector3& normal) {
@@ -86,6 +91,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     struct Nearest {                                           ///< of the points
         double away = std::numeric_limits<double>::infinity(); ///< [m]
         double speed = 0, energy = 0;                          ///< with which it closes [m/s], [J]
+        double way = 0;                                        ///< until it is closed [m]
     } nearest{};
     ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
                   const btCollisionObject* a, const btCollisionObject* b, const btVector3& falls)
@@ -112,11 +118,14 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const double faster = gain(of_a, normal), away = distance(point, *a, *b);
         const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
-        if (away < nearest.away) nearest = {away, speed, taken};
+        const double gap = std::max(away, 0.0);
+        const btVector3 turns =
+            speed > 0 ? btScalar(gap / speed) * (spin(of_a) - spin(of_b)) : btVector3(0, 0, 0);
+        const double way = gap + closed_gap / 2 + flush_depth(point, *a, *b, turns);
+        if (away < nearest.away) nearest = {away, speed, taken, way};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
             if (!(end * end > 2 * yields * apart)) return 0;
-            const double way = std::max(away, 0.0) + closed_gap / 2;
             const double at = std::sqrt(speed * speed + 2 * faster * way);
             found.time = std::min(found.time, 2 * way / (speed + at));
             return 0;
@@ -127,9 +136,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         // what a blow does not know is not closed for Bullet
         const bool counts = touches ? away > -closed_gap / 4 && taken > touching
                                     : taken > apart || speed * h / 2 - away > unseen;
-        if (counts) {
-            found.time = std::min(found.time, (std::max(away, 0.0) + closed_gap / 2) / speed);
-        }
+        if (counts) found.time = std::min(found.time, way / speed);
         return 0;
     }
 };
@@ -160,7 +167,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         const bool closes = of_pair.strikes || of_pair.time <= h;
         if (closes) note_found(*pair.a, *pair.b);
         if (!closes && points.nearest.away > 0) {
-            open_.push_back({pair, points.nearest.away, points.nearest.speed});
+            open_.push_back({pair, points.nearest.way, points.nearest.speed});
         }
     }
     return found;
@@ -285,12 +292,12 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
 DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,
                                                     double apart) {
     double first = h;
-    for (const auto& [pair, away, speed] : open_) {
+    for (const auto& [pair, way, speed] : open_) {
         ClosingContacts none;
         detail::ClosestPoints now(none, apart, apart, 0, h, pair.a, pair.b, btVector3(0, 0, 0));
         world.contactPairTest(pair.a, pair.b, now);
         if (!(now.nearest.away < -closed_gap) || !(now.nearest.energy > apart)) continue;
-        const double way = away + closed_gap / 2, gain = (now.nearest.speed - speed) / h;
+        const double gain = (now.nearest.speed - speed) / h;
         if (!(gain > 0)) continue;
         note_found(*pair.a, *pair.b);
         first = std::min(first, 2 * way / (speed + std::sqrt(speed * speed + 2 * gain * way)));

@@ -12,6 +12,11 @@
 // too small, and grows right as they come near. All other pairs are left as they are, as Bullet
 // rounds them in its contacts too: a ball that hits two boxes in a line where they meet pushes them
 // apart. A small btBoxShape::setMargin makes such edges sharp.
+//
+// Faces that are as good as flush, within 0.1 mrad, meet at once in reality, and in a sequence of
+// blows on one corner after the other in rigid bodies, so that the last digit tells how a box goes
+// on. Bullet knows corners that overlap alone: `flush_depth` is how deep the first has to for the
+// others to do so.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
@@ -60,6 +65,39 @@ namespace ductile::bullet {
     const double sharp = farthest(a, -1) - farthest(b, 1);
     const double digits = 16 * double(SIMD_EPSILON) * double(size(a) + size(b));
     return rounded - sharp > digits ? sharp : rounded;
+}
+
+/// Of closest points that a contactPairTest found, as they meet after a further `turn` of `a`
+/// beside `b` [rad]; 0 where nothing is flush then [m].
+[[nodiscard]] inline double flush_depth(const btManifoldPoint& point,
+                                        const btCollisionObjectWrapper& a,
+                                        const btCollisionObjectWrapper& b, const btVector3& turn) {
+    constexpr btScalar flush = btScalar(1e-4), of_a_face = btScalar(0.999);
+    if (a.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE ||
+        b.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE) {
+        return 0;
+    }
+    const auto half = [](const btCollisionObjectWrapper& of) {
+        return static_cast<const btBoxShape*>(of.getCollisionShape())->getHalfExtentsWithMargin();
+    };
+    for (const bool on_a : {false, true}) { // whose face it is
+        const btCollisionObjectWrapper &face = on_a ? a : b, &other = on_a ? b : a;
+        const btMatrix3x3 &axes = face.getWorldTransform().getBasis(),
+                          &along = other.getWorldTransform().getBasis();
+        for (int k = 0; k < 3; ++k) {
+            const btVector3 normal = axes.getColumn(k);
+            if (btFabs(normal.dot(point.m_normalWorldOnB)) < of_a_face) continue;
+            const btVector3 tilt = (normal + normal.cross(on_a ? -turn : turn)) * along;
+            const btVector3 room = axes.transposeTimes(along).absolute().transpose() * half(face);
+            btScalar depth = 0;
+            for (int j = 0; j < 3; ++j) {
+                const btScalar least = std::min(half(other)[j], room[j]);
+                if (btFabs(tilt[j]) < flush) depth += 2 * least * btFabs(tilt[j]);
+            }
+            return double(depth);
+        }
+    }
+    return 0;
 }
 
 } // namespace ductile::bullet
