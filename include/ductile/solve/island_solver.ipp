@@ -72,6 +72,7 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     constexpr int most = 4;
     constexpr double cold = 0.1, warm = 1e-4;
+    constexpr double well = 1e-8; // joints look closer than `solved_residual`
     double least = std::numeric_limits<double>::infinity();
     const auto keep = [&] {
         detail::project_impulses(system_);
@@ -86,12 +87,6 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
         }
         return least / report.scale;
     };
-    const std::vector<IslandBlock>& blocks = system_.island().blocks;
-    const bool contacts = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
-        return block.kind == BlockKind::contact;
-    });
-    // joints look closer than contacts settle
-    const double well = contacts ? solved_residual / 10 : 1e-8;
     for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
     put(start_);
     for (int pass = 0; pass < most; ++pass) {

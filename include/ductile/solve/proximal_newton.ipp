@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "ductile/solve/block_form.hpp"
-#include "ductile/solve/island_report.hpp"
 #include "ductile/solve/proximal_newton.hpp"
 
 namespace ductile::solve {
@@ -16,7 +15,7 @@ namespace ductile::solve {
 DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness) {
     constexpr double most_soft = 0.1, alike = 1e-9, last = 1e-14, stiffer = 0.1, closer = 0.01;
     // of the largest velocity
-    constexpr double roughly = 1e-3, fair = 1e-6, well = 1e-9, apart = solved_residual / 10;
+    constexpr double roughly = 1e-3, fair = 1e-6, well = 1e-9, apart = 1e-8;
     constexpr int most = 30;
     system_ = &system;
     iterations_ = 0;
