@@ -29,7 +29,7 @@ inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip
 
 DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
     constexpr int most = 30;    // rounds
-    constexpr int patience = 3; // of them, without fewer rows in the wrong place
+    constexpr int patience = 6; // of them, without fewer rows in the wrong place
     system_ = &system;
     rounds_ = 0;
     begin();
