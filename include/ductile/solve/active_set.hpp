@@ -15,8 +15,8 @@
 // otherwise. A block that comes to its surface starts from there.
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
-// where many rows change over together; where it ends without an answer proximal_newton.hpp has the
-// word.
+// where many rows change over together: then those alone that are most wrong do, and where the
+// rounds end without an answer proximal_newton.hpp has the word.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once
@@ -52,7 +52,11 @@ class ActiveSet {
     void set_tangents();
     [[nodiscard]] bool take_step();
     [[nodiscard]] int change_over();
-    [[nodiscard]] Side where(std::size_t row) const;
+    struct Place {
+        Side side = Side::free;
+        double off = 0; ///< [m/s | rad/s]
+    };
+    [[nodiscard]] Place where(std::size_t row) const;
 
     IslandSystem* system_ = nullptr;
     ContactSlips slips_;
@@ -62,6 +66,8 @@ class ActiveSet {
     double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
+    bool cautious_ = false;                   ///< rows that are most wrong go first
+    int wrong_rows_ = 0;                      ///< that belong to no block
 };
 
 } // namespace ductile::solve

@@ -34,6 +34,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
     rounds_ = 0;
     begin();
     int fewest = std::numeric_limits<int>::max(), left = patience;
+    cautious_ = false;
     bool same = false; // all sides are as they were, and the factors of use
     while (rounds_ < most) {
         ++rounds_;
@@ -57,7 +58,10 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
             fewest = wrong;
             left = patience;
         } else if (--left <= 0) {
-            return false;
+            if (cautious_ || wrong_rows_ == 0) return false;
+            cautious_ = true;
+            fewest = std::numeric_limits<int>::max();
+            left = most;
         }
     }
     return false;
@@ -248,33 +252,43 @@ DUCTILE_INLINE void ActiveSet::end_hardening() {
     least_given_ = std::numeric_limits<double>::infinity();
 }
 
-/// Where a row belongs.
-DUCTILE_INLINE Side ActiveSet::where(std::size_t i) const {
+/// Where a row belongs, and by how much it is wrong where it is.
+DUCTILE_INLINE ActiveSet::Place ActiveSet::where(std::size_t i) const {
     const IslandRow& row = system_->island().rows[i];
     const IslandSystem::Row& work = system_->rows()[i];
-    if (work.own == 0 || !(row.lower < row.upper)) return row.side;
+    if (work.own == 0 || !(row.lower < row.upper)) return {row.side, 0};
     const double least = accepted();
     if (row.side != Side::free) {
         const double off = row.side == Side::lower ? work.residual : -work.residual;
-        return off > least ? Side::free : row.side;
+        return {off > least ? Side::free : row.side, off};
     }
     double cap = 0;
     if (std::isfinite(row.lower)) cap = std::abs(row.lower);
     if (std::isfinite(row.upper)) cap = std::max(cap, std::abs(row.upper));
     const double slack = 1e-10 * cap + least / work.metric;
-    if (row.impulse < row.lower - slack) return Side::lower;
-    return row.impulse > row.upper + slack ? Side::upper : Side::free;
+    if (row.impulse < row.lower - slack) {
+        return {Side::lower, (row.lower - row.impulse) * work.metric};
+    }
+    if (row.impulse > row.upper + slack) {
+        return {Side::upper, (row.impulse - row.upper) * work.metric};
+    }
+    return {Side::free, 0};
 }
 
 DUCTILE_INLINE int ActiveSet::change_over() {
     Island& island = system_->island();
     int wrong = 0;
+    double worst = 0;
+    for (std::size_t i = 0; cautious_ && i < island.rows.size(); ++i) {
+        if (system_->alone(i)) worst = std::max(worst, where(i).off);
+    }
     for (std::size_t i = 0; i < island.rows.size(); ++i) {
         if (!system_->alone(i)) continue;
-        const Side side = where(i);
-        wrong += side != island.rows[i].side;
-        island.rows[i].side = side;
+        const Place place = where(i);
+        wrong += place.side != island.rows[i].side;
+        if (place.off >= worst / 2) island.rows[i].side = place.side;
     }
+    wrong_rows_ = wrong;
     const double least = accepted();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);

@@ -12,8 +12,7 @@
 // on which Newton with a line search cannot fail: along a step its slope rises, so that the line
 // search is a root of the slope. σ falls from a tenth of the rows' own effect to below the softness
 // of any row while x' becomes better, so that few rows change sides in a round; at the answer x =
-// x', and σ has no part in it. It rises again after a round that Newton did not end: at corners of
-// a surface its tangent is not all that is to be known.
+// x', and σ has no part in it.
 //
 // The shifts of contacts follow their slips from round to round.
 //

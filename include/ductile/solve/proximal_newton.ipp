@@ -13,7 +13,7 @@
 namespace ductile::solve {
 
 DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness) {
-    constexpr double most_soft = 0.1, alike = 1e-9, last = 1e-14, stiffer = 0.1, closer = 0.01;
+    constexpr double alike = 1e-9, last = 1e-14, stiffer = 0.1, closer = 0.01;
     // of the largest velocity
     constexpr double roughly = 1e-3, fair = 1e-6, well = 1e-9, apart = 1e-8;
     constexpr int most = 30;
@@ -46,14 +46,15 @@ DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness)
             slips_.follow(system);
         }
         before = left;
-        if (newton == Round::not_ended) {
-            softness = std::min(softness / stiffer, most_soft);
-        } else if (there) { // the less σ, the more impulses follow from a velocity's last digits
+        if (newton == Round::not_ended) { // once more, from where it came to
+            enough = std::max(enough, closer * left);
+            continue;
+        }
+        if (there) { // the less σ, the more impulses follow from a velocity's last digits
             enough *= stiffer;
             continue;
-        } else {
-            softness = std::max(stiffer * softness, last);
         }
+        softness = std::max(stiffer * softness, last);
         enough = std::clamp(closer * left, well, roughly);
     }
     see();
