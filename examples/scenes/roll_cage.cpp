@@ -28,8 +28,7 @@
 #include <string>
 #include <vector>
 
-#include "ductile/material/named.hpp"
-#include "ductile/section/tube.hpp"
+#include "rolled_cage.hpp"
 #include "scene.hpp"
 
 namespace ductile::scenes {
@@ -180,46 +179,10 @@ class RollCage final : public Scene {
         take.cut();
     }
 
-    /// Four hoops of tube with rails, floor and braces, 54 members; 1500 kg on the floor.
-    static StructureModel cage() {
-        const Tube<double> tube({.outer_radius = 0.025, .inner_radius = 0.022});
-        const Material<double> steel(s355<double>());
-        StructureModel model({.elastic = true});
-        // across: floor, belt and roof, left and right; the roof below as it has rolled by 150°
-        constexpr std::array<std::array<double, 2>, 6> outline{
-            {{-0.75, 0}, {-0.75, 0.6}, {-0.5, 1.2}, {0.5, 1.2}, {0.75, 0.6}, {0.75, 0}}};
-        const double roll = 150 * std::numbers::pi / 180;
-        std::array<std::array<NodeId, 6>, 4> at;
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            for (std::size_t k = 0; k < outline.size(); ++k) {
-                const auto& [y, z] = outline[k];
-                at[i][k] = model.node({0.8 * double(i), y * std::cos(roll) - z * std::sin(roll),
-                                       2 + y * std::sin(roll) + z * std::cos(roll)});
-            }
-            for (const std::size_t floor : {0, 5}) model.mass(at[i][floor], mass / 8);
-        }
-        int number = 0;
-        const auto member = [&](NodeId a, NodeId b) {
-            model.member("tube " + std::to_string(number++), a, b, tube, steel,
-                         {.joint_length = 0.1, .gap = 0.03});
-        };
-        for (std::size_t i = 0; i < at.size(); ++i) {
-            for (std::size_t k = 0; k < 6; ++k) {
-                member(at[i][k], at[i][(k + 1) % 6]);
-                if (i > 0) member(at[i - 1][k], at[i][k]);
-            }
-            if (i == 0) continue;
-            member(at[i - 1][0], at[i][1]); // sides, roof
-            member(at[i - 1][5], at[i][4]);
-            member(at[i - 1][2], at[i][3]);
-        }
-        for (const std::size_t i : {0, 1, 3}) member(at[i][0], at[i][3]);
-        return model;
-    }
     static void roll_over(Run& run) {
         Take take = run.take("roll over", "A cage falls on the edge of its roof.");
         Stage& stage = take.stage();
-        BuiltStructure& built = stage.build(cage());
+        BuiltStructure& built = stage.build(rolled_cage(true));
         stage.describe({{"section", "tube 50 x 3 mm"}, {"material", "S355"}});
         take.action(60);
         take.run(3);

@@ -20,6 +20,19 @@
 using namespace ductile;
 using namespace ductile::test;
 
+namespace {
+
+/// On the last member that is level, at 0.4 of it [m].
+Vector3<double> on_last_beam(const StructurePlan& plan) {
+    const PlanMember* beam = nullptr;
+    for (const PlanMember& member : plan.members) {
+        if (std::abs(member.from.z() - member.to.z()) < 1e-9) beam = &member;
+    }
+    return beam->from + 0.4 * (beam->to - beam->from);
+}
+
+} // namespace
+
 TEST_CASE("P43 random frames stand below their limit load and fall above it", "[structures]") {
     if (StructureRig::single) return; // the margin is round-off's
     constexpr double dt = 1.0 / 60;
@@ -95,11 +108,7 @@ TEST_CASE("what an elastic frame at rest absorbs of a blow hardly depends on the
         parameters.tolerance = tolerance;
         StructureRig rig(0, parameters);
         const auto frame = rig.build(RandomFrame(seed, true, true).model());
-        const PlanMember* beam = nullptr; // the last one that is level
-        for (const PlanMember& member : frame->plan().members) {
-            if (std::abs(member.from.z() - member.to.z()) < 1e-9) beam = &member;
-        }
-        const Vector3<double> hit = beam->from + 0.4 * (beam->to - beam->from);
+        const Vector3<double> hit = on_last_beam(frame->plan());
         const auto box = rig.box(1200, {0.2, 0.2, 0.2}, hit + Vector3<double>(0, 0, 0.6));
         StructureRig::set_velocity(box, {0, 0, -5});
         rig.run(0.35, dt);
@@ -126,12 +135,7 @@ TEST_CASE("what a box brings in that lay in a frame of many joints is told", "[s
         parameters.ledger = true;
         StructureRig rig(9.81, parameters);
         const auto frame = rig.build(RandomFrame(seed, true, true).model());
-        const PlanMember* beam = nullptr; // the last one that is level
-        for (const PlanMember& member : frame->plan().members) {
-            if (std::abs(member.from.z() - member.to.z()) < 1e-9) beam = &member;
-        }
-        rig.box(1000, {0.2, 0.2, 0.2},
-                beam->from + 0.4 * (beam->to - beam->from) + Vector3<double>(0, 0, above));
+        rig.box(1000, {0.2, 0.2, 0.2}, on_last_beam(frame->plan()) + Vector3<double>(0, 0, above));
         rig.run(0.5, 1.0 / 60);
         CAPTURE(seed, frame->absorbed_energy());
         CHECK(rig.world().run().brought_in > 500);

@@ -6,8 +6,8 @@
 
 #include <catch2/catch.hpp>
 
-#include "adapters/cage.hpp"
 #include "adapters/frame.hpp"
+#include "scenes/rolled_cage.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -164,7 +164,7 @@ TEST_CASE("A cage of rigid joints that falls on its edge is solved, all of it fl
     engine::WorldParameters parameters;
     parameters.tolerance = 0.01;
     StructureRig rig(9.81, parameters);
-    const auto cage = rig.build(rolled_cage(false));
+    const auto cage = rig.build(scenes::rolled_cage(false));
     rig.run(0.5, dt);
     CHECK(rig.world().run().unreliable == 0); // 173 in Bullet, 308 in ODE until they rested
     CHECK(rig.world().run().believed());

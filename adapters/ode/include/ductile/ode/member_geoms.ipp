@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
 #include <stdexcept>
 
 #include "ductile/ode/convert.hpp"
@@ -37,8 +36,7 @@ DUCTILE_INLINE MemberGeoms::MemberGeoms(dBodyID user, const ductile::Member& mem
 DUCTILE_INLINE void MemberGeoms::find_overhang(const JointFrame<double>& start_in_body) {
     constexpr double as_long = 0.9; // as the member
     double low = 0, high = 0, longest = 0;
-    WorldSnapshot pose;
-    pose.take(std::span(&user_, 1), {});
+    const BodySnapshot pose(user_);
     const JointFrame<double> body = frame_around({}, start_in_body);
     dMatrix3 turned;
     detail::to_ode(body.axes, turned);
@@ -51,7 +49,7 @@ DUCTILE_INLINE void MemberGeoms::find_overhang(const JointFrame<double>& start_i
         high = std::max(high, double(bounds[5]));
         longest = std::max(longest, double(bounds[5] - bounds[4]));
     }
-    pose.put_poses_back();
+    pose.put_pose_back(user_);
     if (!box_.is_there() && longest > as_long * member_.length()) {
         throw std::invalid_argument(
             "Member.box: must be given where one geom of its body is as long as the member, as it "

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// A cage of 54 tubes that has rolled by 150 degrees, half a metre above the ground: four hoops with
-// rails, floor and braces, and 1500 kg on the floor. Redundant in every way.
+// A cage of 54 tubes of 50 x 3 mm, S355, that has rolled by 150 degrees and falls on the edge of
+// its roof: four hoops with rails, floor and braces, and 1500 kg on the floor. Redundant in every
+// way.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@
 #include "ductile/section/tube.hpp"
 #include "ductile/structure/structure_model.hpp"
 
-namespace ductile::test {
+namespace ductile::scenes {
 
 inline StructureModel rolled_cage(bool elastic) {
     const Tube<double> tube({.outer_radius = 0.025, .inner_radius = 0.022});
@@ -51,4 +52,4 @@ inline StructureModel rolled_cage(bool elastic) {
     return model;
 }
 
-} // namespace ductile::test
+} // namespace ductile::scenes
