@@ -8,6 +8,7 @@
 #include <ductile/numeric/block_ldlt.ipp>
 #include <ductile/solve/active_set.ipp>
 #include <ductile/solve/certificate.ipp>
+#include <ductile/solve/fixed_sides.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>

@@ -48,9 +48,6 @@ class ActiveSet {
     void end_hardening();
     [[nodiscard]] double exact() const noexcept;
     [[nodiscard]] double accepted() const noexcept;
-    [[nodiscard]] double set_right_sides();
-    void set_tangents();
-    [[nodiscard]] bool take_step();
     [[nodiscard]] int change_over();
     struct Place {
         Side side = Side::free;

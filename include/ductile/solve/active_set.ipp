@@ -9,6 +9,7 @@
 
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/block_form.hpp"
+#include "ductile/solve/fixed_sides.hpp"
 
 namespace ductile::solve {
 
@@ -115,56 +116,6 @@ DUCTILE_INLINE void ActiveSet::place() {
     }
 }
 
-DUCTILE_INLINE void ActiveSet::set_tangents() {
-    Island& island = system_->island();
-    for (std::size_t i = 0; i < island.rows.size(); ++i) {
-        if (!system_->alone(i)) continue;
-        const IslandRow& row = island.rows[i];
-        IslandSystem::Row& work = system_->rows()[i];
-        const bool free = row.side == Side::free && row.lower < row.upper;
-        work.weight = work.own > 0 && free ? 1 / work.compliance : 0;
-    }
-    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
-        const BlockView view = view_of(*system_, k);
-        with_form(view, [&view](auto form) { form.set_tangent(view); });
-    }
-}
-
-/// g and e; the worst that is left [m/s | rad/s]. NaN comes through.
-DUCTILE_INLINE double ActiveSet::set_right_sides() {
-    Island& island = system_->island();
-    double worst = 0;
-    const auto see = [&worst](double off) {
-        if (!(off <= worst)) worst = off;
-    };
-    for (IslandSystem::Row& work : system_->rows()) {
-        work.right = work.residual;
-        work.extra = 0;
-    }
-    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
-        const BlockView view = view_of(*system_, k);
-        see(with_form(view, [&view](auto form) { return form.set_right(view); }));
-    }
-    for (const IslandSystem::Row& work : system_->rows()) {
-        if (work.weight != 0) see(std::abs(work.right));
-    }
-    return worst;
-}
-
-/// False where a block left its surface.
-DUCTILE_INLINE bool ActiveSet::take_step() {
-    Island& island = system_->island();
-    for (std::size_t i = 0; i < island.rows.size(); ++i) {
-        island.rows[i].impulse += system_->rows()[i].change;
-    }
-    bool stays = true;
-    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
-        const BlockView view = view_of(*system_, k);
-        if (!with_form(view, [&view](auto form) { return form.take(view); })) stays = false;
-    }
-    return stays;
-}
-
 /// Where a row is solved, and where it is on the right side [m/s | rad/s].
 DUCTILE_INLINE double ActiveSet::exact() const noexcept {
     return std::max(system_->round_off(4), detail::exactness * system_->scale());
@@ -183,7 +134,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
         return block.state == BlockState::surface;
     });
-    if (!factored) set_tangents();
+    if (!factored) set_tangents(*system_);
     bool stays = true;
     double worst = 0, before = std::numeric_limits<double>::infinity();
     kept_.restart();
@@ -192,7 +143,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     for (int step = 0;; ++step) {
         system_->update_velocities();
         system_->update_residuals();
-        worst = set_right_sides();
+        worst = set_right_sides(*system_);
         bool again = false;
         if (worst <= exact()) {
             if (!harden()) return true;
@@ -209,14 +160,14 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
             continue;
         }
         if (!factored || (curved && !(worst < slow * before))) {
-            set_tangents();
-            static_cast<void>(set_right_sides());
+            set_tangents(*system_);
+            static_cast<void>(set_right_sides(*system_));
             if (!system_->factor()) return false;
             factored = true;
         }
         before = worst;
         system_->step();
-        stays = take_step();
+        stays = take_step(*system_);
     }
     return stays && worst <= std::max(exact(), detail::sufficient * system_->scale());
 }

@@ -14,6 +14,10 @@
 // of any row while x' becomes better, so that few rows change sides in a round; at the answer x =
 // x', and σ has no part in it.
 //
+// Where σ fell, a round starts with a step that leaves sides and states as the last one had them:
+// rows that gave would jump to their bounds with less σ, all along a chain, and Newton would bring
+// them back one by one.
+//
 // The shifts of contacts follow their slips from round to round.
 //
 // Source: proximal method of multipliers: Rockafellar (1976), doi:10.1287/moor.1.2.97; Newton on
@@ -47,6 +51,7 @@ class ProximalNewton {
     enum class Round { ended, not_ended, no_use };
     void soften(double softness);
     [[nodiscard]] double given() const;
+    void predict();
     [[nodiscard]] Round minimise(double enough);
     void respond();
     [[nodiscard]] double slope(double share);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "ductile/solve/block_form.hpp"
+#include "ductile/solve/fixed_sides.hpp"
 #include "ductile/solve/proximal_newton.hpp"
 
 namespace ductile::solve {
@@ -29,9 +30,11 @@ DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness)
     slips_.begin(system);
     double enough = roughly, before = roughly;
     double least_apart = std::numeric_limits<double>::infinity();
+    Round newton = Round::not_ended;
     for (int round = 0; round < most; ++round) {
         soften(softness);
-        const Round newton = minimise(enough);
+        if (newton == Round::ended) predict();
+        newton = minimise(enough);
         if (newton == Round::no_use) break;
         see();
         respond(); // sides and states
@@ -160,9 +163,20 @@ DUCTILE_INLINE void ProximalNewton::search(double first) {
     }
 }
 
+/// A step with the sides of the last round.
+DUCTILE_INLINE void ProximalNewton::predict() {
+    see();
+    set_tangents(*system_);
+    static_cast<void>(set_right_sides(*system_));
+    if (!system_->factor()) return;
+    ++iterations_;
+    system_->step();
+    for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += system_->rows()[i].change;
+}
+
 /// Newton until the velocities stay, `enough` of the largest.
 DUCTILE_INLINE auto ProximalNewton::minimise(double enough) -> Round {
-    constexpr int most = 30;
+    constexpr int most = 15;
     std::vector<IslandRow>& rows = system_->island().rows;
     see();
     respond();

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of fixed_sides.hpp.
+#pragma once
+
+#include <cmath>
+
+#include "ductile/solve/block_form.hpp"
+#include "ductile/solve/fixed_sides.hpp"
+
+namespace ductile::solve {
+
+DUCTILE_INLINE void set_tangents(IslandSystem& system) {
+    Island& island = system.island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        if (!system.alone(i)) continue;
+        const IslandRow& row = island.rows[i];
+        IslandSystem::Row& work = system.rows()[i];
+        const bool free = row.side == Side::free && row.lower < row.upper;
+        work.weight = work.own > 0 && free ? 1 / work.compliance : 0;
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        with_form(view, [&view](auto form) { form.set_tangent(view); });
+    }
+}
+
+DUCTILE_INLINE double set_right_sides(IslandSystem& system) {
+    Island& island = system.island();
+    double worst = 0;
+    const auto see = [&worst](double off) {
+        if (!(off <= worst)) worst = off;
+    };
+    for (IslandSystem::Row& work : system.rows()) {
+        work.right = work.residual;
+        work.extra = 0;
+    }
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        see(with_form(view, [&view](auto form) { return form.set_right(view); }));
+    }
+    for (const IslandSystem::Row& work : system.rows()) {
+        if (work.weight != 0) see(std::abs(work.right));
+    }
+    return worst;
+}
+
+DUCTILE_INLINE bool take_step(IslandSystem& system) {
+    Island& island = system.island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        island.rows[i].impulse += system.rows()[i].change;
+    }
+    bool stays = true;
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        if (!with_form(view, [&view](auto form) { return form.take(view); })) stays = false;
+    }
+    return stays;
+}
+
+} // namespace ductile::solve
