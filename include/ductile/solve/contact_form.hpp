@@ -81,7 +81,7 @@ struct ContactForm {
                 v.work[i].right = 0;
                 continue;
             }
-            const double unit = v.row[i].impulse / (v.size(i) * length); // ŷ
+            const double unit = length > 0 ? v.row[i].impulse / (v.size(i) * length) : 0; // ŷ
             v.work[i].right -= v.block.multiplier * unit / v.size(i);
             v.work[i].extra = -gap * normal / (normal + c) * unit * v.size(i);
         }

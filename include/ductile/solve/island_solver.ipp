@@ -89,8 +89,9 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
     };
     for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
     put(start_);
+    best_ = start_;
     for (int pass = 0; pass < most; ++pass) {
-        proximal_newton_.solve(system_, pass == 0 ? cold : warm);
+        proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
         ++report.safe_ways;
         static_cast<void>(keep());
         if (polished(report) || keep() <= well) return;

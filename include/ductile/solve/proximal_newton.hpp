@@ -38,7 +38,9 @@ class ProximalNewton {
   public:
     /// Leaves impulses, sides, states and shifts of the answer in the island. For the last digits
     /// the active set starts from there. `softness`: σ at first, of the rows' own effect [-].
-    void solve(IslandSystem& system, double softness);
+    /// `careful`: slips are followed ahead only as long as that brings them closer. Most settle
+    /// sooner if not, some only then.
+    void solve(IslandSystem& system, double softness, bool careful);
 
     [[nodiscard]] int iterations() const noexcept { return iterations_; } ///< of the last solve
 

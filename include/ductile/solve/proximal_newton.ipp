@@ -13,7 +13,7 @@
 
 namespace ductile::solve {
 
-DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness) {
+DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness, bool careful) {
     constexpr double alike = 1e-9, last = 1e-14, stiffer = 0.1, closer = 0.01;
     // of the largest velocity
     constexpr double roughly = 1e-3, fair = 1e-6, well = 1e-9, apart = 1e-8;
@@ -43,7 +43,7 @@ DUCTILE_INLINE void ProximalNewton::solve(IslandSystem& system, double softness)
         const bool slow = softness <= last && left <= fair && left > before / 2;
         if (there ? apart_ <= apart || !(apart_ < least_apart / 2) : slow) break;
         if (there) least_apart = apart_;
-        if (softness <= alike) {
+        if (softness <= alike && !(careful && left > before)) {
             slips_.follow_ahead(system);
         } else {
             slips_.follow(system);
@@ -168,8 +168,8 @@ DUCTILE_INLINE void ProximalNewton::predict() {
     see();
     set_tangents(*system_);
     static_cast<void>(set_right_sides(*system_));
-    if (!system_->factor()) return;
     ++iterations_;
+    if (!system_->factor()) return;
     system_->step();
     for (std::size_t i = 0; i < impulses_.size(); ++i) impulses_[i] += system_->rows()[i].change;
 }
