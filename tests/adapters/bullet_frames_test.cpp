@@ -372,6 +372,44 @@ TEST_CASE("Frames: what was put elsewhere by hand strikes in the very next frame
     }
 }
 
+TEST_CASE("Frames: what rebounds is struck anew where another blow sends it back", "[frame]") {
+    // 10 us after a ball has left the head again another one strikes that from below: three blows
+    constexpr double e = 0.5, g = 10, ball = 1, head = 10, heavy = 10, time = 2.7e-3, later = 1e-5;
+    const auto blow = [](double m, double n, double nears) {
+        return (1 + e) * m * n / (m + n) * nears;
+    };
+    constexpr double speed = 5, from_below = 5;
+    const double fallen = speed * time + g * time * time / 2, meets = speed + g * time;
+    const double first = blow(ball, head, meets);
+    const double down = first / head, up = first / ball - meets;
+    const double after = blow(heavy, head, from_below + down) / head - down;
+    const double last = after - blow(ball, head, after - up) / head;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& block =
+            rig.body(head, btVector3(1, 1, 1), {0, 0, 0},
+                     std::make_unique<btBoxShape>(btVector3(1, btScalar(0.5), 1)), 1, 2);
+        const double way = from_below * (time + later) + down * later;
+        const auto sphere = [] { return std::make_unique<btSphereShape>(btScalar(0.1)); };
+        btRigidBody& above =
+            rig.body(ball, btVector3(1, 1, 1), {0, btScalar(0.6 + fallen), 0}, sphere(), 2, 1);
+        btRigidBody& below =
+            rig.body(heavy, btVector3(1, 1, 1), {0, btScalar(-0.6 - way), 0}, sphere(), 2, 1);
+        block.setRestitution(1);
+        for (btRigidBody* each : {&above, &below}) each->setRestitution(btScalar(e));
+        above.setGravity({0, btScalar(-g), 0});
+        above.setLinearVelocity({0, btScalar(-speed), 0});
+        below.setLinearVelocity({0, btScalar(from_below), 0});
+        Slider slider(block, along({0, 1, 0}), law(500));
+        rig.world->add(slider);
+        rig.run(0.1, frame);
+        CHECK(slider.absorbed_energy() == Approx(head * last * last / 2).epsilon(0.01));
+        CHECK(rig.world->run().believed());
+        rig.world->remove(slider);
+    }
+}
+
 TEST_CASE("Frames: a vehicle against a lamp post, by Bullet's own contact", "[frame]") {
     // bench/scenes/lamp_post.hpp has the closed form: M θ = E₁ + m_p g (L/2)(1 - cos θ)
     constexpr double vehicle = 1000, speed = 10, bumper = 0.6, post = 60, length = 5;
