@@ -141,8 +141,8 @@ class OdeWorld {
             const ContactSpec& spec = scene_.contacts[i];
             const BodyState a = state(spec.a), b = state(spec.b);
             const double closing = spec.approach ? spec.approach(a, b).closing_speed : 0;
-            const double reach = in_frames_ ? ductile::ode::closed_depth
-                                            : charpy::reach(made_[i], spec.thickness, closing, dt);
+            const double reach =
+                in_frames_ ? 0 : charpy::reach(made_[i], spec.thickness, closing, dt);
             const charpy::EdgeContact contact = spec.touch(a, b, reach);
             made_[i] = contact.count > 0;
             for (int k = 0; k < contact.count; ++k) {
@@ -160,8 +160,7 @@ class OdeWorld {
             contact.surface.soft_cfm = dReal(scene_.contact_compliance);
             contact.surface.motionN -= dReal(1e-6 * (1 + 0.37 * count));
         }
-        const double overlap = in_frames_ ? ductile::ode::closed_depth - point.gap : -point.gap;
-        contact.geom.depth = dReal(std::max(overlap, 0.0));
+        contact.geom.depth = dReal(std::max(-point.gap, 0.0));
         for (int i = 0; i < 3; ++i) {
             contact.geom.pos[i] = dReal(point.position[i]);
             contact.geom.normal[i] =

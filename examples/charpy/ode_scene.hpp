@@ -329,8 +329,7 @@ class OdeScene {
         }
     }
 
-    /// For a step of `dt` [s]; 0: for a part of a frame, whose contacts are those that are closed,
-    /// or about to be.
+    /// For a step of `dt` [s]; 0: for a part of a frame, whose contacts are those that overlap.
     void collide(double dt) {
         const double closing = nose_speed() + middle_speed();
         contact_count_ = 0;
@@ -340,7 +339,7 @@ class OdeScene {
                 return Vector(position(pair.striker) + basis(pair.striker) * local);
             };
             const double margin =
-                dt == 0 ? ductile::ode::closed_depth
+                dt == 0 ? 0
                         : reach(pair.made, s_.height, pair.striker != nullptr ? closing : 0, dt);
             const EdgeContact contact =
                 touch({world(pair.edge.from), world(pair.edge.to)},
@@ -362,9 +361,7 @@ class OdeScene {
         // the direct solver's pivoting stalls where symmetric contacts reach their bound at once:
         // no two are quite alike
         const double unlike = 1e-6 * (1 + 0.37 * contact_count_++);
-        double depth = -point.gap;
         if (dt == 0) {
-            depth += ductile::ode::closed_depth;
             surface.mode |= dContactBounce;
             surface.bounce = dReal(s_.restitution);
             surface.bounce_vel = dReal(slowest);
@@ -374,7 +371,7 @@ class OdeScene {
             surface.motionN =
                 dReal((parting > 0 ? parting : -std::max(point.gap, 0.0) / dt) - unlike);
         }
-        contact.geom.depth = dReal(std::max(depth, 0.0));
+        contact.geom.depth = dReal(std::max(-point.gap, 0.0));
         for (int i = 0; i < 3; ++i) {
             contact.geom.pos[i] = dReal(point.position[i]);
             contact.geom.normal[i] = dReal(-point.normal[i]); // into the first body, the part

@@ -194,6 +194,39 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
     }
 }
 
+TEST_CASE("Frames: what is put down a little above a head that hardly bears it falls as far",
+          "[frame]") {
+    // 0.99 of its strength is weight, so that it gives way by some 80 times the fall; of a box
+    // Bullet knows no contact before
+    constexpr double mass = 500, head_mass = 50, g = 9.81, weight = (mass + head_mass) * g;
+    constexpr double strength = weight / 0.99;
+    for (const double gap : {0.0, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 2e-4, 1e-3}) {
+        const double common = std::sqrt(2 * g * gap) * mass / (mass + head_mass);
+        const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+        for (const double frame : all_frames) {
+            for (const bool is_box : {false, true}) {
+                CAPTURE(gap, frame, is_box);
+                Rig rig;
+                rig.engine.setGravity({0, btScalar(-g), 0});
+                btRigidBody& head =
+                    rig.body(head_mass, btVector3(5, 5, 5), {0, 0, 0}, box(0.5, 0.1, 0.5), 1, 2);
+                rig.body(
+                    mass, btVector3(50, 50, 50), {0, btScalar(0.2 + gap), 0},
+                    is_box ? box(0.3, 0.1, 0.3) : std::make_unique<btSphereShape>(btScalar(0.1)), 2,
+                    1);
+                Slider slider(head, along({0, 1, 0}), law(strength));
+                rig.world->add(slider);
+                rig.run(1.5, frame);
+                CHECK(slider.absorbed_energy() == Approx(strength * crush)
+                                                      .epsilon(rough ? 0.03 : 0.005)
+                                                      .margin(rough ? 2 : 0.01));
+                CHECK(rig.world->run().believed());
+                rig.world->remove(slider);
+            }
+        }
+    }
+}
+
 TEST_CASE("Frames: what strikes rebounds, wherever in a frame it touches", "[frame]") {
     // Bullet knows the contact of a ball on a box 20 mm before it closes. A block on a row is hit
     // once, as the ball comes back: u = (1 + e) m v/(m + M)
@@ -336,6 +369,44 @@ TEST_CASE("Frames: what was put elsewhere by hand strikes in the very next frame
             CHECK(rig.world->run().believed());
             rig.world->remove(slider);
         }
+    }
+}
+
+TEST_CASE("Frames: what rebounds is struck anew where another blow sends it back", "[frame]") {
+    // 10 us after a ball has left the head again another one strikes that from below: three blows
+    constexpr double e = 0.5, g = 10, ball = 1, head = 10, heavy = 10, time = 2.7e-3, later = 1e-5;
+    const auto blow = [](double m, double n, double nears) {
+        return (1 + e) * m * n / (m + n) * nears;
+    };
+    constexpr double speed = 5, from_below = 5;
+    const double fallen = speed * time + g * time * time / 2, meets = speed + g * time;
+    const double first = blow(ball, head, meets);
+    const double down = first / head, up = first / ball - meets;
+    const double after = blow(heavy, head, from_below + down) / head - down;
+    const double last = after - blow(ball, head, after - up) / head;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& block =
+            rig.body(head, btVector3(1, 1, 1), {0, 0, 0},
+                     std::make_unique<btBoxShape>(btVector3(1, btScalar(0.5), 1)), 1, 2);
+        const double way = from_below * (time + later) + down * later;
+        const auto sphere = [] { return std::make_unique<btSphereShape>(btScalar(0.1)); };
+        btRigidBody& above =
+            rig.body(ball, btVector3(1, 1, 1), {0, btScalar(0.6 + fallen), 0}, sphere(), 2, 1);
+        btRigidBody& below =
+            rig.body(heavy, btVector3(1, 1, 1), {0, btScalar(-0.6 - way), 0}, sphere(), 2, 1);
+        block.setRestitution(1);
+        for (btRigidBody* each : {&above, &below}) each->setRestitution(btScalar(e));
+        above.setGravity({0, btScalar(-g), 0});
+        above.setLinearVelocity({0, btScalar(-speed), 0});
+        below.setLinearVelocity({0, btScalar(from_below), 0});
+        Slider slider(block, along({0, 1, 0}), law(500));
+        rig.world->add(slider);
+        rig.run(0.1, frame);
+        CHECK(slider.absorbed_energy() == Approx(head * last * last / 2).epsilon(0.01));
+        CHECK(rig.world->run().believed());
+        rig.world->remove(slider);
     }
 }
 

@@ -318,6 +318,64 @@ TEST_CASE("Frames: a blow rebounds as the contact says", "[frame]") {
     }
 }
 
+TEST_CASE("Frames: what rebounds is struck anew where another blow sends it back", "[frame]") {
+    // 30 us after a ball has left the head again another one strikes that from below: three blows
+    constexpr double e = 0.5, g = 10, ball = 1, head = 10, heavy = 10, time = 2.7e-3, later = 3e-5;
+    const auto blow = [](double m, double n, double nears) {
+        return (1 + e) * m * n / (m + n) * nears;
+    };
+    constexpr double speed = 5, from_below = 5;
+    const double fallen = speed * time + g * time * time / 2, meets = speed + g * time;
+    const double first = blow(ball, head, meets);
+    const double down = first / head, up = first / ball - meets;
+    const double after = blow(heavy, head, from_below + down) / head - down;
+    const double last = after - blow(ball, head, after - up) / head;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.bounce = e;
+        rig.set_gravity(g);
+        const dBodyID block = rig.body(head, V3(1, 1, 1), {0, 0, 0}, rig.box(1, 0.5, 1), 1, 2);
+        const dBodyID above =
+            rig.body(ball, V3(1, 1, 1), {0, 0.6 + fallen, 0}, rig.sphere(0.1), 2, 1);
+        const double way = from_below * (time + later) + down * later;
+        const dBodyID below =
+            rig.body(heavy, V3(1, 1, 1), {0, -0.6 - way, 0}, rig.sphere(0.1), 2, 1);
+        for (const dBodyID still : {block, below}) dBodySetGravityMode(still, 0);
+        dBodySetLinearVel(above, 0, -speed, 0);
+        dBodySetLinearVel(below, 0, from_below, 0);
+        const Slider& slider = rig.slider(block, {0, 1, 0}, 500);
+        rig.run(0.1, frame);
+        CHECK(slider.absorbed_energy() == Approx(head * last * last / 2).epsilon(0.01));
+        CHECK(rig.world.run().believed());
+    }
+}
+
+TEST_CASE("Frames: what is put down a little above a head that hardly bears it falls as far",
+          "[frame]") {
+    // 0.99 of its strength is weight, so that it gives way by some 80 times the fall
+    constexpr double mass = 500, head_mass = 50, g = 9.81, weight = (mass + head_mass) * g;
+    constexpr double strength = weight / 0.99;
+    for (const double gap : {0.0, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 2e-4, 1e-3}) {
+        const double common = std::sqrt(2 * g * gap) * mass / (mass + head_mass);
+        const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+        for (const double frame : all_frames) {
+            CAPTURE(gap, frame);
+            Rig rig;
+            rig.set_gravity(g);
+            const dBodyID head =
+                rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+            rig.body(mass, V3(50, 50, 50), {0, 0.2 + gap, 0}, rig.sphere(0.1), 2, 1);
+            const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+            rig.run(1.5, frame);
+            // it is closed where it overlaps by 0.1 um, or by a hundredth of its fall
+            constexpr double hair = 0.1;
+            CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(0.015).margin(hair));
+            CHECK(rig.world.run().believed());
+        }
+    }
+}
+
 TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about", "[frame]") {
     constexpr double mass = 500, head_mass = 50, height = 1, strength = 30e3, g = 9.81;
     constexpr double fall = height + ode::closed_depth;

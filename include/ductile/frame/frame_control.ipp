@@ -42,6 +42,13 @@ inline constexpr double of_turns = 0.9; ///< that may be a part's: a body may st
     return ratio >= least ? std::min(ratio, most) : least;
 }
 
+/// Of a part whose rows do no more than `most` [J]: a change of force that a far shorter part
+/// foretold is more than there can be.
+template <class Judgement>
+[[nodiscard]] double likely_error(const Judgement& judged, double most) noexcept {
+    return judged.of_rows > most ? judged.error - judged.of_rows + most : judged.error;
+}
+
 /// Whether a row of a part was in the one before, at the same place.
 template <class Past>
 [[nodiscard]] bool was_there(const std::vector<Past>& before, const PartMotion& motion,
@@ -187,8 +194,9 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         allowed_ = judged.allowed;
         run_.least = std::max(run_.least, judged.least); // of what sleeps too
         run_.of_one = std::max(run_.of_one, judged.of_one);
+        const double error = detail::likely_error(judged, judged.most);
         // of one that turned too far it says nothing, and such a part is no way out
-        if (tries == 0 && !(judged.turned > 0)) first_error = judged.error;
+        if (tries == 0 && !(judged.turned > 0)) first_error = error;
         const bool good =
             judged.error <= judged.allowed && judged.closed == 0 && judged.turned == 0;
         const bool done = jump || !saved || spent() || tries > detail::most_tries ||
@@ -207,10 +215,10 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         ++report_.rejected;
         stop_failed_ = stop_failed_ || at_stop;
         constexpr double of_length = 0.1, of_error = 0.7;
-        if (tries >= 3 && h < of_length * first && judged.error > of_error * first_error) {
+        if (tries >= 3 && h < of_length * first && error > of_error * first_error) {
             // velocities that do not fit, as hands gave them between frames, are struck
-            const bool unfit = report_.parts == 0 && !fitted_ &&
-                               motion.rigid_work > of_error * judged.error;
+            const bool unfit =
+                report_.parts == 0 && !fitted_ && motion.rigid_work > of_error * judged.error;
             jump = !unfit;
             at_event = at_gap && jump;
             h = jump ? first : shortest;
@@ -334,11 +342,9 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     taken_ += motion.rigid_work;
     run_.given = taken_ > 0 ? 0.0 : 0.0 - taken_;
     run_.stored = std::max(run_.stored, motion.stored);
-    // a change of force that a far shorter part foretold is more than there can be; it stays an
-    // alarm
-    const double most = std::max(judged.most, 2 * parameters_.tolerance * work_);
+    // as it was, it stays an alarm
     const double error =
-        judged.of_rows > most ? judged.error - judged.of_rows + most : judged.error;
+        detail::likely_error(judged, std::max(judged.most, 2 * parameters_.tolerance * work_));
     report_.error += error;
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, error, h);
     remember(motion, h);

@@ -35,6 +35,14 @@ namespace detail {
     return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
 }
 
+[[nodiscard]] DUCTILE_INLINE double parting_speed(const btCollisionObject& a,
+                                                  const btCollisionObject& b,
+                                                  const btManifoldPoint& point) {
+    const btVector3 parts =
+        velocity_at(a, point.getPositionWorldOnA()) - velocity_at(b, point.getPositionWorldOnB());
+    return double(point.m_normalWorldOnB.dot(parts));
+}
+
 [[nodiscard]] DUCTILE_INLINE btVector3 spin(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     return body != nullptr ? body->getAngularVelocity() : btVector3(0, 0, 0);
@@ -114,7 +122,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
         const btVector3 &on_a = point.getPositionWorldOnA(), &on_b = point.getPositionWorldOnB();
         const btVector3& normal = point.m_normalWorldOnB;
-        const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
+        const double speed = -parting_speed(of_a, of_b, point);
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const double faster = gain(of_a, normal), away = distance(point, *a, *b);
         const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
@@ -164,9 +172,8 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         world.contactPairTest(pair.a, pair.b, points);
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);
-        const bool closes = of_pair.strikes || of_pair.time <= h;
-        if (closes) note_found(*pair.a, *pair.b);
-        if (!closes && points.nearest.away > 0) {
+        if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
+        if (points.nearest.away > 0) {
             open_.push_back({pair, points.nearest.way, points.nearest.speed});
         }
     }

@@ -38,10 +38,12 @@ DUCTILE_INLINE void forget_second_direction(btPersistentManifold** manifolds, in
 }
 
 /// While this lives contacts that touch are closed, and there are no others. These have no impulse
-/// then.
+/// then. What rebounded has left, although it overlaps by what its gap was aimed too far: closed,
+/// it would not be struck anew where another blow sends it back.
 class StruckContacts {
   public:
-    StruckContacts(btPersistentManifold** manifolds, int count) {
+    StruckContacts(btPersistentManifold** manifolds, int count, double slowest)
+        : slowest_(slowest) {
         for (int i = 0; i < count; ++i) {
             Struck& struck = struck_.emplace_back();
             struck.manifold = manifolds[i];
@@ -52,7 +54,8 @@ class StruckContacts {
             manifolds[i]->setNumContacts(0);
             for (int k = 0; k < struck.count; ++k) {
                 const btManifoldPoint& point = struck.points[std::size_t(k)];
-                if (!touches(point)) continue;
+                struck.closes[std::size_t(k)] = touches(point) && !rebounds(*manifolds[i], point);
+                if (!struck.closes[std::size_t(k)]) continue;
                 const int here = manifolds[i]->addManifoldPoint(point);
                 manifolds[i]->getContactPoint(here).setDistance(0);
             }
@@ -64,7 +67,7 @@ class StruckContacts {
             for (int k = 0; k < struck.count; ++k) {
                 btManifoldPoint& point = struck.points[std::size_t(k)];
                 const btScalar distance = point.getDistance();
-                if (touches(point)) {
+                if (struck.closes[std::size_t(k)]) {
                     point = struck.manifold->getContactPoint(solved++);
                     point.setDistance(distance);
                 } else {
@@ -86,11 +89,20 @@ class StruckContacts {
         btPersistentManifold* manifold = nullptr;
         int count = 0;
         std::array<btManifoldPoint, MANIFOLD_CACHE_SIZE> points;
+        std::array<bool, MANIFOLD_CACHE_SIZE> closes{};
     };
     [[nodiscard]] static bool touches(const btManifoldPoint& point) {
         return double(point.getDistance()) < closed_gap;
     }
+    [[nodiscard]] bool rebounds(const btPersistentManifold& manifold,
+                                const btManifoldPoint& point) const {
+        constexpr double hardly_less = 0.99;
+        const auto e = double(point.m_combinedRestitution);
+        return e > 0 && parting_speed(*manifold.getBody0(), *manifold.getBody1(), point) >
+                            hardly_less * e * slowest_;
+    }
 
+    double slowest_; ///< speed from which contacts rebound [m/s]
     std::vector<Struck> struck_;
 };
 
@@ -180,7 +192,8 @@ DUCTILE_INLINE FrontSolver::~FrontSolver() {
 DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btContactSolverInfo& info,
                                                btIDebugDraw* drawer, btDispatcher* dispatcher) {
     const detail::StruckContacts struck(island.manifolds.data(),
-                                        kind_ == TickKind::blow ? int(island.manifolds.size()) : 0);
+                                        kind_ == TickKind::blow ? int(island.manifolds.size()) : 0,
+                                        double(info.m_restitutionVelocityThreshold));
     const detail::OpenContacts open(island.manifolds.data(),
                                     kind_ == TickKind::part ? int(island.manifolds.size()) : 0);
     const auto first =

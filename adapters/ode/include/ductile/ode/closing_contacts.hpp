@@ -2,19 +2,21 @@
 //
 // Which contacts on islands with plastic joints close, from those that the user's collisions make
 // (contact_maker.hpp). ODE tells of a contact only once shapes overlap, so closed is one that
-// overlaps by a hair, `closed_depth`: it stays known where a turn takes some of that away, may sink
-// back to it within a part, and one that is about to close is known as well. With d the overlap
-// beyond that, less than 0 where it is a gap,
+// overlaps by a hair: a hundredth of the height from which it would fall to its speed, 0.1 um to
+// `closed_depth`. Nothing is pushed out up to that, and it sinks to there at a hundredth of the
+// speed of what turns it, so that it stays known where a turn takes some of that away. One that is
+// about to close is known as well. With d the overlap beyond the hair, less than 0 where it is a
+// gap,
 //
 //   a contact that is closed and goes on at v strikes, with the energy v²/(2 K),
 //     K = 1/effective mass of the point, both bodies free
 //   a gap that is known closes in  -d/v
-//   one that was not closed at  t - d/v,  where the bodies overlap at t
+//   one that was not closed at  t - 2 d/(v + √(v² - 2 a d)),  where the bodies overlap at t
 //
-// Looked at are the middle of a part, where v is that before it, and its end, where v is that after
-// it; what was closed before the start, or before the middle, is not new. Before a part in which
-// bodies pass each other by more than half of the thinner of their geoms they are moved along, as
-// they would go without any force, and looked at after every such length.
+// Looked at are the middle of a part of h, where v is that before it and a = 0, and its end, where
+// v is that after it and a = (v - v before)/h; what was closed before the start is not new. Before
+// a part in which bodies pass each other by more than half of the thinner of their geoms they are
+// moved along, as they would go without any force, and looked at after every such length.
 //
 // ODE pushes out what overlaps, which costs F d where the contact pushes with F: a gap counts where
 // that or its v²/(2 K) does. Left out, two balls on a post at 5 m/s absorb 1.4 % more at frames of
@@ -38,11 +40,33 @@
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile::ode {
 
-/// Overlap at which a contact is closed [m].
+/// Overlap up to which nothing is pushed out, and at which what closes fast is closed [m].
 inline constexpr double closed_depth = 1e-4;
+
+/// How a contact closes.
+struct ContactClosing {
+    SeenContact seen; ///< its normal on the first of its bodies
+    double speed;     ///< v, along the normal [m/s]
+    double yields;    ///< K [1/kg]
+    double sinks;     ///< as fast as it may sink, to stay known as it turns [m/s]
+
+    explicit ContactClosing(const NamedContact& named);
+    /// Of bodies that move so [m/s].
+    [[nodiscard]] double speed_of(const ContactBody& a, const ContactBody& b) const {
+        return dot(seen.normal, difference(b.at(seen.arm_b), a.at(seen.arm_a)));
+    }
+    /// Overlap at which it is closed [m].
+    [[nodiscard]] double depth() const;
+    /// It comes nearer, and not as what is closed may.
+    [[nodiscard]] bool closes() const { return speed > 2 * sinks && yields > 0; }
+    /// It leaves at least as fast as it would rebound, so that it is open although it overlaps:
+    /// where another blow sends it back it is struck anew.
+    [[nodiscard]] bool rebounds(const NamedContact& named) const;
+};
 
 class ClosingContactsFinder {
   public:
@@ -53,6 +77,8 @@ class ClosingContactsFinder {
               std::span<const dBodyID> members);
     /// Which bodies have contacts now, so that others are new.
     void remember() { before_ = pairs_; }
+    /// Before the solve of a part: as fast as the bodies come to it.
+    void see_motions(std::span<const dBodyID> bodies);
     /// After the solve: how hard the contacts of the part push, by their joints' feedback.
     void see_forces(std::span<const NamedContact> contacts);
     /// As PartEngine's.
@@ -73,9 +99,10 @@ class ClosingContactsFinder {
     [[nodiscard]] bool strikes(double touching) const;
     /// When the first gap among those looked at closes with more energy than `apart` [J] [s].
     [[nodiscard]] double next_gap(double apart) const;
-    /// When the first gap closed, of those that close with more energy than `apart` [J], in a part
-    /// that began `past` [s] ago or, where less, `since` [s] ago; infinite: none did.
-    [[nodiscard]] double closed(double past, double since, double apart) const;
+    /// When the first gap closed, of those that close with more energy than `apart` [J], in a time
+    /// that began `past` [s] ago; infinite: none did. `hurried` [s]: in which the bodies came to
+    /// their velocities from those before the solve; 0: they had them all the time.
+    [[nodiscard]] double closed(double past, double hurried, double apart) const;
     /// Whether a body is in one of these islands.
     [[nodiscard]] bool is_plastic(dBodyID body) const;
     [[nodiscard]] bool any_plastic() const noexcept { return !island_.empty(); }
@@ -89,10 +116,13 @@ class ClosingContactsFinder {
     /// A point that touches.
     struct Touch {
         double gap;    ///< until it is closed, < 0 beyond that [m]
+        double depth;  ///< at which it is closed [m]
         double speed;  ///< v [m/s]
+        double before; ///< v before the solve [m/s]
         double energy; ///< v²/(2 K) [J]
         bool is_new;   ///< the bodies had no contact when last remembered
     };
+    using Motion = std::pair<dBodyID, ContactBody>;
     using Pair = std::pair<dBodyID, dBodyID>;
     /// Who touches whom: bodies and geoms, which are null where `make` collides without any.
     using Mates = std::pair<Pair, std::pair<dGeomID, dGeomID>>;
@@ -101,6 +131,9 @@ class ClosingContactsFinder {
     void find_islands(std::span<const NamedContact> contacts,
                       std::span<PlasticConstraint* const> joints, std::span<const dBodyID> members);
 
+    [[nodiscard]] ContactBody motion_before(dBodyID body) const;
+
+    std::vector<Motion> motions_;       ///< before the solve, sorted
     std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all, sorted
     std::vector<Touch> touches_;        ///< that close
     std::vector<Pair> pairs_, before_;  ///< of bodies with contacts, sorted

@@ -31,6 +31,22 @@ namespace detail {
                            : Vector3<double>(0, 0, 0);
 }
 
+/// With the normal on the first of its bodies.
+[[nodiscard]] DUCTILE_INLINE std::pair<AttachedBodies, SeenContact> seen_contact(
+    const NamedContact& named) {
+    const AttachedBodies bodies = attached_bodies(named.joint);
+    const Vector3<double> point = to_core(named.contact.geom.pos);
+    return {bodies,
+            {.point = point,
+             .normal = scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal)),
+             .arm_a = arm_of(bodies.a, point),
+             .arm_b = arm_of(bodies.b, point)}};
+}
+[[nodiscard]] DUCTILE_INLINE ContactBody contact_body(dBodyID body) {
+    return body == nullptr ? ContactBody{}
+                           : ContactBody{linear_velocity(body), angular_velocity(body)};
+}
+
 /// Smallest extent of a geom; infinite for what has no other side [m].
 [[nodiscard]] DUCTILE_INLINE double thickness(dGeomID geom) {
     dReal radius = 0, length = 0;
@@ -106,6 +122,32 @@ struct MovingGeom {
 
 } // namespace detail
 
+DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
+    : seen(detail::seen_contact(named).second) {
+    constexpr double followed = 0.01; // of what turns it
+    const AttachedBodies bodies = attached_bodies(named.joint);
+    const ContactBody a = detail::contact_body(bodies.a), b = detail::contact_body(bodies.b);
+    const Vector3<double> comes = difference(b.at(seen.arm_b), a.at(seen.arm_a));
+    speed = dot(seen.normal, comes);
+    yields = detail::yield_at(bodies.a, seen.arm_a, seen.normal) +
+             detail::yield_at(bodies.b, seen.arm_b, seen.normal);
+    sinks = followed * (norm(difference(comes, scaled(speed, seen.normal))) +
+                        norm(a.spin) * norm(seen.arm_a) + norm(b.spin) * norm(seen.arm_b));
+}
+DUCTILE_INLINE double ContactClosing::depth() const {
+    constexpr double share = 0.01, g = 10, least = 1e-7; // [-] [m/s²] [m]
+    return std::clamp(share * speed * speed / (2 * g), least, closed_depth);
+}
+
+DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
+    constexpr double noticed = 0.01, hardly_less = 0.99; // [m/s] [-]
+    const dSurfaceParameters& surface = named.contact.surface;
+    if ((surface.mode & dContactBounce) == 0 || !(surface.bounce > 0)) return false;
+    if (surface.bounce_vel < 0) return false; // never
+    const double slowest = double(surface.bounce) * std::max(double(surface.bounce_vel), noticed);
+    return -speed > hardly_less * slowest;
+}
+
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
                                                         std::span<PlasticConstraint* const> joints,
                                                         std::span<const dBodyID> members) {
@@ -157,22 +199,29 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         touching_.push_back(mates(named));
         pairs_.push_back(touching_.back().first);
         const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
-        const Vector3<double> point = to_core(named.contact.geom.pos);
-        const Vector3<double> normal =
-            scaled(reversed ? -1 : 1, to_core(named.contact.geom.normal));
-        const Vector3<double> arm_a = detail::arm_of(a, point), arm_b = detail::arm_of(b, point);
-        const Vector3<double> of_a = sum(linear_velocity(a), cross(angular_velocity(a), arm_a));
-        const Vector3<double> of_b = sum(linear_velocity(b), cross(angular_velocity(b), arm_b));
-        const double speed = dot(normal, difference(of_b, of_a));
-        if (!(speed > 0)) continue;
-        const double yields =
-            detail::yield_at(a, arm_a, normal) + detail::yield_at(b, arm_b, normal);
-        if (!(yields > 0)) continue;
-        touches_.push_back({closed_depth - double(named.contact.geom.depth), speed,
-                            speed * speed / (2 * yields), is_new});
+        const ContactClosing it(named);
+        if (!it.closes()) continue;
+        const double before = it.speed_of(motion_before(a), motion_before(b));
+        touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
+                            before, it.speed * it.speed / (2 * it.yields), is_new});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::see_motions(std::span<const dBodyID> bodies) {
+    motions_.clear();
+    for (dBodyID body : bodies) motions_.emplace_back(body, detail::contact_body(body));
+    std::sort(motions_.begin(), motions_.end(), [](const Motion& x, const Motion& y) {
+        return std::less<dBodyID>()(x.first, y.first);
+    });
+}
+DUCTILE_INLINE ContactBody ClosingContactsFinder::motion_before(dBodyID body) const {
+    const auto found = std::lower_bound(
+        motions_.begin(), motions_.end(), body,
+        [](const Motion& one, dBodyID key) { return std::less<dBodyID>()(one.first, key); });
+    return found != motions_.end() && found->first == body ? found->second
+                                                           : detail::contact_body(body);
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {
@@ -219,30 +268,37 @@ DUCTILE_INLINE double ClosingContactsFinder::turn(double h) const {
 
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
     return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
-        return touch.gap < closed_depth / 2 && touch.energy > touching;
+        return touch.gap < touch.depth / 2 && touch.energy > touching;
     });
 }
 
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
     double next = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        if (touch.gap < closed_depth / 2 || !(touch.energy > apart)) continue;
+        if (touch.gap < touch.depth / 2 || !(touch.energy > apart)) continue;
         next = std::min(next, touch.gap / touch.speed);
     }
     return next;
 }
 
-DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double since, double apart) const {
+DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double hurried,
+                                                    double apart) const {
     constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
     // of a first hit nobody knows yet how hard the contact will push
-    const double unmissed = closed_depth * (force_ > 0 ? 0.25 : 0.01);
+    const double unmissed = force_ > 0 ? 0.25 : 0.01; // of the overlap at which it is closed
     double first = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        const double overlap = -touch.gap, ago = overlap / touch.speed;
+        const double overlap = -touch.gap;
         const bool counts = touch.energy > apart || force_ * overlap > pushed_out * apart;
-        if (!counts || !(overlap > unmissed)) continue;
-        if (!(ago < since) && !touch.is_new) continue;
-        first = std::min(first, past - std::min(ago, since));
+        if (!counts || (hurried > 0 && !(overlap > unmissed * touch.depth))) continue;
+        const double a = hurried > 0 ? (touch.speed - touch.before) / hurried : 0;
+        const double left = touch.speed * touch.speed - 2 * a * overlap; // its square as it closed
+        double ago = 2 * overlap / (touch.speed + std::sqrt(std::max(left, 0.0)));
+        if (!(ago < past)) {
+            if (!touch.is_new) continue;
+            ago = hurried > 0 ? past / 2 : past; // it went another way
+        }
+        first = std::min(first, past - ago);
     }
     return first;
 }

@@ -25,6 +25,7 @@
 #include <ode/ode.h>
 
 #include <cstddef>
+#include <span>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -43,8 +44,9 @@ class IslandSolver {
     void remove(PlasticConstraint& joint);
 
     /// Between the constraints' `prepare` and ODE's step of `dt` [s]. `may_sleep`: islands may fall
-    /// asleep in it.
-    void before_step(const std::vector<NamedContact>& contacts, double dt, bool may_sleep = true);
+    /// asleep in it. Islands of `others`, which can move, are solved here too, joints or none.
+    void before_step(const std::vector<NamedContact>& contacts, double dt, bool may_sleep = true,
+                     std::span<const dBodyID> others = {});
     void after_step();
 
   private:

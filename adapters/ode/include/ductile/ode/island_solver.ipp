@@ -42,8 +42,8 @@ DUCTILE_INLINE void IslandSolver::index_members() {
 // ---- a step
 
 DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& contacts, double dt,
-                                              bool may_sleep) {
-    if (members_.empty()) return;
+                                              bool may_sleep, std::span<const dBodyID> others) {
+    if (members_.empty() && others.empty()) return;
     if (!indexed_) index_members();
     ++step_;
     number_.clear();
@@ -63,6 +63,13 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
         }
         if (ours) continue;
         for (const std::size_t joint : joints_) members_[joint].rows->make_rows(dt);
+    }
+    for (const dBodyID body : others) {
+        if (number_.contains(body) || !gather(body)) continue;
+        const auto is_awake = [](dBodyID each) { return dBodyIsEnabled(each) != 0; };
+        if (std::none_of(bodies_.begin(), bodies_.end(), is_awake)) continue;
+        solve::IslandSolver alone;
+        solve(alone, contacts, dt);
     }
     std::erase_if(kept_, [this](const auto& entry) { return entry.second.used != step_; });
 }

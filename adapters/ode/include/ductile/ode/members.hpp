@@ -60,6 +60,8 @@ class Members {
     void drop_forces() const;
     /// @throws std::logic_error where a contact of a member is none of these.
     void before_solve(std::span<const NamedContact> contacts);
+    /// Bodies that can move of contacts with members, after before_solve().
+    [[nodiscard]] std::vector<dBodyID> touched() const;
     void after_solve() const;
     [[nodiscard]] bool any_open() const;
     [[nodiscard]] bool look(double dt) { return look(dt, false); }

@@ -140,6 +140,16 @@ DUCTILE_INLINE void Members::require_named(const Course& course) {
         "World.step: a contact of a member was not named: World::add_contact each, once");
 }
 
+DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {
+    std::vector<dBodyID> found;
+    for (const Course& course : members_) {
+        for (const Touch& touch : course.touches) {
+            found.push_back(can_move(touch.bodies.a) ? touch.bodies.a : touch.bodies.b);
+        }
+    }
+    return found;
+}
+
 DUCTILE_INLINE bool Members::any_open() const {
     return std::any_of(members_.begin(), members_.end(),
                        [](const Course& course) { return course.of->is_open(); });

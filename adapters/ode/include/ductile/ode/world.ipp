@@ -295,7 +295,10 @@ DUCTILE_INLINE void World::tell_of_members() {
 
 DUCTILE_INLINE void World::solve(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
-    islands_.before_step(contacts_, dt, parts_ == nullptr);
+    // contacts of a member are often more than hold it, of which ODE's LCP loses some
+    const bool frames = parts_ != nullptr;
+    islands_.before_step(contacts_, dt, !frames,
+                         frames ? members_.touched() : std::vector<dBodyID>{});
     if (solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {

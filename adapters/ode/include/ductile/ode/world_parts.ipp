@@ -230,7 +230,10 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     of_.meter.before_step();
     half_ahead_.move(of_.bodies, half);
     drive_as_at(end);
-    if (!blow) of_.meter.bodies_ahead();
+    if (!blow) {
+        of_.meter.bodies_ahead();
+        closing_.see_motions(of_.bodies);
+    }
     look(blow ? nullptr : &snapshot_);
     closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
@@ -249,7 +252,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     if (!blow) {
         closing_.see_forces(of_.contacts);
         remember_pushes();
-        closed_ = closing_.closed(half, half, apart_);
+        closed_ = closing_.closed(half, 0, apart_);
         closing_.remember();
     }
     go_as_at(end - half / 2);
@@ -280,7 +283,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     if (closing_.any_plastic() && of_.maker) {
         look();
         looked_ = true;
-        closed_ = std::min(closed_, closing_.closed(h, h / 2, apart_));
+        closed_ = std::min(closed_, closing_.closed(h, h, apart_));
         if (may_misplace(motion_, h, apart_)) motion_.turned = closing_.turn(h);
         motion_.contact_lost = closing_.lost();
     }

@@ -15,17 +15,6 @@ namespace ductile::ode {
 
 namespace detail {
 
-/// With the normal on the first of its bodies.
-[[nodiscard]] DUCTILE_INLINE std::pair<AttachedBodies, SeenContact> seen_contact(
-    const NamedContact& named) {
-    const AttachedBodies bodies = attached_bodies(named.joint);
-    const Vector3<double> point = to_core(named.contact.geom.pos);
-    return {bodies,
-            {.point = point,
-             .normal = scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal)),
-             .arm_a = arm_of(bodies.a, point),
-             .arm_b = arm_of(bodies.b, point)}};
-}
 [[nodiscard]] DUCTILE_INLINE bool before(const AttachedBodies& x, const AttachedBodies& y) {
     const std::less<dBodyID> less;
     return x.a != y.a ? less(x.a, y.a) : less(x.b, y.b);
@@ -73,7 +62,6 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     for (NamedContact& named : of_.contacts) {
         dSurfaceParameters& surface = named.contact.surface;
         const auto [a, b, reversed] = attached_bodies(named.joint);
-        const double gap = closed_depth - double(named.contact.geom.depth);
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
         if (!plastic && (surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
@@ -83,9 +71,7 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         if (!blow && plastic) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
-            // what a blow strikes as closed closes no more
-            const double closes = gap < closed_depth / 2 ? 0 : 2 * gap / h;
-            surface.motionN += dReal(turned(named, h) - closes);
+            surface.motionN += dReal(turned(named, h) - closes(named, h));
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -95,15 +81,20 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     }
 }
 
+DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h) const {
+    const ContactClosing it(named);
+    const auto depth = double(named.contact.geom.depth);
+    // what a blow stopped closes no more, although that strikes a little early
+    const double left = it.closes() ? 2 * (it.depth() - depth) / h : 0;
+    return std::max(left, std::clamp(2 * (closed_depth - depth) / h, 0.0, it.sinks));
+}
+
 DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
     const auto [bodies, now] = detail::seen_contact(named);
     const SeenContact* nearest = detail::nearest(seen_, bodies, now.point);
     if (nearest == nullptr) return 0;
-    const auto motion = [](dBodyID body) {
-        return body == nullptr ? ContactBody{}
-                               : ContactBody{linear_velocity(body), angular_velocity(body)};
-    };
-    return turned_contact(now, *nearest, motion(bodies.a), motion(bodies.b), h / 2, h / 2);
+    return turned_contact(now, *nearest, detail::contact_body(bodies.a),
+                          detail::contact_body(bodies.b), h / 2, h / 2);
 }
 
 DUCTILE_INLINE void WorldParts::begin_pushes() {
@@ -127,7 +118,8 @@ DUCTILE_INLINE void WorldParts::remember_pushes() {
 DUCTILE_INLINE void WorldParts::open_others() {
     for (const NamedContact& named : of_.contacts) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
-        if (!closing_.is_plastic(a) && !closing_.is_plastic(b)) dJointDisable(named.joint);
+        const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
+        if (!plastic || ContactClosing(named).rebounds(named)) dJointDisable(named.joint);
     }
 }
 
@@ -165,7 +157,7 @@ DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
         const double time = std::min(i / lengths, 1.0) * h;
         half_ahead_.move(of_.bodies, time);
         look(&looked_from_);
-        next = closing_.closed(time, time, apart);
+        next = closing_.closed(time, 0, apart);
         looked_from_.put_poses_back();
     }
     looked_ = false;
