@@ -90,6 +90,54 @@ TEST_CASE("Frames: a hinge breaks with the energy of its travel", "[frame]") {
     }
 }
 
+TEST_CASE("Frames: what a load carries through a break flies on as it should", "[frame]") {
+    // from rest under 1.3 R, until its travel is used up and on
+    constexpr double mass = 1, strength = 50, limit = 0.0549, load = 65, duration = 0.2;
+    const double pushed = (load - strength) / mass, broke = std::sqrt(2 * limit / pushed);
+    const double speed = pushed * broke + load / mass * (duration - broke);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(mass, V3::Constant(0.1), V3::Zero());
+        auto& slider = rig.slider(body, V3(0, 0, 1), law(strength, limit));
+        while (rig.world().time() < duration - 1e-9) {
+            WorldRig::apply_force(body, V3(0, 0, load));
+            rig.world().step(frame);
+        }
+        CHECK(slider.absorbed_energy() == Approx(strength * limit).epsilon(1e-4));
+        CHECK(WorldRig::velocity(body).z() == Approx(speed).epsilon(1e-3));
+        CHECK(rig.world().run().believed());
+    }
+}
+
+TEST_CASE("Frames: a strength that changes on the way to a break takes what it should",
+          "[frame]") {
+    constexpr double mass = 1, strength = 50, speed = 3;
+    const auto thrown = [&](double frame, auto joint, double work) {
+        Rig rig;
+        const auto body = rig.body(mass, V3::Constant(0.1), V3::Zero());
+        auto& slider = rig.slider(body, V3(0, 0, 1), joint);
+        WorldRig::set_velocity(body, V3(0, 0, speed));
+        rig.run(0.1, frame);
+        const double left = std::sqrt(speed * speed - 2 * work / mass);
+        CHECK(slider.broken());
+        CHECK(slider.absorbed_energy() == Approx(work).epsilon(2e-3));
+        CHECK(WorldRig::velocity(body).z() == Approx(left).epsilon(2e-3));
+        CHECK(rig.world().run().believed());
+    };
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        const EnergyLimit<double> limit({.limit = 3.735});
+        thrown(frame, OneAxisJoint(Linear<double>({.strength = strength, .hardening = 170}), limit),
+               3.735);
+        const double onset = 0.02, failure = 0.1;
+        thrown(frame,
+               OneAxisJoint(Perfect<double>({.strength = strength}),
+                            SofteningDamage<double>({.onset = onset, .failure = failure})),
+               strength * (onset + failure) / 2);
+    }
+}
+
 TEST_CASE("Frames: an elastic row keeps its energy at any stiffness and frame", "[frame]") {
     constexpr double mass = 10, speed = 2, strength = 1e7; // never yields
     for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
@@ -341,6 +389,47 @@ TEST_CASE("Frames: a joint of several axes takes what it holds until it breaks w
             CHECK(link.absorbed_energy() == Approx(work).epsilon(rough ? 1e-2 : 2e-3));
             CHECK(rig.world().run().believed());
         }
+    }
+}
+
+TEST_CASE("Frames: elastic axes give nothing back of what they hold as they break", "[frame]") {
+    using Eigen::Vector2d;
+    constexpr double mass = 2, strength = 40, stiffness = 1400, limit = 0.14, duration = 0.25;
+    const Vector2d size(40, 20), load(45, 17);
+    Vector2d velocity(0, 0), strain(0, 0);
+    double travel = 0;
+    constexpr int fine = 250'000;
+    for (int i = 0; i < fine; ++i) {
+        constexpr double h = duration / fine;
+        strain += velocity * h;
+        Vector2d force = stiffness * strain;
+        if (travel < limit && force.cwiseQuotient(size).norm() > 1) { // back along the normal
+            const Vector2d normal = force.cwiseQuotient(size.cwiseAbs2());
+            const double out = force.cwiseQuotient(size).squaredNorm() - 1;
+            const Vector2d flow = normal * out / (2 * stiffness * normal.squaredNorm());
+            strain -= flow;
+            travel += force.dot(flow) / strength;
+        }
+        if (travel >= limit) force.setZero();
+        velocity += (load - force) / mass * h;
+    }
+    for (const double frame : {1.0 / 240, 1.0 / 120, 1.0 / 60}) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(mass, V3::Constant(0.1), V3::Zero());
+        const CoupledJoint joint(
+            Ellipsoid<double, 2>({.capacity = size}), Perfect<double>({.strength = strength}),
+            TravelLimit<double>({.limit = limit}), {.stiffness = {stiffness, stiffness}});
+        auto& link = rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(), joint,
+                                 std::array<JointAxis, 2>{JointAxis::shear_x, JointAxis::shear_y});
+        while (rig.world().time() < duration - 1e-9) {
+            WorldRig::apply_force(body, V3(load[0], load[1], 0));
+            rig.world().step(frame);
+        }
+        CHECK(link.broken());
+        CHECK(link.absorbed_energy() == Approx(strength * limit).epsilon(1e-3));
+        CHECK(WorldRig::velocity(body).norm() == Approx(velocity.norm()).epsilon(5e-3));
+        CHECK(rig.world().run().believed());
     }
 }
 

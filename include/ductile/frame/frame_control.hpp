@@ -129,6 +129,7 @@ class FrameControl {
     [[nodiscard]] double used() const noexcept { return double(solves_) / parameters_.budget; }
     [[nodiscard]] bool spent() const noexcept { return solves_ + 1 >= parameters_.budget; }
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
+    [[nodiscard]] bool flowed(std::size_t row, const PartMotion& motion) const noexcept;
     [[nodiscard]] bool breaks(std::size_t row, const PartMotion& motion) const noexcept;
     [[nodiscard]] double first_length(double left) noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;

@@ -242,6 +242,13 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     return {past_[row].acceleration, before_};
 }
 
+/// In the part before, at or near its strength.
+DUCTILE_INLINE bool FrameControl::flowed(std::size_t row, const PartMotion& motion) const noexcept {
+    constexpr double near = 0.5;
+    return detail::was_there(past_, motion, row) && before_ > 0 && past_[row].row.moves() &&
+           past_[row].row.share > near;
+}
+
 /// In this part, not in one before.
 DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& motion) const noexcept {
     const bool broke_before = detail::was_there(past_, motion, row) && past_[row].row.broke > 0;
@@ -269,10 +276,16 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
         if (breaks(i, motion)) {
-            judged.astray += row.astray;
-            judged.stop = row.broke;
-            largest = row.astray;
+            const BrokeAlone broke = row.alone
+                                         ? broke_alone(row, before(i, motion), flowed(i, motion))
+                                         : BrokeAlone{row.broke, row.astray};
+            judged.astray += broke.astray;
+            if (broke.astray > largest) {
+                largest = broke.astray;
+                judged.stop = broke.stop;
+            }
         }
+        judged.error += row.misfit;
         if (!row.moves()) continue;
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = misplaced_energy(row, off, motion.plastic_work);

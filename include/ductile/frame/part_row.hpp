@@ -61,6 +61,9 @@ struct PartRow {
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
     double broke = 0;      ///< how long its joint held in the part that broke it [s]
     double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
+    bool alone = false;    ///< of a joint of one axis: `astray` is all of its work then
+    double run = 0;        ///< its way then, until it broke [m | rad]
+    double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
     bool elastic = false;  ///< below its strength it is a spring
     bool swings = false;   ///< as a spring, after a flow
 
@@ -143,6 +146,31 @@ struct PartBefore {
         result.travel = changed * h * h * h / (moved ? 12 : 4) + below;
     }
     return result;
+}
+
+/// A row of one axis that broke in a part after the way x had a share of its strength for all of the
+/// part, where it would have had all for a time τ. The work is the same, and without a load so is
+/// the impulse. Under one τ tells itself from the flow of the part before,
+///
+///   u τ + a₋ τ²/2 = x,   e = |τ |u + u'|/(2 x) - 1| of its work
+///
+/// Where nothing is known of that and a load made it faster, all of its work counts.
+struct BrokeAlone {
+    double stop;   ///< τ [s]
+    double astray; ///< [J]
+};
+[[nodiscard]] inline BrokeAlone broke_alone(const PartRow& row, const PartBefore& before,
+                                            bool flowed_before) noexcept {
+    const double way = std::copysign(1.0, row.start + row.end), start = way * row.start;
+    if (!flowed_before) {
+        const bool driven = std::abs(row.end) > std::abs(row.start);
+        return {row.broke, driven ? row.astray : 0};
+    }
+    const double square = start * start + 2 * way * before.acceleration * row.run;
+    const double sum = start + std::sqrt(std::max(square, 0.0));
+    if (!(row.run > 0 && sum > 0)) return {row.broke, 0};
+    const double stop = 2 * row.run / sum, other = stop * std::abs(row.start + row.end);
+    return {stop, row.astray * std::min(std::abs(other / (2 * row.run) - 1), 1.0)};
 }
 
 /// What that is in energy; `work`: W [J].

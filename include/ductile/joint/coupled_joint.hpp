@@ -180,6 +180,13 @@ class CoupledJoint {
                midway_factor(criterion_, state_.criterion, ahead, strength);
     }
 
+    /// R of flow by `travel` that was, softened by the criterion [N | N m].
+    [[nodiscard]] Scalar mean_strength_of(Scalar travel) const noexcept {
+        const Scalar from = state_.plastic_travel;
+        const Scalar strength = mean_strength(law_, from, from + travel);
+        return strength * mean_factor(criterion_, state_.criterion, travel, strength);
+    }
+
     void bound(const Motion& motion, Scalar dt) noexcept {
         using Met = Impedance<Scalar, dimension>;
         Vector compliance;
@@ -340,6 +347,7 @@ class CoupledJoint {
         const bool last = spent || uses_up(travel, left);
         if (last) travel = std::min(travel, left);
         step.plastic_work = strength * travel;
+        step.misfit = std::abs(mean_strength_of(travel) - strength) * travel;
         state_.life = std::min(state_.life + life * (step.plastic_work / work), Scalar(1));
         state_.plastic_travel += travel;
         const Scalar force = cap_ < std::numeric_limits<Scalar>::infinity() // below it: see brittle

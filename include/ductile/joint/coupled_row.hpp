@@ -104,6 +104,8 @@ struct OpenRow {
         }
         const S trial = reaction.position - offset;
         booked.travel = flows ? spring.flow(f, reaction.velocity - drift) : S(0);
+        // one that is about to break keeps its strain: of its strength the step had but a share
+        if (flows && share < 1) booked.travel = trial - elastic;
         const S strained = trial - booked.travel;
         booked.elastic = stiffness * (strained * strained - elastic * elastic) / 2;
         booked.damped = spring.damped(reaction.velocity - drift, booked.travel, strained, dt);

@@ -26,6 +26,8 @@ struct Step {
     S lost = 0;        ///< stored energy that a break set free inside the part, >= 0 [J]
     S after_break = 0; ///< time of the step that was left when it broke, >= 0 [s]
     S held = 0;        ///< time of the step until it broke; 0: it did not [s]
+    S run = 0;         ///< way of its one axis until then, >= 0 [m | rad]
+    S misfit = 0;      ///< of a flow's work, that its law would not have taken, >= 0 [J]
     S claimed = 0;     ///< flow as this joint sees it (work_share.hpp), >= 0 [J]
     S unclaimed = 0;   ///< work of its rows that did not flow, either sign [J]
     S gained = 0; ///< given to the bodies beyond all that was taken from them so far, where that

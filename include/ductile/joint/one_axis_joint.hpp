@@ -162,9 +162,13 @@ class OneAxisJoint {
         fade_ = midway_factor(criterion_, state_.criterion, ahead, strength);
         flow_ = {{flow_.lower * fade_, flow_.upper * fade_}};
         const Scalar travel = std::max(ahead, parameters_.absolute_residual * dt);
-        const Scalar loss =
-            dissipation<Law>(law_, state_.law, direction * travel, strength) * fade_;
-        left_ = std::min(criterion_.remaining(state_.criterion, loss, direction), fading);
+        const auto loss = [&](Scalar way) noexcept {
+            const FlowRange<Scalar> there{law_.prepare(state_.law, direction * way)};
+            return fade_ * dissipation<Law>(law_, state_.law, direction * way,
+                                            there.resistance(direction));
+        };
+        left_ = std::min(
+            travel_to_break(criterion_, state_.criterion, travel, direction, loss), fading);
         share_ = unspent_share(left_, least);
         upper_ = std::min(-flow_.lower * share_, cap(1));
         lower_ = std::max(-flow_.upper * share_, -cap(-1));
@@ -323,6 +327,9 @@ class OneAxisJoint {
         travel *= booked;
         const bool last = spent || uses_up(std::abs(travel), left_);
         if (last) travel = std::copysign(std::min(std::abs(travel), left_), travel);
+        const Scalar strength = flow_.resistance(travel);
+        const Scalar faded_by =
+            mean_factor(criterion_, state_.criterion, std::abs(travel), strength);
         const FlowWork<Scalar> done = law_.commit(state_.law, travel);
         step.plastic_work = done.dissipated * fade_;
         step.elastic += done.stored * fade_;
@@ -333,6 +340,8 @@ class OneAxisJoint {
         state_.broken =
             last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         if (state_.broken) step.release = std::max(rest, Scalar(0));
+        step.misfit =
+            std::abs(rest - step.release) + std::abs(faded_by - fade_) * done.dissipated;
         step.other_work = rest - step.release + (1 - booked) * work;
     }
 
@@ -355,6 +364,8 @@ class OneAxisJoint {
         step.after_break =
             taken.dt - time_to_run(distance, direction * start_, direction * velocity,
                                    flowed ? share_ : Scalar(1), taken.dt);
+        step.held = taken.dt - step.after_break;
+        step.run = distance;
         state_.time -= step.after_break;
     }
 

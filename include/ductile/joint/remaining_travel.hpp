@@ -39,6 +39,41 @@ template <FractureCriterion Criterion>
     return left < ahead ? criterion.strength_factor(state, left / 2) : factor;
 }
 
+/// Mean of that over the whole `travel` >= 0 that was flowed, or what of it there was strength for
+/// [-].
+template <FractureCriterion Criterion>
+[[nodiscard]] typename Criterion::Scalar mean_factor(
+    const Criterion& criterion, const typename Criterion::State& state,
+    typename Criterion::Scalar travel, typename Criterion::Scalar strength) noexcept {
+    using S = typename Criterion::Scalar;
+    if (!(criterion.strength_factor(state, travel) < 1)) return 1;
+    constexpr int pieces = 8; // a kink in one of them is off by a sixty-fourth of what it would be
+    travel = std::min(travel, criterion.remaining(state, strength, S(0)));
+    S sum = 0;
+    for (int i = 0; i < pieces; ++i) {
+        sum += criterion.strength_factor(state, travel * (S(i) + S(0.5)) / pieces);
+    }
+    return sum / pieces;
+}
+
+/// Plastic travel that a criterion leaves; where that ends within the way `ahead` >= 0, at the
+/// strength of the way to there alone: `mean(way)` is that of the first `way` [m | rad].
+template <FractureCriterion Criterion, class Mean>
+[[nodiscard]] typename Criterion::Scalar travel_to_break(
+    const Criterion& criterion, const typename Criterion::State& state,
+    typename Criterion::Scalar ahead, typename Criterion::Scalar direction,
+    Mean&& mean) noexcept {
+    using S = typename Criterion::Scalar;
+    constexpr int enough = 12;
+    S way = ahead, left = criterion.remaining(state, mean(way), direction);
+    for (int i = 0; i < enough && left > 0 && left < ahead; ++i) {
+        if (std::abs(left - way) <= leftover_share<S> * left) break;
+        way = left;
+        left = criterion.remaining(state, mean(way), direction);
+    }
+    return left;
+}
+
 /// Travel of a step that starts at `speed`, predicted from below, so that a step that can break
 /// does break: with the speed that the last step took, `before` less `after`, where the joint
 /// flowed in it, else with a stop inside this one. What somebody gave back between the steps, a

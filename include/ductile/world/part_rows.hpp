@@ -26,7 +26,8 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     const bool yielded =
         link.axes().size() == 1 && !link.all_rigid() && link.totals().plastic_work > 0;
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
-    double broke = link.axes().size() > 1 ? link.last().held : 0;
+    double broke = link.last().held, misfit = acts ? link.last().misfit : 0;
+    const bool alone = link.axes().size() == 1;
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
         PartRow& row = rows.emplace_back();
@@ -38,12 +39,17 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.broke = std::exchange(broke, 0);
         if (row.broke > 0) {
             const double after = link.last().after_break;
-            row.astray = link.last().plastic_work * after / (row.broke + after);
+            row.astray = link.last().plastic_work * (alone ? 1 : after / (row.broke + after));
+            row.alone = alone;
+            row.run = link.last().run;
+            row.start = link.start_velocities()[i];
+            row.end = link.end_velocities()[i];
         }
         row.elastic = !link.all_rigid();
         if (!acts) continue;
         row.start = link.start_velocities()[i];
         row.end = link.end_velocities()[i];
+        row.misfit = std::exchange(misfit, 0);
         row.share = share;
         row.swings = yielded && !link.totals().flowing;
         row.below = link.totals().flowing ? std::max(0.0, 1 - share) : 0;
@@ -62,9 +68,15 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.noise = resting_share * axis.allowed_residual(0);
     row.least = axis.least_travel();
     row.elastic = !axis.rigid();
-    if (!acts || axis.broken()) return;
+    row.broke = axis.last().held;
+    row.alone = true;
+    row.run = axis.last().run;
+    if (row.broke > 0) row.astray = axis.last().plastic_work;
+    if (!acts && !(row.broke > 0)) return;
     row.start = axis.start_velocity();
     row.end = axis.velocity();
+    if (!acts || axis.broken()) return;
+    row.misfit = axis.last().misfit;
     row.swings = row.elastic && axis.totals().plastic_work > 0 && !axis.totals().flowing;
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = axis.utilisation(force);

@@ -3,6 +3,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
+#include "ductile/fracture/energy_limit.hpp"
+#include "ductile/fracture/softening_damage.hpp"
+
 using namespace ductile;
 
 TEST_CASE("the time to run a distance is that of constant deceleration", "[joint][break]") {
@@ -37,4 +42,26 @@ TEST_CASE("a step that would use up more than is left gets the share that uses i
     CHECK(unspent_share(0.025, 0.1) == Approx(0.25).epsilon(1e-14));
     CHECK(unspent_share(0.1, 0.1) == 1);
     CHECK(unspent_share(0.2, 0.1) == 1);
+}
+
+TEST_CASE("what is left of an energy is the way that takes it, at a strength that grows on it",
+          "[joint][break]") {
+    // R = 10 + 30 p takes 8 J after 10 p + 15 p² = 8
+    const EnergyLimit<double> limit({.limit = 8});
+    const auto mean = [](double way) { return 10 + 15 * way; };
+    const double way = (-10 + std::sqrt(100.0 + 4 * 15 * 8)) / 30;
+    for (const double ahead : {1.2 * way, 3 * way}) {
+        CHECK(travel_to_break(limit, {}, ahead, 1.0, mean) == Approx(way).epsilon(1e-7));
+    }
+    // what is beyond the step is told from all of the step
+    CHECK(travel_to_break(limit, {}, way / 2, 1.0, mean) == Approx(8 / mean(way / 2)));
+}
+
+TEST_CASE("the mean of a strength that damage takes is that of the way", "[joint][break]") {
+    const SofteningDamage<double> damage({.onset = 1, .failure = 3});
+    CHECK(mean_factor(damage, {}, 0.8, 1.0) == 1);
+    CHECK(mean_factor(damage, {.travel = 1}, 0.5, 1.0) == Approx(0.875).epsilon(1e-14));
+    CHECK(mean_factor(damage, {.travel = 1}, 9.0, 1.0) == Approx(0.5).epsilon(1e-14));
+    // over the onset: 1 - 0.5²/(2 × 2), by eight pieces
+    CHECK(mean_factor(damage, {.travel = 0.5}, 1.0, 1.0) == Approx(1 - 0.0625).epsilon(2e-3));
 }
