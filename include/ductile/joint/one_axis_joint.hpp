@@ -94,10 +94,11 @@ class OneAxisJoint {
     /// The velocity that the step left, seen along the axis as it is now: not a jump [m/s | rad/s].
     void carry(Scalar u) noexcept { state_.velocity = are_finite(u) ? u : state_.velocity; }
 
-    /// Force at which the row would flow now towards `direction` = ±1 [N | N m].
+    /// Force at which the row would flow now, or snap, towards `direction` = ±1 [N | N m].
     [[nodiscard]] Scalar strength(Scalar direction = 1) const noexcept {
-        return std::abs(law_.resistance(state_.law, Scalar(0), direction)) *
-               criterion_.strength_factor(state_.criterion, Scalar(0));
+        const Scalar flows = std::abs(law_.resistance(state_.law, Scalar(0), direction)) *
+                             criterion_.strength_factor(state_.criterion, Scalar(0));
+        return std::min(flows, criterion_.force_cap(state_.criterion, -direction));
     }
     /// Share of its strength that the row uses while it pushes its bodies with `force`; 1 where it
     /// flows, 0 where broken. Beyond the strength a back force makes it flow back [-].

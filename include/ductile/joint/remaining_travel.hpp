@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <utility>
 
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/law/law.hpp"
@@ -64,14 +65,19 @@ template <FractureCriterion Criterion, class Mean>
     typename Criterion::Scalar ahead, typename Criterion::Scalar direction,
     Mean&& mean) noexcept {
     using S = typename Criterion::Scalar;
+    S before = ahead, way = criterion.remaining(state, mean(before), direction);
+    if (!(way > 0 && way < ahead)) return way;
+    S off_before = way - before;
     constexpr int enough = 12;
-    S way = ahead, left = criterion.remaining(state, mean(way), direction);
-    for (int i = 0; i < enough && left > 0 && left < ahead; ++i) {
-        if (std::abs(left - way) <= leftover_share<S> * left) break;
-        way = left;
-        left = criterion.remaining(state, mean(way), direction);
+    for (int i = 0; i < enough; ++i) { // secants
+        const S left = criterion.remaining(state, mean(way), direction), off = left - way;
+        if (std::abs(off) <= leftover_share<S> * way) break;
+        const S slope = (off - off_before) / (way - before);
+        before = std::exchange(way, std::min(slope < 0 ? way - off / slope : left, ahead));
+        off_before = off;
+        if (!(way > 0) || way == before) return left;
     }
-    return left;
+    return way;
 }
 
 /// Travel of a step that starts at `speed`, predicted from below, so that a step that can break
