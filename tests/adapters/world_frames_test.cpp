@@ -202,6 +202,30 @@ TEST_CASE("Frames: a spring that yields within a frame takes what its way needs"
     }
 }
 
+TEST_CASE("Frames: a spring that stops what is thrown in a small share of a frame yields",
+          "[frame]") {
+    constexpr double mass = 2, speed = 3, thrown = mass * speed * speed / 2;
+    for (const double strength : {8e3, 2e4, 1e5}) {
+        for (const double share : {0.01, 0.1, 0.5, 2.0}) { // of it in the spring at yield
+            const double stiffness = strength * strength / (2 * share * thrown);
+            for (const double frame : all_frames) {
+                CAPTURE(strength, share, frame);
+                Rig rig;
+                const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+                WorldRig::set_velocity(body, V3(speed, 0, 0));
+                auto& slider = rig.slider(
+                    body, V3(1, 0, 0),
+                    OneAxisJoint(Perfect<double>({.strength = strength}), TravelLimit<double>(),
+                                 {.stiffness = stiffness}));
+                rig.run(0.1, frame);
+                const double work = thrown * std::max(0.0, 1 - share);
+                CHECK(slider.absorbed_energy() == Approx(work).epsilon(0.01));
+                CHECK(rig.world().run().believed());
+            }
+        }
+    }
+}
+
 TEST_CASE("Frames: a brittle spring absorbs nothing, at any frame", "[frame]") {
     struct Weld {
         double strength, limit, stiffness;

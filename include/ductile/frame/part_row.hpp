@@ -19,8 +19,9 @@
 //                         three times that where the flow began within the part
 //                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
-//                         strength that makes it matter; nothing below 5 % of R; ten times that
-//                         after a flow, where those of a swing add up to its phase
+//                         strength that makes it matter; nothing below 5 % of R, unless it stops
+//                         more than its spring holds at yield within the part, |f| h u²/(2 |u' - u|);
+//                         ten times that after a flow, where those of a swing add up to its phase
 //
 // Symbols
 //   u, u'   velocity of the row at the start and end of the part     [m/s | rad/s]
@@ -65,8 +66,15 @@ struct PartRow {
     double run = 0;        ///< its way then, until it broke [m | rad]
     double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
     bool elastic = false;  ///< below its strength it is a spring
+    double spring = 0;     ///< what that holds at yield [J]
     bool swings = false;   ///< as a spring, after a flow
 
+    /// Of what it stopped in a part of h, with its mean force [J]; nothing where that goes on.
+    [[nodiscard]] double stopped(double h) const noexcept {
+        const double change = std::abs(end - start);
+        if (!(change >= std::abs(start)) || change == 0) return 0;
+        return std::min(share, own_share) * strength * h * start * start / (2 * change);
+    }
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
     /// Its force is its strength.
     [[nodiscard]] bool flows() const noexcept {
@@ -124,7 +132,7 @@ struct PartBefore {
     const double below = row.below * std::abs(row.start + row.end) * h / 2;
     if (row.elastic) {
         constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 10;
-        if (share <= idle) return result;
+        if (share <= idle && !(row.stopped(h) > row.spring)) return result;
         const double alike = row.swings ? parts_of_a_swing : 1;
         result.travel = changed * h * h * h / 8 * std::max(share, least_weight) * alike + below;
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {

@@ -56,6 +56,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.pushes = link.force(axis) * row.start > 0;
         row.strength = link.strength(axis);
         row.own_share = std::abs(link.force(axis)) / row.strength;
+        row.spring = row.strength * row.strength / (2 * link.section_stiffness()[i]);
         row.given = std::exchange(given, 0);
     }
 }
@@ -80,6 +81,7 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.swings = row.elastic && axis.totals().plastic_work > 0 && !axis.totals().flowing;
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = axis.utilisation(force);
+    row.spring = row.strength * row.strength / (2 * axis.stiffness());
     row.pushes = force * row.start > 0;
 }
 
