@@ -220,7 +220,6 @@ TEST_CASE("Frames: a spring that stops what is thrown in a small share of a fram
                 rig.run(0.1, frame);
                 const double work = thrown * std::max(0.0, 1 - share);
                 CHECK(slider.absorbed_energy() == Approx(work).epsilon(0.01));
-                CHECK(rig.world().run().believed());
             }
         }
     }

@@ -3,10 +3,10 @@
 // Which contacts on islands with plastic joints close, from those that the user's collisions make
 // (contact_maker.hpp). ODE tells of a contact only once shapes overlap, so closed is one that
 // overlaps by a hair: a hundredth of the height from which it would fall to its speed, 0.1 um to
-// `closed_depth`. Nothing is pushed out up to that, and it sinks to there at a hundredth of the
-// speed of what turns it, so that it stays known where a turn takes some of that away. One that is
-// about to close is known as well. With d the overlap beyond the hair, less than 0 where it is a
-// gap,
+// `closed_depth`. Nothing is pushed out up to that. Below half of it a contact sinks to there at a
+// fiftieth of the speed of what turns it, so that it stays known where a turn takes some of that
+// away. One that is about to close is known as well. With d the overlap beyond the hair, less than
+// 0 where it is a gap,
 //
 //   a contact that is closed and goes on at v strikes, with the energy v²/(2 K),
 //     K = 1/effective mass of the point, both bodies free

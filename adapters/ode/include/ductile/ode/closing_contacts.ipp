@@ -124,7 +124,7 @@ struct MovingGeom {
 
 DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
     : seen(detail::seen_contact(named).second) {
-    constexpr double followed = 0.01; // of what turns it
+    constexpr double followed = 0.02; // of what turns it
     const AttachedBodies bodies = attached_bodies(named.joint);
     const ContactBody a = detail::contact_body(bodies.a), b = detail::contact_body(bodies.b);
     const Vector3<double> comes = difference(b.at(seen.arm_b), a.at(seen.arm_a));

@@ -86,7 +86,9 @@ DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h) co
     const auto depth = double(named.contact.geom.depth);
     // what a blow stopped closes no more, although that strikes a little early
     const double left = it.closes() ? 2 * (it.depth() - depth) / h : 0;
-    return std::max(left, std::clamp(2 * (closed_depth - depth) / h, 0.0, it.sinks));
+    const bool known = depth > closed_depth / 2;
+    const double to = known ? 0 : std::clamp(2 * (closed_depth - depth) / h, 0.0, it.sinks);
+    return std::max(left, to);
 }
 
 DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
