@@ -110,8 +110,7 @@ TEST_CASE("Frames: what a load carries through a break flies on as it should", "
     }
 }
 
-TEST_CASE("Frames: a strength that changes on the way to a break takes what it should",
-          "[frame]") {
+TEST_CASE("Frames: a strength that changes on the way to a break takes what it should", "[frame]") {
     constexpr double mass = 1, strength = 50, speed = 3;
     const auto thrown = [&](double frame, auto joint, double work) {
         Rig rig;
@@ -213,10 +212,10 @@ TEST_CASE("Frames: a spring that stops what is thrown in a small share of a fram
                 Rig rig;
                 const auto body = rig.body(mass, V3::Ones(), V3::Zero());
                 WorldRig::set_velocity(body, V3(speed, 0, 0));
-                auto& slider = rig.slider(
-                    body, V3(1, 0, 0),
-                    OneAxisJoint(Perfect<double>({.strength = strength}), TravelLimit<double>(),
-                                 {.stiffness = stiffness}));
+                auto& slider =
+                    rig.slider(body, V3(1, 0, 0),
+                               OneAxisJoint(Perfect<double>({.strength = strength}),
+                                            TravelLimit<double>(), {.stiffness = stiffness}));
                 rig.run(0.1, frame);
                 const double work = thrown * std::max(0.0, 1 - share);
                 CHECK(slider.absorbed_energy() == Approx(work).epsilon(0.01));

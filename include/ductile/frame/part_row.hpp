@@ -20,8 +20,8 @@
 //                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
 //                         strength that makes it matter; nothing below 5 % of R, unless it stops
-//                         more than its spring holds at yield within the part, |f| h u²/(2 |u' - u|);
-//                         ten times that after a flow, where those of a swing add up to its phase
+//                         more in the part than its spring holds at yield; ten times that after a
+//                         flow, where those of a swing add up to its phase
 //
 // Symbols
 //   u, u'   velocity of the row at the start and end of the part     [m/s | rad/s]
@@ -156,9 +156,9 @@ struct PartBefore {
     return result;
 }
 
-/// A row of one axis that broke in a part after the way x had a share of its strength for all of the
-/// part, where it would have had all for a time τ. The work is the same, and without a load so is
-/// the impulse. Under one τ tells itself from the flow of the part before,
+/// A row of one axis that broke in a part after the way x had a share of its strength for all of
+/// the part, where it would have had all for a time τ. The work is the same, and without a load so
+/// is the impulse. Under one τ tells itself from the flow of the part before,
 ///
 ///   u τ + a₋ τ²/2 = x,   e = |τ |u + u'|/(2 x) - 1| of its work
 ///

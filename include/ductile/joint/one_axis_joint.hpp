@@ -165,11 +165,11 @@ class OneAxisJoint {
         const Scalar travel = std::max(ahead, parameters_.absolute_residual * dt);
         const auto loss = [&](Scalar way) noexcept {
             const FlowRange<Scalar> there{law_.prepare(state_.law, direction * way)};
-            return fade_ * dissipation<Law>(law_, state_.law, direction * way,
-                                            there.resistance(direction));
+            return fade_ *
+                   dissipation<Law>(law_, state_.law, direction * way, there.resistance(direction));
         };
-        left_ = std::min(
-            travel_to_break(criterion_, state_.criterion, travel, direction, loss), fading);
+        left_ = std::min(travel_to_break(criterion_, state_.criterion, travel, direction, loss),
+                         fading);
         share_ = unspent_share(left_, least);
         upper_ = std::min(-flow_.lower * share_, cap(1));
         lower_ = std::max(-flow_.upper * share_, -cap(-1));
@@ -341,8 +341,7 @@ class OneAxisJoint {
         state_.broken =
             last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
         if (state_.broken) step.release = std::max(rest, Scalar(0));
-        step.misfit =
-            std::abs(rest - step.release) + std::abs(faded_by - fade_) * done.dissipated;
+        step.misfit = std::abs(rest - step.release) + std::abs(faded_by - fade_) * done.dissipated;
         step.other_work = rest - step.release + (1 - booked) * work;
     }
 

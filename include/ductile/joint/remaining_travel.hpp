@@ -43,9 +43,10 @@ template <FractureCriterion Criterion>
 /// Mean of that over the whole `travel` >= 0 that was flowed, or what of it there was strength for
 /// [-].
 template <FractureCriterion Criterion>
-[[nodiscard]] typename Criterion::Scalar mean_factor(
-    const Criterion& criterion, const typename Criterion::State& state,
-    typename Criterion::Scalar travel, typename Criterion::Scalar strength) noexcept {
+[[nodiscard]] typename Criterion::Scalar mean_factor(const Criterion& criterion,
+                                                     const typename Criterion::State& state,
+                                                     typename Criterion::Scalar travel,
+                                                     typename Criterion::Scalar strength) noexcept {
     using S = typename Criterion::Scalar;
     if (!(criterion.strength_factor(state, travel) < 1)) return 1;
     constexpr int pieces = 8; // a kink in one of them is off by a sixty-fourth of what it would be
@@ -60,10 +61,11 @@ template <FractureCriterion Criterion>
 /// Plastic travel that a criterion leaves; where that ends within the way `ahead` >= 0, at the
 /// strength of the way to there alone: `mean(way)` is that of the first `way` [m | rad].
 template <FractureCriterion Criterion, class Mean>
-[[nodiscard]] typename Criterion::Scalar travel_to_break(
-    const Criterion& criterion, const typename Criterion::State& state,
-    typename Criterion::Scalar ahead, typename Criterion::Scalar direction,
-    Mean&& mean) noexcept {
+[[nodiscard]] typename Criterion::Scalar travel_to_break(const Criterion& criterion,
+                                                         const typename Criterion::State& state,
+                                                         typename Criterion::Scalar ahead,
+                                                         typename Criterion::Scalar direction,
+                                                         Mean&& mean) noexcept {
     using S = typename Criterion::Scalar;
     S before = ahead, way = criterion.remaining(state, mean(before), direction);
     if (!(way > 0 && way < ahead)) return way;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// A step of Newton with the sides of rows and the states of blocks as they are: rows at a bound stay
-// there, blocks on their surface move along it.
+// A step of Newton with the sides of rows and the states of blocks as they are: rows at a bound
+// stay there, blocks on their surface move along it.
 #pragma once
 
 #include "ductile/solve/island_system.hpp"
