@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "adapters/bullet_engine.hpp"
+#include "adapters/crushed_head.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world_parts.hpp"
@@ -21,6 +22,7 @@ namespace {
 using namespace ductile;
 using bullet::World;
 using bullet::WorldParameters;
+using ductile::test::crush_of_head;
 using ductile::test::message_of;
 using Law = OneAxisJoint<Perfect<double>>;
 using Hinge = bullet::PlasticHinge<Law>;
@@ -101,8 +103,7 @@ struct CrushingHead {
 
     /// After a fall from `height` [m].
     [[nodiscard]] static double crush(double height) {
-        const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
-        return common * common / (2 * (strength / (mass + head_mass) - g));
+        return crush_of_head(mass, head_mass, height, strength, g);
     }
 
     explicit CrushingHead(Rig& rig)
@@ -166,11 +167,10 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
     // a ball, whose contact Bullet knows 20 mm before it closes; falls from a low height, so that
     // in the part that ends there it still gains much of its speed
     constexpr double mass = 500, head_mass = 50, height = 0.05, g = 9.81;
-    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
     for (const double frame : all_frames) {
         for (const double strength : {30e3, 300e3}) {
             CAPTURE(frame, strength);
-            const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+            const double crush = crush_of_head(mass, head_mass, height, strength, g);
             Rig rig;
             rig.engine.setGravity({0, btScalar(-g), 0});
             btRigidBody& head =
@@ -201,8 +201,7 @@ TEST_CASE("Frames: what is put down a little above a head that hardly bears it f
     constexpr double mass = 500, head_mass = 50, g = 9.81, weight = (mass + head_mass) * g;
     constexpr double strength = weight / 0.99;
     for (const double gap : {0.0, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 2e-4, 1e-3}) {
-        const double common = std::sqrt(2 * g * gap) * mass / (mass + head_mass);
-        const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+        const double crush = crush_of_head(mass, head_mass, gap, strength, g);
         for (const double frame : all_frames) {
             for (const bool is_box : {false, true}) {
                 CAPTURE(gap, frame, is_box);

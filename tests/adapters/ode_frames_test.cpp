@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "adapters/crushed_head.hpp"
 #include "adapters/ode_engine.hpp"
 #include "ductile/ode/ode.hpp"
 #include "support/throws.hpp"
@@ -18,6 +19,7 @@
 namespace {
 
 using namespace ductile;
+using ductile::test::crush_of_head;
 using ductile::test::message_of;
 using ode::Solver;
 using ode::World;
@@ -121,8 +123,7 @@ struct Rig {
 
 TEST_CASE("Frames: a mass dropped on a crushing head, by ODE's own contact", "[frame]") {
     constexpr double mass = 500, head_mass = 50, height = 2, strength = 30e3, g = 9.81;
-    const double common = std::sqrt(2 * g * height) * mass / (mass + head_mass);
-    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    const double crush = crush_of_head(mass, head_mass, height, strength, g);
     for (const Solver solver : {Solver::direct, Solver::quick}) {
         for (const double frame : all_frames) {
             CAPTURE(solver, frame);
@@ -145,11 +146,10 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
     // falls from a low height, so that in the part that ends there it still gains much of its speed
     constexpr double mass = 500, head_mass = 50, height = 0.05, g = 9.81;
     constexpr double fall = height + ode::closed_depth;
-    const double common = std::sqrt(2 * g * fall) * mass / (mass + head_mass);
     for (const double frame : all_frames) {
         for (const double strength : {30e3, 300e3}) {
             CAPTURE(frame, strength);
-            const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+            const double crush = crush_of_head(mass, head_mass, fall, strength, g);
             Rig rig;
             rig.set_gravity(g);
             const dBodyID head =
@@ -357,8 +357,7 @@ TEST_CASE("Frames: what is put down a little above a head that hardly bears it f
     constexpr double mass = 500, head_mass = 50, g = 9.81, weight = (mass + head_mass) * g;
     constexpr double strength = weight / 0.99;
     for (const double gap : {0.0, 1e-7, 1e-6, 1e-5, 3e-5, 1e-4, 2e-4, 1e-3}) {
-        const double common = std::sqrt(2 * g * gap) * mass / (mass + head_mass);
-        const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+        const double crush = crush_of_head(mass, head_mass, gap, strength, g);
         for (const double frame : all_frames) {
             CAPTURE(gap, frame);
             Rig rig;
@@ -379,8 +378,7 @@ TEST_CASE("Frames: what is put down a little above a head that hardly bears it f
 TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about", "[frame]") {
     constexpr double mass = 500, head_mass = 50, height = 1, strength = 30e3, g = 9.81;
     constexpr double fall = height + ode::closed_depth;
-    const double common = std::sqrt(2 * g * fall) * mass / (mass + head_mass);
-    const double crush = common * common / (2 * (strength / (mass + head_mass) - g));
+    const double crush = crush_of_head(mass, head_mass, fall, strength, g);
     for (const bool guided : {false, true}) { // that island is ODE's
         for (const double frame : all_frames) {
             CAPTURE(guided, frame);
