@@ -4,6 +4,9 @@
 
 Each folder of include/ductile may include what stands before it in ALLOWED and nothing else; adapters may
 include the core, the core never an adapter; and no header includes itself by a detour.
+
+A virtual function whose body is in an .ipp is declared DUCTILE_INLINE: one that is declared without is the key
+function of its class, and every program that sees the body compiles the table and all that it calls, used or not.
 """
 
 import re
@@ -38,20 +41,35 @@ def room(header):
     return parts[0].removesuffix(".hpp")
 
 
+def keys(text):
+    """Virtual functions that are declared in a header without a body and not inline."""
+    text = re.sub(r"//[^\n]*", "", text)
+    templates = [(m.start(), m.end()) for m in re.finditer(r"^template <.*?^};", text, re.M | re.S)]
+    for found in re.finditer(r"[^;{}]+;", text):
+        words = found.group().split()
+        said = " ".join(words)
+        virtual = words[-1] in ("override;", "final;") or "virtual" in words or re.search(r"~\w+\(\);$", said)
+        inside = any(a <= found.start() < b for a, b in templates)
+        if virtual and not inside and "DUCTILE_INLINE" not in words and "= " not in said:
+            yield said
+
+
 def main():
     root = Path(sys.argv[1])
     graph = {}
     lengths = []
+    errors = []
     for folder in ("include", *(f"adapters/{name}/include" for name in ADAPTERS)):
         base = root / folder
         for path in sorted([*base.rglob("*.hpp"), *base.rglob("*.ipp")]):
             # the bodies in x.ipp are a part of x.hpp
             name = str(path.relative_to(base).with_suffix(".hpp"))
+            errors += [f"{name}: {said} has to be DUCTILE_INLINE" for said in keys(path.read_text())
+                       if path.suffix == ".hpp"]
             lengths.append((str(path.relative_to(base)), len(path.read_text().splitlines())))
             includes = re.findall(r'^#include "(ductile/[^"]+)"', path.read_text(), re.M)
             includes = [i.removesuffix(".ipp") + ".hpp" if i.endswith(".ipp") else i for i in includes]
             graph.setdefault(name, []).extend(i for i in includes if i != name)
-    errors = []
     for header, includes in graph.items():
         where = room(header)
         for include in includes:

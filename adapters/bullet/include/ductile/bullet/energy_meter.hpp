@@ -36,7 +36,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// The world must outlive the meter. Opens the ledger with what the world holds now.
     explicit EnergyMeter(btDiscreteDynamicsWorld& world);
     /// Takes the feedback it lent away from the constraints again.
-    ~EnergyMeter();
+    DUCTILE_INLINE ~EnergyMeter();
 
     /// From now on it lists these alone; null: all again.
     void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }

@@ -111,7 +111,7 @@ class FrontHold {
   public:
     /// @throws std::bad_alloc
     explicit FrontHold(btDiscreteDynamicsWorld& world);
-    ~FrontHold();
+    DUCTILE_INLINE ~FrontHold();
     FrontHold(const FrontHold&) = delete;
     FrontHold& operator=(const FrontHold&) = delete;
 

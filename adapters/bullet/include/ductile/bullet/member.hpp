@@ -63,7 +63,7 @@ class Member : public DividedMember<OpenSection> {
     /// is a member already, or a frame is none.
     Member(btRigidBody& body, ductile::Member member, const btTransform& start_in_body,
            const MemberBox& box = {});
-    ~Member();
+    DUCTILE_INLINE ~Member();
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;
 

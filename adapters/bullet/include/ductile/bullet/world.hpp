@@ -78,7 +78,7 @@ class World final : public SteppedWorld {
     /// cannot be exchanged.
     explicit World(btDiscreteDynamicsWorld& world, WorldParameters parameters = {});
     /// Joints stay in Bullet's world.
-    ~World();
+    DUCTILE_INLINE ~World();
 
     [[nodiscard]] btDiscreteDynamicsWorld& engine() const noexcept { return world_; }
 

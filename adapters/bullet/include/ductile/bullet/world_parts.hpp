@@ -64,7 +64,7 @@ class WorldParts final : public PartEngine {
 
     WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter,
                Members& members, Number number, Accept accept, bool keeps_ledger = true);
-    ~WorldParts();
+    DUCTILE_INLINE ~WorldParts();
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
 

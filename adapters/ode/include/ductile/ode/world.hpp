@@ -89,7 +89,7 @@ class World final : public SteppedWorld {
     /// Steps, collects events, and says nothing by itself; no ledger.
     explicit World(dWorldID world, Solver solver = Solver::direct);
     /// Joints and members stay in ODE's world.
-    ~World();
+    DUCTILE_INLINE ~World();
 
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
