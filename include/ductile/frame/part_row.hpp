@@ -20,8 +20,12 @@
 //                         short of its strength by d R, as its force was foretold: + d |u + u'| h/2
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
 //                         strength that makes it matter; nothing below 5 % of R, unless it stops
-//                         more in the part than its spring holds at yield; ten times that after a
-//                         flow, where those of a swing add up to its phase
+//                         more in the part than its spring holds at yield
+//                         after a flow it swings, and what its phase is off by goes on as a speed:
+//                         Δ = |a'| h² ω h/12,  R/m = 2 ω² U/R,  Δ/√(R/m) = |a'| h³/12 √(R/2U),
+//                         four times that, as those of a swing add up
+//                         one that turned at its strength had that for all of the part:
+//                         s = h |u|/|u' - u|,  e >= |u' - u| h/8,  Δ = |u'|,  c = |u' - u|/h
 //
 // Symbols
 //   u, u'   velocity of the row at the start and end of the part     [m/s | rad/s]
@@ -31,6 +35,7 @@
 //   e       travel that may be misplaced                             [m | rad]
 //   s       instant within the part at which the flow ended          [s]
 //   W       plastic work of all rows so far                          [J]
+//   U, ω    what the spring holds at yield, its own frequency        [J, rad/s]
 //
 // Limit cases: constant force: e = 0. h → 0: e is of second order, and of first where a flow stops,
 // until the part ends there.
@@ -67,7 +72,7 @@ struct PartRow {
     double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
     bool elastic = false;  ///< below its strength it is a spring
     double spring = 0;     ///< what that holds at yield [J]
-    bool swings = false;   ///< as a spring, after a flow
+    bool swings = false;   ///< as a spring, after a flow and into the next one
 
     /// Of what it stopped in a part of h, with its mean force [J]; nothing where that goes on.
     [[nodiscard]] double stopped(double h) const noexcept {
@@ -80,6 +85,11 @@ struct PartRow {
     [[nodiscard]] bool flows() const noexcept {
         constexpr double holds = 1 - 1e-6, least_own = 0.1;
         return share >= holds && own_share >= least_own;
+    }
+    /// It was at its strength, one way, for all of a part in which it went back and forth.
+    [[nodiscard]] bool turned_at_strength() const noexcept {
+        constexpr double nearly = 0.999;
+        return std::min(share, own_share) >= nearly && start * end < 0;
     }
     /// Negated so that a speed that is no number moves.
     [[nodiscard]] bool moves() const noexcept {
@@ -117,6 +127,27 @@ struct PartBefore {
     return {.stop = stop, .lacking = std::abs(back * (h - stop) + way * row.end) / std::sqrt(back)};
 }
 
+/// Of a spring; `changed`: |a'|, `below`: travel by which it flows below its strength.
+[[nodiscard]] inline Misplaced misplaced_by_spring(const PartRow& row, double h, double changed,
+                                                   double below) noexcept {
+    constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 4;
+    Misplaced result;
+    if (row.share <= idle && !(row.stopped(h) > row.spring)) return result;
+    const double share = std::min(1.0, row.share), cube = h * h * h;
+    result.travel = changed * cube / 8 * std::max(share, least_weight) + below;
+    if (row.swings) {
+        const double eased = std::sqrt(row.strength / (2 * row.spring)); // ω/√(R/m)
+        result.lacking = parts_of_a_swing * changed * cube / 12 * eased;
+    }
+    if (row.turned_at_strength()) {
+        const double change = std::abs(row.end - row.start);
+        result.travel = std::max(result.travel, change * h / 8);
+        result.lacking = std::abs(row.end) * std::sqrt(h / change);
+        result.stop = h * std::abs(row.start) / change;
+    }
+    return result;
+}
+
 [[nodiscard]] inline Misplaced misplaced(const PartRow& row, double h,
                                          const PartBefore& before) noexcept {
     Misplaced result;
@@ -131,10 +162,7 @@ struct PartBefore {
     const double changed = 2 * std::abs(change / h - before.acceleration) / (h + before.length);
     const double below = row.below * std::abs(row.start + row.end) * h / 2;
     if (row.elastic) {
-        constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 10;
-        if (share <= idle && !(row.stopped(h) > row.spring)) return result;
-        const double alike = row.swings ? parts_of_a_swing : 1;
-        result.travel = changed * h * h * h / 8 * std::max(share, least_weight) * alike + below;
+        result = misplaced_by_spring(row, h, changed, below);
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
         result.travel = start * h * (1 - share) / 2;
         double stop = share * h;

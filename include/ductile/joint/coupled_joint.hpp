@@ -299,27 +299,7 @@ class CoupledJoint {
     }
 
     /// Breaks without flow: what the rows took beyond their elastic energy is handed back.
-    void snap(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept {
-        const Scalar rest = taken.flow + step.other_work;
-        step.release = std::max(rest, Scalar(0));
-        step.other_work = rest - step.release;
-        const Scalar reached = cap_ * first_strength_;
-        criterion_.update(state_.criterion, {0, state_.plastic_travel, reached, 0, dt});
-        state_.broken = true;
-        taken.force *= cap_ / surface_.value(taken.force); // the box has corners beyond
-        int axis = 0;
-        taken.force.cwiseProduct(surface_.normal(taken.force)).maxCoeff(&axis);
-        state_.broken_axis = axis;
-        // a rigid row carries the force of its step from the start
-        const Scalar towards = std::copysign(Scalar(1), -taken.force[axis]);
-        const Scalar run = rigid(axis) ? Scalar(0)
-                                       : std::abs(taken.force[axis]) / parameters_.stiffness[axis] -
-                                             towards * elastic_[axis];
-        const Scalar elapsed = time_to_run(run, towards * start_[axis],
-                                           towards * reaction.velocity[axis], Scalar(1), dt);
-        step.after_break = dt - elapsed;
-        state_.time -= step.after_break; // of the whole step that `settle` books
-    }
+    void snap(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept;
 
     /// Uses up life for the work of flow of all rows together.
     void flow(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept {
@@ -361,6 +341,11 @@ class CoupledJoint {
         (state_.broken ? step.release : step.other_work) += rest;
         if (state_.broken) end_after(step, taken, reaction, travel, dt);
     }
+
+    /// Of the work of springs that reached the surface within the step: what they lacked of it
+    /// until then, by the chord of their forces (1 - γ)/2 τ of it, γ the gauge they began with, τ
+    /// the share of their way until they met it [J].
+    [[nodiscard]] Scalar missed_onset(const Reaction& reaction, Scalar dt) const noexcept;
 
     /// The joint broke after the equivalent `travel` of this step.
     void end_after(Step& step, Taken& taken, const Reaction& reaction, Scalar travel,

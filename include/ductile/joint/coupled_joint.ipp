@@ -167,6 +167,7 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
     } else {
         flow(step, taken, reaction, dt);
     }
+    if (flows && step.plastic_work > 0) step.misfit += missed_onset(reaction, dt);
     if (state_.broken) step.held = dt - step.after_break;
     settle(state_, step,
            StepEnd<Scalar, Vector>{.start = start_,
@@ -183,6 +184,50 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
                                    .at_bound = taken.at_bound.any()},
            [this]() noexcept { return least_travel(); });
     return step;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::missed_onset(const Reaction& reaction,
+                                                         Scalar dt) const noexcept -> Scalar {
+    if (!ahead_ || all_rigid_ || cap_ < grown_) return 0;
+    Vector from, to;
+    Scalar work = 0;
+    for (int i = 0; i < dimension; ++i) {
+        const Scalar travel = (start_[i] + reaction.velocity[i]) / 2 * dt;
+        from[i] = rigid(i) ? reaction.force[i] : -parameters_.stiffness[i] * elastic_[i];
+        to[i] = rigid(i) ? reaction.force[i] : from[i] - parameters_.stiffness[i] * travel;
+        if (!rigid(i)) work -= reaction.force[i] * travel;
+    }
+    const Scalar first = surface_.value(from) / reach(), last = surface_.value(to) / reach();
+    if (!(first < 1 && last > 1 && work > 0)) return 0;
+    const Scalar lacking = 1 - first;
+    return lacking / 2 * (lacking / (last - first)) * work;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+void CoupledJoint<Surface, Law, Criterion>::snap(Step& step, Taken& taken, const Reaction& reaction,
+                                                 Scalar dt) noexcept {
+    const Scalar rest = taken.flow + step.other_work;
+    step.release = std::max(rest, Scalar(0));
+    step.other_work = rest - step.release;
+    const Scalar reached = cap_ * first_strength_;
+    criterion_.update(state_.criterion, {0, state_.plastic_travel, reached, 0, dt});
+    state_.broken = true;
+    taken.force *= cap_ / surface_.value(taken.force); // the box has corners beyond
+    int axis = 0;
+    taken.force.cwiseProduct(surface_.normal(taken.force)).maxCoeff(&axis);
+    state_.broken_axis = axis;
+    // a rigid row carries the force of its step from the start
+    const Scalar towards = std::copysign(Scalar(1), -taken.force[axis]);
+    const Scalar run = rigid(axis) ? Scalar(0)
+                                   : std::abs(taken.force[axis]) / parameters_.stiffness[axis] -
+                                         towards * elastic_[axis];
+    const Scalar elapsed =
+        time_to_run(run, towards * start_[axis], towards * reaction.velocity[axis], Scalar(1), dt);
+    step.after_break = dt - elapsed;
+    state_.time -= step.after_break; // of the whole step that `settle` books
 }
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>

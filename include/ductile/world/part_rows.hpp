@@ -18,6 +18,12 @@ namespace ductile {
 /// Of what a row may be off by at rest, the speed that is as good as rest [-].
 inline constexpr double resting_share = 0.01;
 
+/// A spring that did not flow all the part: below that share of its strength at the mean.
+[[nodiscard]] inline bool swings(bool flowing, double share) noexcept {
+    constexpr double all_along = 0.99;
+    return !flowing || share < all_along;
+}
+
 /// Adds a row for each plastic axis; `joint`: its number; `acts`: the part was solved with it.
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
@@ -51,7 +57,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.end = link.end_velocities()[i];
         row.misfit = std::exchange(misfit, 0);
         row.share = share;
-        row.swings = yielded && !link.totals().flowing;
+        row.swings = yielded && swings(link.totals().flowing, share);
         row.below = link.totals().flowing ? std::max(0.0, 1 - share) : 0;
         row.pushes = link.force(axis) * row.start > 0;
         row.strength = link.strength(axis);
@@ -78,9 +84,10 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.end = axis.velocity();
     if (!acts || axis.broken()) return;
     row.misfit = axis.last().misfit;
-    row.swings = row.elastic && axis.totals().plastic_work > 0 && !axis.totals().flowing;
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = axis.utilisation(force);
+    row.swings =
+        row.elastic && axis.totals().plastic_work > 0 && swings(axis.totals().flowing, row.share);
     row.spring = row.strength * row.strength / (2 * axis.stiffness());
     row.pushes = force * row.start > 0;
 }
