@@ -250,6 +250,31 @@ TEST_CASE("Frames: a brittle spring absorbs nothing, at any frame", "[frame]") {
     }
 }
 
+TEST_CASE("Frames: a brittle spring that a load breaks acts no longer than it holds", "[frame]") {
+    // from rest: q = F/k (1 - cos ω t) until it reaches limit/k, in a share of a frame of 1/240 s
+    // on
+    constexpr double mass = 2, stiffness = 9e4, limit = 40, load = 1.5 * limit, time = 0.1;
+    const double omega = std::sqrt(stiffness / mass), angle = std::acos(1 - limit / load);
+    const double at_break = load / (mass * omega) * std::sin(angle);
+    const double after = at_break + load / mass * (time - angle / omega);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+        auto& slider = rig.slider(
+            body, V3(1, 0, 0),
+            OneAxisJoint(Perfect<double>({.strength = 10 * limit}),
+                         BrittleForce<double>({.limit = limit}), {.stiffness = stiffness}));
+        for (int i = 0; i < int(std::lround(time / frame)); ++i) {
+            WorldRig::apply_force(body, V3(load, 0, 0));
+            rig.world().step(frame);
+        }
+        CHECK(slider.broken());
+        CHECK(WorldRig::velocity(body).x() == Approx(after).epsilon(5e-3));
+        CHECK(rig.world().run().believed());
+    }
+}
+
 TEST_CASE("Frames: a load meets a spring's swing in its phase", "[frame]") {
     constexpr double mass = 2, strength = 20, frame = 1.0 / 60;
     constexpr double soft = 4000, stiff = 9e4; // ω h = 0.75, 3.5

@@ -260,7 +260,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
                                                            double shortest) const {
     Judgement judged;
     double ahead = 0, of_flows = 0, largest = 0;
-    double unmissed = motion.closed_work, of_springs = 0, nearest = 0;
+    double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
@@ -280,6 +280,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
                                          ? broke_alone(row, before(i, motion), flowed(i, motion))
                                          : BrokeAlone{row.broke, row.astray};
             judged.astray += broke.astray;
+            freed += row.freed;
             if (broke.astray > largest) {
                 largest = broke.astray;
                 judged.stop = broke.stop;
@@ -324,7 +325,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
                                     detail::unmissed * (unmissed + of_springs));
     }
-    judged.tolerated = share * (motion.plastic_work + scale);
+    judged.tolerated = share * (motion.plastic_work + scale + freed);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;

@@ -67,6 +67,7 @@ struct PartRow {
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
     double broke = 0;      ///< how long its joint held in the part that broke it [s]
     double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
+    double freed = 0;      ///< that its springs held as it broke [J]
     bool alone = false;    ///< of a joint of one axis: `astray` is all of its work then
     double run = 0;        ///< its way then, until it broke [m | rad]
     double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]

@@ -24,6 +24,14 @@ inline constexpr double resting_share = 0.01;
     return !flowing || share < all_along;
 }
 
+/// Of what a brittle joint took beyond what its springs hold, the share of the time in which it was
+/// broken [J].
+template <class Step>
+[[nodiscard]] double released_late(const Step& last) noexcept {
+    if (last.plastic_work > 0 || !(last.held > 0)) return 0;
+    return last.release * last.after_break / (last.held + last.after_break);
+}
+
 /// Adds a row for each plastic axis; `joint`: its number; `acts`: the part was solved with it.
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
@@ -44,8 +52,10 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.too_far = link.turned_too_far();
         row.broke = std::exchange(broke, 0);
         if (row.broke > 0) {
+            row.freed = link.last().lost;
             const double after = link.last().after_break;
-            row.astray = link.last().plastic_work * (alone ? 1 : after / (row.broke + after));
+            row.astray = link.last().plastic_work * (alone ? 1 : after / (row.broke + after)) +
+                         released_late(link.last());
             row.alone = alone;
             row.run = link.last().run;
             row.start = link.start_velocities()[i];
@@ -78,7 +88,8 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.broke = axis.last().held;
     row.alone = true;
     row.run = axis.last().run;
-    if (row.broke > 0) row.astray = axis.last().plastic_work;
+    row.freed = axis.last().lost;
+    if (row.broke > 0) row.astray = axis.last().plastic_work + released_late(axis.last());
     if (!acts && !(row.broke > 0)) return;
     row.start = axis.start_velocity();
     row.end = axis.velocity();
