@@ -23,14 +23,44 @@
 
 #include "ductile/member/blow.hpp"
 #include "ductile/member/redundant_forces.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile {
 
-/// What struck a member. Plain value.
+/// What a joint of the engine's gave one of its bodies in a blow. World axes.
+struct JointSide {
+    ContactBody before{}, after{}; ///< zero where it stands
+    Vector3<double> arm{0, 0, 0};  ///< from its centre of mass to where the joint holds [m]
+    Vector3<double> impulse{0, 0, 0}, moment{0, 0, 0}; ///< about its centre [N s], [N m s]
+
+    /// From the body [J].
+    [[nodiscard]] double taken() const {
+        return -(dot(impulse, sum(before.velocity, after.velocity)) +
+                 dot(moment, sum(before.spin, after.spin))) /
+               2;
+    }
+};
+
+/// What struck a member: contacts that closed, and joints of the engine's whose bodies came with
+/// velocities that did not fit. Plain value.
 struct MemberStrike {
-    double energy = 0; ///< that its contacts took [J]
+    double energy = 0; ///< that these took [J]
     double speed = 0;  ///< at which the fastest of them closed [m/s]
     int segment = 0;   ///< where that was
+
+    void add(double taken, double closing, int at) noexcept {
+        energy += taken;
+        if (closing <= speed) return;
+        speed = closing;
+        segment = at;
+    }
+    /// A joint between the member, `at` this segment, and something else.
+    void add(const JointSide& member, const JointSide& other, int at) {
+        const double pull = norm(member.impulse);
+        const Vector3<double> comes =
+            difference(other.before.at(other.arm), member.before.at(member.arm));
+        add(member.taken() + other.taken(), pull > 0 ? dot(member.impulse, comes) / pull : 0, at);
+    }
 };
 
 class MemberCourse {

@@ -72,6 +72,7 @@ class Divisible {
     virtual void touch(const ContactTouch& touch, double sum) = 0;
     /// Contacts are known: adds up the rest.
     virtual void sum_up(double dt) = 0;
+    /// Something struck it, or may have, through what holds it.
     [[nodiscard]] virtual bool touched() const = 0;
     /// Whether what acted on it could load a section beyond its strength. `before`: by place in the
     /// world.

@@ -48,7 +48,9 @@ class MemberTick final : public Divisible {
         read_constraints(dt, false);
         read_forces(dt, false);
     }
-    [[nodiscard]] bool touched() const override { return !touches_.empty(); }
+    [[nodiscard]] bool touched() const override {
+        return !touches_.empty() || !member_.attachments_.empty();
+    }
     [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
                                                     const btVector3& gravity) const override;
     DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
@@ -64,6 +66,7 @@ class MemberTick final : public Divisible {
 
   private:
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
+    void read_attachments(double dt, std::span<const BodyBefore> before);
     [[nodiscard]] static bool is_support(const Member::Attachment& attachment);
     [[nodiscard]] static std::array<bool, 3> borne_by(btTypedConstraint& constraint,
                                                       const btTransform& pose);

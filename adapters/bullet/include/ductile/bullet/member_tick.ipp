@@ -115,6 +115,7 @@ DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> befo
     }
     for (const ContactTouch& touch : touches_) read_contact(touch, before);
     read_constraints(dt, true);
+    read_attachments(dt, before);
     read_forces(dt, true);
     finish_steps(dt, before, gravity);
 }
@@ -222,11 +223,34 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
         load.segment = nearest_segment(member.description(), member.course_.pieces()[piece],
                                        steps_[piece].pose, load.point);
         load.impulse = scaled(touch.share, to_core(contact.impulse));
-        strike_.energy += contact.energy;
-        if (contact.closing > strike_.speed) {
-            strike_.speed = contact.closing;
-            strike_.segment = load.segment;
-        }
+        strike_.add(contact.energy, contact.closing, load.segment);
+    }
+}
+
+/// What constraints took that hold it, as a blow.
+DUCTILE_INLINE void MemberTick::read_attachments(double dt, std::span<const BodyBefore> before) {
+    for (const Member::Attachment& attachment : member_.attachments_) {
+        const btTypedConstraint& constraint = *attachment.constraint;
+        if (!constraint.isEnabled()) continue;
+        const btJointFeedback& told = attachment.told;
+        const int segment = attachment.at.segment;
+        const btVector3 place = member_.pose(segment) * to_bullet(attachment.at.in_segment);
+        const auto side = [&](const btRigidBody& body, const btVector3& force,
+                              const btVector3& torque) -> JointSide {
+            if (body.isStaticObject()) return {.impulse = scaled(dt, to_core(force))};
+            const BodyBefore& was = before[std::size_t(body.getWorldArrayIndex())];
+            return {
+                .before = {to_core(was.velocity), to_core(was.spin)},
+                .after = {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())},
+                .arm = to_core(place - body.getCenterOfMassPosition()),
+                .impulse = scaled(dt, to_core(force)),
+                .moment = scaled(dt, to_core(torque))};
+        };
+        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+        const JointSide of_a = side(a, told.m_appliedForceBodyA, told.m_appliedTorqueBodyA),
+                        of_b = side(b, told.m_appliedForceBodyB, told.m_appliedTorqueBodyB);
+        const bool first = &a == attachment.body;
+        strike_.add(first ? of_a : of_b, first ? of_b : of_a, segment);
     }
 }
 

@@ -121,6 +121,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     length_ = length;
     looked_ = decided_ = local_ = closes_ = at_risk_ = false;
+    thrown_.find(world_, members_.held_islands());
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
@@ -137,6 +138,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
 DUCTILE_INLINE void WorldParts::end() {
     world_.synchronizeMotionStates();
     widen();
+    thrown_.leave(world_, members_.held_islands());
 }
 
 DUCTILE_INLINE void WorldParts::widen() {
@@ -298,7 +300,7 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
     if (members_.empty()) return;
     close_held(Closing::before_blow);
     save();
-    members_.begin_blow(closing_.found_bodies());
+    members_.begin_blow(closing_.found_bodies(), thrown_.strike());
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
@@ -372,6 +374,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
+    found.strikes = found.strikes || thrown_.any();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
     return found;

@@ -117,9 +117,11 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         dJointID joint;
         dBodyID body;
         MemberPlace at;
-        bool acts;        ///< it is enabled
-        HeldBy support{}; ///< by what
-        Wrench wrench{};  ///< when it was last solved; the ledger may have lent its feedback
+        bool acts;         ///< it is enabled
+        HeldBy support{};  ///< by what
+        Wrench wrench{};   ///< when it was last solved; the ledger may have lent its feedback
+        Wrench on_other{}; ///< the same, on what is on its other side
+        std::array<ContactBody, 2> before{}; ///< the solve: its body, the other
     };
     // ---- what the World asks
 
@@ -128,6 +130,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void body_left(dBodyID body) override { is_missing_ = is_missing_ || body == user_; }
     void body_came(dBodyID body) override { is_missing_ = is_missing_ && body != user_; }
     [[nodiscard]] bool is_open() const override { return !joints_.empty(); }
+    [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
     [[nodiscard]] std::vector<DivisionReport> reports(const std::string& name) const override {
         return {{static_cast<const Divisible*>(this), name, [this] { return report(); }}};
@@ -172,6 +175,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
     void read_steps(double dt);
+    [[nodiscard]] JointSide side_of(const Hold& hold, bool member, double dt) const;
     void add_load(const Wrench& wrench, int segment, double dt);
 
     dBodyID user_;

@@ -25,7 +25,12 @@ DUCTILE_INLINE void Member::apply_forces() {
 }
 
 DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
-    for (const Hold& hold : holds_) joints.push_back(hold.joint);
+    for (Hold& hold : holds_) {
+        joints.push_back(hold.joint);
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        const dBodyID other = bodies.a == hold.body ? bodies.b : bodies.a;
+        hold.before = {contact_body(hold.body), contact_body(other)};
+    }
     before_.clear();
     for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
 }
@@ -39,6 +44,7 @@ DUCTILE_INLINE void Member::after_solve() {
         // what sleeps carries on as when it was solved; between what cannot move nothing is
         if (!detail::is_solved(bodies.a) && !detail::is_solved(bodies.b)) continue;
         hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
+        hold.on_other = wrench_of(*dJointGetFeedback(hold.joint), !of_a);
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
         before_[i].see(pieces_[i].body);
@@ -179,18 +185,34 @@ DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
     sections = course_.beyond(steps_, loads_, dt);
 }
 
+/// Of a joint that holds it, in a blow of `dt` [s]: of the member, or of what is on the other side.
+DUCTILE_INLINE JointSide Member::side_of(const Hold& hold, bool member, double dt) const {
+    const AttachedBodies bodies = attached_bodies(hold.joint);
+    const dBodyID body = (bodies.a == hold.body) == member ? bodies.a : bodies.b;
+    if (body == nullptr || !(detail::is_solved(bodies.a) || detail::is_solved(bodies.b))) return {};
+    const JointFrame<double> segment = pose(hold.at.segment);
+    const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
+    const Wrench& wrench = member ? hold.wrench : hold.on_other;
+    return {.before = hold.before[member ? 0 : 1],
+            .after = contact_body(body),
+            .arm = difference(place, to_core(dBodyGetPosition(body))),
+            .impulse = scaled(dt, wrench.force),
+            .moment = scaled(dt, wrench.torque)};
+}
+
 DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
-    if (touches.empty()) return;
+    if (touches.empty() && holds_.empty()) return;
     read(dt, touches);
     MemberStrike strike;
     for (const Touch& touch : touches) {
         const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
-        strike.energy += pressed * (touch.closing + touch.closing_speed()) / 2;
-        if (touch.closing > strike.speed) {
-            strike.speed = touch.closing;
-            strike.segment = touch.segment;
-        }
+        strike.add(pressed * (touch.closing + touch.closing_speed()) / 2, touch.closing,
+                   touch.segment);
+    }
+    for (const Hold& hold : holds_) {
+        if (hold.acts)
+            strike.add(side_of(hold, true, dt), side_of(hold, false, dt), hold.at.segment);
     }
     if (!(strike.energy > 0)) return;
     const int section = course_.struck(steps_, loads_, strike);

@@ -64,6 +64,7 @@ class Members {
     [[nodiscard]] std::vector<dBodyID> touched() const;
     void after_solve() const;
     [[nodiscard]] bool any_open() const;
+    [[nodiscard]] bool any_held() const;
     [[nodiscard]] bool look(double dt) { return look(dt, false); }
     void begin_blow() const;
     [[nodiscard]] bool look_blow(double dt) { return look(dt, true); }

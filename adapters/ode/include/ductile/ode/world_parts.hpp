@@ -35,6 +35,7 @@
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/members.hpp"
 #include "ductile/ode/resting_islands.hpp"
+#include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/driven_course.hpp"
@@ -107,6 +108,8 @@ class WorldParts final : public PartEngine {
     template <class Change>
     void rearrange(const Change& change);
     void begin_blow();
+    /// Some of them hang together with a member.
+    [[nodiscard]] bool is_thrown();
     void close_held(Closing when);
     void do_again();
     void begin_driven();
@@ -137,6 +140,7 @@ class WorldParts final : public PartEngine {
     double length_ = 1;               ///< of the frame [s]
     double time_ = 0, kept_time_ = 0; ///< since it began [s]
     std::vector<Driven> driven_, last_driven_;
+    ThrownBodies thrown_;
     HalfAhead half_ahead_;
     HeldForces forces_;
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them

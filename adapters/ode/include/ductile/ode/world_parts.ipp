@@ -89,6 +89,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     begin_driven();
     looked_ = false;
+    if (of_.members.any_held()) thrown_.find(of_.bodies);
     forces_.hold(of_.bodies);
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
@@ -127,6 +128,7 @@ DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
     forces_.forget(body);
     resting_.forget(body);
     std::erase(asleep_, body);
+    thrown_.forget(body);
     std::erase_if(damped_, is_it);
     std::erase_if(driven_, is_it);
     std::erase_if(last_driven_, is_it);
@@ -175,6 +177,8 @@ DUCTILE_INLINE void WorldParts::end() {
     forces_.apply_to(asleep_);
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
+    thrown_.clear();
+    if (of_.members.any_held()) thrown_.leave(of_.bodies);
 }
 
 DUCTILE_INLINE void WorldParts::drop_forces() {
@@ -311,6 +315,7 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    thrown_.strike();
     begin_blow();
     for (tick(blow_length, true); of_.members.look_blow(blow_length); tick(blow_length, true)) {
         do_again();
