@@ -29,8 +29,9 @@ namespace ductile {
 
 /// What a joint of the engine's gave one of its bodies in a blow. World axes.
 struct JointSide {
-    ContactBody before{}, after{}; ///< zero where it stands
-    Vector3<double> arm{0, 0, 0};  ///< from its centre of mass to where the joint holds [m]
+    ContactBody before{}; ///< as it would go without any member, zero where it stands
+    ContactBody after{};
+    Vector3<double> arm{0, 0, 0}; ///< from its centre of mass to where the joint holds [m]
     Vector3<double> impulse{0, 0, 0}, moment{0, 0, 0}; ///< about its centre [N s], [N m s]
 
     /// From the body [J].
@@ -41,10 +42,9 @@ struct JointSide {
     }
 };
 
-/// What struck a member: contacts that closed, and joints of the engine's whose bodies came with
-/// velocities that did not fit. Plain value.
+/// What struck a member. Plain value.
 struct MemberStrike {
-    double energy = 0; ///< that these took [J]
+    double energy = 0; ///< that its contacts, or joints, took [J]
     double speed = 0;  ///< at which the fastest of them closed [m/s]
     int segment = 0;   ///< where that was
 
@@ -152,11 +152,20 @@ class MemberCourse {
         return found_;
     }
 
-    /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { struck_ = yields_ = is_opened_ = false; }
+    /// A blow begins: the next `struck` is its first. Joints that take no more than `noticed` [J]
+    /// do not count: their bodies came with what a part left of their velocities.
+    void begin_blow(double noticed = 0) noexcept {
+        struck_ = yields_ = is_opened_ = false;
+        noticed_ = noticed;
+    }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
+    /// `strike`: of contacts, `by_joints`: of joints of the engine's.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
-                             const MemberStrike& strike) {
+                             MemberStrike strike, const MemberStrike& by_joints = {}) {
+        if (by_joints.energy > noticed_) {
+            strike.add(by_joints.energy, by_joints.speed, by_joints.segment);
+        }
+        if (!(strike.energy > 0)) return no_section;
         int nearest = no_section, least = std::numeric_limits<int>::max();
         double utilisation = 0;
         constexpr double noticed = 1e-4; // of the blow's energy
@@ -318,6 +327,7 @@ class MemberCourse {
     InternalForces closed_forces_;                          ///< of that, solved when it was whole
     std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
     double closed_dt_ = 0;
+    double noticed_ = 0;
     bool struck_ = false; ///< this blow was looked at
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };

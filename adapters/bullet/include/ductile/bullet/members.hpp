@@ -91,8 +91,11 @@ class Members {
     void before_solve();
     [[nodiscard]] bool look(double dt);
     /// Members among bodies that close, or that these touch, are solved at once; those that
-    /// constraints hold, too, where something was `thrown`.
-    void begin_blow(std::span<const btRigidBody* const> closing, bool thrown);
+    /// constraints hold, too, where something was `thrown`. `noticed`: as Divisible's.
+    void begin_blow(std::span<const btRigidBody* const> closing, bool thrown, double noticed);
+    /// As Divisible's.
+    [[nodiscard]] bool cut();
+    void see_coming();
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
     [[nodiscard]] bool close_held(Closing when = Closing::after_step);

@@ -299,9 +299,18 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing, bool thrown) {
+DUCTILE_INLINE bool Members::cut() {
+    bool any = false;
+    for (Course& course : members_) any = course.of->cut() || any;
+    return any;
+}
+DUCTILE_INLINE void Members::see_coming() {
+    for (Course& course : members_) course.of->see_coming();
+}
+DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing, bool thrown,
+                                        double noticed) {
     for (Course& course : members_) {
-        course.of->begin_blow();
+        course.of->begin_blow(noticed);
         if (thrown && course.is_held()) (void)is_decided(course);
     }
     const auto solve_at_once = [this](const btCollisionObject& object) {

@@ -26,7 +26,7 @@ class ThrownBodies {
         left_.clear();
         if (islands.empty()) return;
         for (const btRigidBody* body : MovingBodies::all(world)) {
-            left_.leave(body, motion(*body), 0);
+            left_.leave(body, contact_body(*body), 0);
         }
         left_.leave(&world, {}, joints_of(world));
         left_.sort();
@@ -39,7 +39,7 @@ class ThrownBodies {
             const int island = body->getIslandTag(); // none yet, of a body that is new
             return !body->isStaticOrKinematicObject() &&
                    (island < 0 || std::binary_search(islands.begin(), islands.end(), island)) &&
-                   !left_.is_left(body, motion(*body), 0);
+                   !left_.is_left(body, contact_body(*body), 0);
         };
         const auto bodies = MovingBodies::all(world);
         any_ = !left_.is_left(&world, {}, joints_of(world)) ||
@@ -50,9 +50,6 @@ class ThrownBodies {
     bool strike() noexcept { return std::exchange(any_, false); }
 
   private:
-    [[nodiscard]] static ContactBody motion(const btRigidBody& body) {
-        return {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
-    }
     [[nodiscard]] static std::size_t joints_of(const btDiscreteDynamicsWorld& world) {
         std::size_t sum = 0;
         for (int i = 0; i < world.getNumConstraints(); ++i) {

@@ -121,7 +121,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         HeldBy support{};  ///< by what
         Wrench wrench{};   ///< when it was last solved; the ledger may have lent its feedback
         Wrench on_other{}; ///< the same, on what is on its other side
-        std::array<ContactBody, 2> before{}; ///< the solve: its body, the other
+        std::array<ContactBody, 2> before{}; ///< a blow: of its body, of the other
     };
     // ---- what the World asks
 
@@ -147,7 +147,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    void begin_blow() override { course_.begin_blow(); }
+    void begin_blow(double noticed) override { course_.begin_blow(noticed); }
+    DUCTILE_INLINE bool cut(bool off) override;
+    DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;

@@ -25,14 +25,26 @@ DUCTILE_INLINE void Member::apply_forces() {
 }
 
 DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
+    for (const Hold& hold : holds_) joints.push_back(hold.joint);
+    before_.clear();
+    for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
+}
+DUCTILE_INLINE bool Member::cut(bool off) {
+    bool any = false;
+    for (const Hold& hold : holds_) {
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        if (!hold.acts || !can_move(bodies.a == hold.body ? bodies.b : bodies.a)) continue;
+        any = true;
+        (off ? dJointDisable : dJointEnable)(hold.joint);
+    }
+    return any;
+}
+DUCTILE_INLINE void Member::see_coming() {
     for (Hold& hold : holds_) {
-        joints.push_back(hold.joint);
         const AttachedBodies bodies = attached_bodies(hold.joint);
         const dBodyID other = bodies.a == hold.body ? bodies.b : bodies.a;
         hold.before = {contact_body(hold.body), contact_body(other)};
     }
-    before_.clear();
-    for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
@@ -204,18 +216,17 @@ DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
     if (touches.empty() && holds_.empty()) return;
     read(dt, touches);
-    MemberStrike strike;
+    MemberStrike strike, by_joints;
     for (const Touch& touch : touches) {
         const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
         strike.add(pressed * (touch.closing + touch.closing_speed()) / 2, touch.closing,
                    touch.segment);
     }
     for (const Hold& hold : holds_) {
-        if (hold.acts)
-            strike.add(side_of(hold, true, dt), side_of(hold, false, dt), hold.at.segment);
+        if (!hold.acts) continue;
+        by_joints.add(side_of(hold, true, dt), side_of(hold, false, dt), hold.at.segment);
     }
-    if (!(strike.energy > 0)) return;
-    const int section = course_.struck(steps_, loads_, strike);
+    const int section = course_.struck(steps_, loads_, strike, by_joints);
     if (section != no_section) sections.push_back(section);
 }
 

@@ -164,8 +164,16 @@ DUCTILE_INLINE void Members::after_solve() const {
 
 // ---- after it
 
-DUCTILE_INLINE void Members::begin_blow() const {
-    for (const Course& course : members_) course.of->begin_blow();
+DUCTILE_INLINE void Members::begin_blow(double noticed) const {
+    for (const Course& course : members_) course.of->begin_blow(noticed);
+}
+DUCTILE_INLINE bool Members::cut(bool off) const {
+    bool any = false;
+    for (const Course& course : members_) any = course.of->cut(off) || any;
+    return any;
+}
+DUCTILE_INLINE void Members::see_coming() const {
+    for (const Course& course : members_) course.of->see_coming();
 }
 
 DUCTILE_INLINE bool Members::look(double dt, bool blow) {

@@ -110,6 +110,7 @@ class WorldParts final : public PartEngine {
     void begin_blow();
     /// Some of them hang together with a member.
     [[nodiscard]] bool is_thrown();
+    void see_coming();
     void close_held(Closing when);
     void do_again();
     void begin_driven();
@@ -152,6 +153,7 @@ class WorldParts final : public PartEngine {
     std::vector<std::pair<AttachedBodies, Push>> pushes_, kept_pushes_;    ///< of the last part
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
+    double touching_ = 0;                                    ///< of what touches [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
     PartMotion motion_;
 };

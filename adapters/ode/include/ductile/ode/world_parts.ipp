@@ -307,7 +307,21 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
     if (of_.members.empty()) return;
     if (of_.members.any_open()) close_held(Closing::before_blow);
     save();
-    of_.members.begin_blow();
+    of_.members.begin_blow(touching_);
+    see_coming();
+}
+
+/// As bodies go that hang on members, were these not there.
+DUCTILE_INLINE void WorldParts::see_coming() {
+    const struct Cut {
+        const Members& of;
+        bool any;
+        explicit Cut(const Members& members) : of(members), any(of.cut(true)) {}
+        ~Cut() { (void)of.cut(false); }
+    } cut(of_.members);
+    if (cut.any) tick(blow_length, true);
+    of_.members.see_coming();
+    if (cut.any) put_back();
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {

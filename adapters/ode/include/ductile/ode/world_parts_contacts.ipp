@@ -137,6 +137,7 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
 }
 
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    touching_ = touching;
     apart_ = apart;
     see_contacts();
     ClosingContacts found{.strikes = is_thrown()};
