@@ -67,6 +67,40 @@ TEST_CASE("what is thrown by hand a second time goes on where the first one left
     }
 }
 
+TEST_CASE("what strikes a body that hangs on a whole member strikes the member too", "[member]") {
+    // 100 kg and 50 kg go on together, and take along half of the last segment
+    constexpr double speed = 2, both = 150, together = 100 * speed / both;
+    const Member of = heavy_post(10, 5000);
+    const double tip = of.segment(of.segments() - 1).mass / 2;
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        BallOnHung scene(of);
+        scene.strike(scene.ball, speed);
+        scene.go(0.3, frame);
+        CAPTURE(frame);
+        CHECK(scene.world.run().believed());
+        CHECK(scene.post->absorbed_energy() ==
+              Approx(both * together * together / 2 / (1 + tip / both)).epsilon(0.01));
+    }
+}
+
+TEST_CASE("what hands let go of a member does not pull at it any more", "[member]") {
+    const Member of = heavy_post(10, 5000);
+    for (const double frame : {1.0 / 30, 1.0 / 240}) {
+        BallOnHung scene(of);
+        scene.strike(scene.hung, 2);
+        scene.world.step(frame);
+        CAPTURE(frame);
+        CHECK_FALSE(scene.post->whole()); // by and by it is, of other bodies
+        scene.let_go();
+        scene.go(0.3, frame);
+        CHECK(scene.post->whole());
+        const double absorbed = scene.post->absorbed_energy();
+        scene.strike(scene.hung, 2);
+        scene.go(0.1, frame);
+        CHECK(scene.post->absorbed_energy() == Approx(absorbed).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("what an elastic member bears of a throw by hand leaves it whole, whatever the frame",
           "[member]") {
     // E = 0.125 J of the U_y = M_p² l/(6 EI) = 1 J; its wave carries 29 N m, its profile 35 N m

@@ -165,8 +165,11 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
         const dBodyID body = island_[at];
         for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
-            if (dJointIsEnabled(joint) == 0) continue;
-            if (dJointGetType(joint) == dJointTypeContact && !named.contains(joint)) {
+            const bool touches = dJointGetType(joint) == dJointTypeContact;
+            // what members hold hangs together with them while it is cut off, too
+            const bool may_be_cut = at < members.size() && !touches;
+            if (dJointIsEnabled(joint) == 0 && !may_be_cut) continue;
+            if (touches && !named.contains(joint)) {
                 throw std::logic_error(
                     "World.step: a contact of a body with plastic joints was not named: in a world "
                     "with a tolerance all are made and named (add_contact) by what on_contacts was "
