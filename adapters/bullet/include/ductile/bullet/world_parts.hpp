@@ -119,6 +119,7 @@ class WorldParts final : public PartEngine {
 
     /// Back to before it, with the sections open that it was beyond.
     void begin_blow();
+    void find_thrown();
     void see_coming();
     void close_held(Closing when);
     void do_again();

@@ -121,7 +121,6 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     length_ = length;
     looked_ = decided_ = local_ = closes_ = at_risk_ = false;
-    thrown_.find(world_, members_.held_islands());
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
@@ -133,12 +132,13 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
         }
         plastic->begin_part();
     }
+    find_thrown();
 }
 
 DUCTILE_INLINE void WorldParts::end() {
     world_.synchronizeMotionStates();
     widen();
-    thrown_.leave(world_, members_.held_islands());
+    thrown_.leave(world_);
 }
 
 DUCTILE_INLINE void WorldParts::widen() {
@@ -339,7 +339,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
-    found.strikes = found.strikes || thrown_.any();
+    found.strikes = found.strikes || !thrown_.bodies().empty();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
     return found;

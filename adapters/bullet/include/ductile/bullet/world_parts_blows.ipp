@@ -4,6 +4,10 @@
 // world_parts.ipp.
 #pragma once
 
+#include <algorithm>
+#include <optional>
+#include <vector>
+
 #include "ductile/bullet/members.hpp"
 #include "ductile/frame/part_settings.hpp"
 
@@ -22,8 +26,21 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
     if (members_.empty()) return;
     close_held(Closing::before_blow);
     save();
-    members_.begin_blow(closing_.found_bodies(), thrown_.strike(), touching_);
+    members_.begin_blow(closing_.found_bodies(), !thrown_.bodies().empty(), touching_);
     see_coming();
+}
+
+DUCTILE_INLINE void WorldParts::find_thrown() {
+    const std::vector<int> held = members_.held_islands();
+    std::optional<bool> any; // found where there is somebody to ask for
+    thrown_.find(world_, [&](const btRigidBody& body) {
+        if (members_.is_member(body)) return true;
+        if (!any) any = closing_.any_plastic(world_) || !held.empty();
+        if (!*any || body.isStaticOrKinematicObject()) return false;
+        const int island = body.getIslandTag(); // none yet, of a body that is new
+        return island < 0 || std::binary_search(held.begin(), held.end(), island) ||
+               closing_.touches_plastic(world_, body);
+    });
 }
 
 /// As bodies go that hang on members, were these not there.
@@ -53,6 +70,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
         do_again();
     }
     while (local_ && join_touched()) tick(blow_length, false);
+    thrown_.strike();
     motion_.closed = 0;
     motion_.contact_lost = false;
     return tell();

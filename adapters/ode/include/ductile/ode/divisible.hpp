@@ -53,8 +53,6 @@ class Divisible {
     virtual void body_left(dBodyID body) = 0;
     virtual void body_came(dBodyID body) = 0;
     [[nodiscard]] virtual bool is_open() const = 0;
-    /// Joints of the user's are on it.
-    [[nodiscard]] virtual bool is_held() const { return false; }
     /// The bodies that it is now.
     [[nodiscard]] virtual std::vector<dBodyID> bodies() const = 0;
     /// Under which keys what may open is reported, as what; `name`: the user's.

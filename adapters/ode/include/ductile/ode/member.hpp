@@ -130,7 +130,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     void body_left(dBodyID body) override { is_missing_ = is_missing_ || body == user_; }
     void body_came(dBodyID body) override { is_missing_ = is_missing_ && body != user_; }
     [[nodiscard]] bool is_open() const override { return !joints_.empty(); }
-    [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
     [[nodiscard]] std::vector<DivisionReport> reports(const std::string& name) const override {
         return {{static_cast<const Divisible*>(this), name, [this] { return report(); }}};

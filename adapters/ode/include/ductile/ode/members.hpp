@@ -64,7 +64,6 @@ class Members {
     [[nodiscard]] std::vector<dBodyID> touched() const;
     void after_solve() const;
     [[nodiscard]] bool any_open() const;
-    [[nodiscard]] bool any_held() const;
     [[nodiscard]] bool look(double dt) { return look(dt, false); }
     /// As Divisible's.
     void begin_blow(double noticed) const;

@@ -154,10 +154,6 @@ DUCTILE_INLINE bool Members::any_open() const {
     return std::any_of(members_.begin(), members_.end(),
                        [](const Course& course) { return course.of->is_open(); });
 }
-DUCTILE_INLINE bool Members::any_held() const {
-    return std::any_of(members_.begin(), members_.end(),
-                       [](const Course& course) { return course.of->is_held(); });
-}
 DUCTILE_INLINE void Members::after_solve() const {
     for (const Course& course : members_) course.of->after_solve();
 }

@@ -108,7 +108,7 @@ class WorldParts final : public PartEngine {
     template <class Change>
     void rearrange(const Change& change);
     void begin_blow();
-    /// Some of them hang together with a member.
+    /// Hands threw what hangs together with a plastic joint or a member.
     [[nodiscard]] bool is_thrown();
     void see_coming();
     void close_held(Closing when);

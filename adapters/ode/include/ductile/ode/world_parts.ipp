@@ -89,7 +89,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     begin_driven();
     looked_ = false;
-    if (of_.members.any_held()) thrown_.find(of_.bodies);
+    thrown_.find(of_.bodies, of_.joints);
     forces_.hold(of_.bodies);
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
@@ -177,8 +177,7 @@ DUCTILE_INLINE void WorldParts::end() {
     forces_.apply_to(asleep_);
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
-    thrown_.clear();
-    if (of_.members.any_held()) thrown_.leave(of_.bodies);
+    thrown_.leave(of_.bodies);
 }
 
 DUCTILE_INLINE void WorldParts::drop_forces() {
