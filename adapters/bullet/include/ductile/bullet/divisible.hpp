@@ -86,7 +86,7 @@ class Divisible {
     virtual void begin_blow(double noticed) = 0;
     /// Constraints that hold on to it what can move are off, so that the bodies go as they would
     /// without it; false: there are none.
-    virtual bool cut() { return false; }
+    virtual bool switch_holds_off() { return false; }
     /// So they go, until the next blow.
     virtual void see_coming() {}
     virtual void find_struck(std::vector<int>& sections) = 0;

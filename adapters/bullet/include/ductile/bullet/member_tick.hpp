@@ -57,7 +57,7 @@ class MemberTick final : public Divisible {
                              const btVector3& gravity) override;
     DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
     DUCTILE_INLINE void begin_blow(double noticed) override;
-    DUCTILE_INLINE bool cut() override;
+    DUCTILE_INLINE bool switch_holds_off() override;
     DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,

@@ -52,7 +52,7 @@ DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::vector<int>& section
     sections = member_.course_.beyond(steps_, loads_, dt);
 }
 DUCTILE_INLINE void MemberTick::begin_blow(double noticed) { member_.course_.begin_blow(noticed); }
-DUCTILE_INLINE bool MemberTick::cut() {
+DUCTILE_INLINE bool MemberTick::switch_holds_off() {
     bool any = false;
     for (const Member::Attachment& attachment : member_.attachments_) {
         btTypedConstraint& constraint = *attachment.constraint;

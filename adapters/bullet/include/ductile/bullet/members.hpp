@@ -94,7 +94,7 @@ class Members {
     /// constraints hold, too, where something was `thrown`. `noticed`: as Divisible's.
     void begin_blow(std::span<const btRigidBody* const> closing, bool thrown, double noticed);
     /// As Divisible's.
-    [[nodiscard]] bool cut();
+    [[nodiscard]] bool switch_holds_off();
     void see_coming();
     [[nodiscard]] bool look_blow(double dt);
     void open_found();

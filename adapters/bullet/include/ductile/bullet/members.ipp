@@ -299,9 +299,9 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE bool Members::cut() {
+DUCTILE_INLINE bool Members::switch_holds_off() {
     bool any = false;
-    for (Course& course : members_) any = course.of->cut() || any;
+    for (Course& course : members_) any = course.of->switch_holds_off() || any;
     return any;
 }
 DUCTILE_INLINE void Members::see_coming() {

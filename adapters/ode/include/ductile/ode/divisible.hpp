@@ -84,7 +84,7 @@ class Divisible {
     virtual void begin_blow(double noticed) = 0;
     /// Joints that hold on to it what can move are off, or on again, so that the bodies go as they
     /// would without it; false: there are none.
-    virtual bool cut(bool /*off*/) { return false; }
+    virtual bool switch_holds(bool /*on*/) { return false; }
     /// So they go, until the next blow.
     virtual void see_coming() {}
     virtual void find_struck(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;

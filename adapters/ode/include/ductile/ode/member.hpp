@@ -147,7 +147,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
     void begin_blow(double noticed) override { course_.begin_blow(noticed); }
-    DUCTILE_INLINE bool cut(bool off) override;
+    DUCTILE_INLINE bool switch_holds(bool on) override;
     DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;

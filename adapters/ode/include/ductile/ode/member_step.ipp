@@ -29,13 +29,13 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
     before_.clear();
     for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
 }
-DUCTILE_INLINE bool Member::cut(bool off) {
+DUCTILE_INLINE bool Member::switch_holds(bool on) {
     bool any = false;
     for (const Hold& hold : holds_) {
         const AttachedBodies bodies = attached_bodies(hold.joint);
         if (!hold.acts || !can_move(bodies.a == hold.body ? bodies.b : bodies.a)) continue;
         any = true;
-        (off ? dJointDisable : dJointEnable)(hold.joint);
+        (on ? dJointEnable : dJointDisable)(hold.joint);
     }
     return any;
 }

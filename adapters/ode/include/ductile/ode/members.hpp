@@ -67,7 +67,7 @@ class Members {
     [[nodiscard]] bool look(double dt) { return look(dt, false); }
     /// As Divisible's.
     void begin_blow(double noticed) const;
-    [[nodiscard]] bool cut(bool off) const;
+    [[nodiscard]] bool switch_holds(bool on) const;
     void see_coming() const;
     [[nodiscard]] bool look_blow(double dt) { return look(dt, true); }
     /// `ahead`: how the forces of joints act from now on. Contacts go to the bodies that have the

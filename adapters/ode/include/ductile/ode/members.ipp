@@ -163,9 +163,9 @@ DUCTILE_INLINE void Members::after_solve() const {
 DUCTILE_INLINE void Members::begin_blow(double noticed) const {
     for (const Course& course : members_) course.of->begin_blow(noticed);
 }
-DUCTILE_INLINE bool Members::cut(bool off) const {
+DUCTILE_INLINE bool Members::switch_holds(bool on) const {
     bool any = false;
-    for (const Course& course : members_) any = course.of->cut(off) || any;
+    for (const Course& course : members_) any = course.of->switch_holds(on) || any;
     return any;
 }
 DUCTILE_INLINE void Members::see_coming() const {

@@ -315,8 +315,8 @@ DUCTILE_INLINE void WorldParts::see_coming() {
     const struct Cut {
         const Members& of;
         bool any;
-        explicit Cut(const Members& members) : of(members), any(of.cut(true)) {}
-        ~Cut() { (void)of.cut(false); }
+        explicit Cut(const Members& members) : of(members), any(of.switch_holds(false)) {}
+        ~Cut() { (void)of.switch_holds(true); }
     } cut(of_.members);
     if (cut.any) tick(blow_length, true);
     of_.members.see_coming();
