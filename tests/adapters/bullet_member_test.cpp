@@ -440,3 +440,33 @@ TEST_CASE("what is done to a member in a world that it cannot bear is said, and 
     scene.rig.engine.addRigidBody(&body);
     scene.world.step(1e-3);
 }
+
+TEST_CASE("what is thrown and hangs on two elastic posts is borne by both", "[bullet][member]") {
+    // 100 J, 50 for each: what either bears is M_p² l/(6 EI) = 70 J
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-5, 1e-5, 2e-5});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 500})));
+    p.bending_stiffness = 500.0 * 500 * 2 / (6 * 70);
+    const Member of(p);
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        Scene scene({0, 0, 0}, 0.01, 0);
+        btRigidBody& body = scene.rig.body(50, {0.5f, 0.5f, 0.5f}, {0, 0, 2});
+        std::vector<std::unique_ptr<bullet::Member>> posts;
+        for (const btScalar x : {btScalar(-0.5), btScalar(0.5)}) {
+            const btVector3 none(0, 0, 0);
+            posts.push_back(
+                std::make_unique<bullet::Member>(scene.rig.body(0, none, {x, 0, 0}), of, here));
+            posts.back()->attach(2, [&body, x](btRigidBody& piece, const btTransform& at) {
+                return std::make_unique<btPoint2PointConstraint>(piece, body, at.getOrigin(),
+                                                                 btVector3(x, 0, 0));
+            });
+            scene.world.add(*posts.back());
+        }
+        body.setLinearVelocity({0, 2, 0});
+        scene.go(0.2, frame);
+        CAPTURE(frame);
+        for (const auto& post : posts) CHECK(post->absorbed_energy() == 0);
+        CHECK(scene.world.run().believed());
+    }
+}

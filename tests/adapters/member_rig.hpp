@@ -334,6 +334,33 @@ struct HungOn : Scene {
     }
 };
 
+/// A ball of 50 kg fixed by a point to the tip of a clamped post that nothing else meets, and one
+/// of 100 kg 7 mm before it.
+struct BallOnHung : Scene {
+    std::unique_ptr<bullet::Member> post;
+    btRigidBody *hung, *ball;
+
+    explicit BallOnHung(const Member& of) : Scene({0, 0, 0}, 0.01, 0) {
+        const auto tip = btScalar(of.length());
+        hung = &ball_of(rig, 50, {0, 0, tip});
+        ball = &ball_of(rig, 100, {0, btScalar(-0.207), tip});
+        const btVector3 none(0, 0, 0);
+        post = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
+        post->attach(of.length(), [this](btRigidBody& piece, const btTransform& at) {
+            return std::make_unique<btPoint2PointConstraint>(piece, *hung, at.getOrigin(),
+                                                             btVector3(0, 0, 0));
+        });
+        world.add(*post, "post");
+    }
+    static void strike(btRigidBody* body, double speed) {
+        body->setLinearVelocity({0, btScalar(speed), 0});
+    }
+    /// The point holds no more.
+    void let_go() {
+        rig.engine.getConstraint(rig.engine.getNumConstraints() - 1)->setEnabled(false);
+    }
+};
+
 /// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
 /// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
 struct LaidOn : Scene {

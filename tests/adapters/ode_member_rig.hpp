@@ -318,6 +318,28 @@ struct HungOn : Scene {
     }
 };
 
+/// A ball of 50 kg fixed by a point to the tip of a clamped post that nothing else meets, and one
+/// of 100 kg 7 mm before it.
+struct BallOnHung : Scene {
+    std::unique_ptr<ode::Member> post;
+    dBodyID hung, ball;
+    dJointID point;
+
+    explicit BallOnHung(const Member& of)
+        : Scene({0, 0, 0}, 0.01, 0),
+          post(std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here)),
+          hung(ball_of(rig, 50, {0, 0, of.length()})),
+          ball(ball_of(rig, 100, {0, -0.207, of.length()})),
+          point(rig.pin(post->body_of(0), hung, {0, 0, of.length()})) {
+        for (const dBodyID each : {hung, ball}) world.add(each);
+        world.add(*post, "post");
+        rig.meet(world);
+    }
+    static void strike(dBodyID body, double speed) { set_velocity(body, {0, speed, 0}); }
+    /// The point holds no more.
+    void let_go() const { dJointDisable(point); }
+};
+
 /// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m
 /// from its ends, and a ball [kg] laid on its middle, all `gap` above what they are laid on.
 struct LaidOn : Scene {

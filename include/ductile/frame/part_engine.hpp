@@ -8,7 +8,8 @@
 //
 //   x += h/2 v;   v -> v' with contacts and joints as they are at x;   x += h/2 v'
 //
-// A blow is impulses alone: contacts that touch are closed, all others are open, no time passes.
+// A blow is impulses alone: contacts that touch are closed, all others are open, no time passes. It
+// also makes velocities fit that hands gave, or joints that they made, between frames.
 #pragma once
 
 #include <algorithm>
@@ -45,7 +46,9 @@ struct PartMotion {
 
 /// Contacts that close.
 struct ClosingContacts {
-    bool strikes = false; ///< one that touches closes: a blow has to come first
+    /// One that touches closes, or hands threw what the engine's own joints hold to something
+    /// plastic: a blow has to come first.
+    bool strikes = false;
     double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
 };
 

@@ -23,14 +23,44 @@
 
 #include "ductile/member/blow.hpp"
 #include "ductile/member/redundant_forces.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile {
 
+/// What a joint of the engine's gave one of its bodies in a blow. World axes.
+struct JointSide {
+    ContactBody before{}; ///< as it would go without any member, zero where it stands
+    ContactBody after{};
+    Vector3<double> arm{0, 0, 0}; ///< from its centre of mass to where the joint holds [m]
+    Vector3<double> impulse{0, 0, 0}, moment{0, 0, 0}; ///< about its centre [N s], [N m s]
+
+    /// From the body [J].
+    [[nodiscard]] double taken() const {
+        return -(dot(impulse, sum(before.velocity, after.velocity)) +
+                 dot(moment, sum(before.spin, after.spin))) /
+               2;
+    }
+};
+
 /// What struck a member. Plain value.
 struct MemberStrike {
-    double energy = 0; ///< that its contacts took [J]
+    double energy = 0; ///< that its contacts, or joints, took [J]
     double speed = 0;  ///< at which the fastest of them closed [m/s]
     int segment = 0;   ///< where that was
+
+    void add(double taken, double closing, int at) noexcept {
+        energy += taken;
+        if (closing <= speed) return;
+        speed = closing;
+        segment = at;
+    }
+    /// A joint between the member, `at` this segment, and something else.
+    void add(const JointSide& member, const JointSide& other, int at) {
+        const double pull = norm(member.impulse);
+        const Vector3<double> comes =
+            difference(other.before.at(other.arm), member.before.at(member.arm));
+        add(member.taken() + other.taken(), pull > 0 ? dot(member.impulse, comes) / pull : 0, at);
+    }
 };
 
 class MemberCourse {
@@ -122,11 +152,20 @@ class MemberCourse {
         return found_;
     }
 
-    /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { struck_ = yields_ = is_opened_ = false; }
+    /// A blow begins: the next `struck` is its first. Joints that take no more than `noticed` [J]
+    /// do not count: their bodies came with what a part left of their velocities.
+    void begin_blow(double noticed = 0) noexcept {
+        struck_ = yields_ = is_opened_ = false;
+        noticed_ = noticed;
+    }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
+    /// `strike`: of contacts, `by_joints`: of joints of the engine's.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
-                             const MemberStrike& strike) {
+                             MemberStrike strike, const MemberStrike& by_joints = {}) {
+        if (by_joints.energy > noticed_) {
+            strike.add(by_joints.energy, by_joints.speed, by_joints.segment);
+        }
+        if (!(strike.energy > 0)) return no_section;
         int nearest = no_section, least = std::numeric_limits<int>::max();
         double utilisation = 0;
         constexpr double noticed = 1e-4; // of the blow's energy
@@ -288,6 +327,7 @@ class MemberCourse {
     InternalForces closed_forces_;                          ///< of that, solved when it was whole
     std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
     double closed_dt_ = 0;
+    double noticed_ = 0;
     bool struck_ = false; ///< this blow was looked at
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };

@@ -74,6 +74,11 @@ class ClosingContactsFinder {
     /// before, or not at all [s]; 0 where none did. Those that close with less energy than `apart`
     /// [J] do not count. Islands are those of the last `find`.
     [[nodiscard]] double closed_early(btDiscreteDynamicsWorld& world, double h, double apart);
+    /// Joints may be others than they were; whether there are plastic ones.
+    [[nodiscard]] bool any_plastic(btDiscreteDynamicsWorld& world) {
+        find_islands(world);
+        return !joined_.empty();
+    }
     /// Bodies that the last `find` saw may have ended.
     void forget_open() noexcept { open_.clear(); }
 

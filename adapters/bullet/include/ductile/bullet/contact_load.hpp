@@ -6,6 +6,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -86,5 +87,38 @@ struct ContactLoad {
     load.energy = double(point.m_appliedImpulse) * (load.closing - after) / 2;
     return load;
 }
+
+namespace detail {
+
+/// What sweeps left of a contact that still closes, at most; 0 where no more than `noticed` [N s]
+/// is moved at all, at an arm of `arm` [m].
+[[nodiscard]] inline double left_by_sweeps(const btPersistentManifold& manifold, double dt,
+                                           double noticed, double arm) {
+    const btRigidBody *a = btRigidBody::upcast(manifold.getBody0()),
+                      *b = btRigidBody::upcast(manifold.getBody1());
+    const auto velocity = [](const btRigidBody* body, const btVector3& at) {
+        return body == nullptr
+                   ? btVector3(0, 0, 0)
+                   : body->getVelocityInLocalPoint(at - body->getCenterOfMassPosition());
+    };
+    double speed = 0, mass = 0, most = 0;
+    for (const btRigidBody* body : {a, b}) {
+        if (body == nullptr || body->isStaticObject()) continue;
+        mass = std::max(mass, double(body->getMass()));
+        most += double(body->getLinearVelocity().length2()) +
+                arm * arm * double(body->getAngularVelocity().length2());
+    }
+    if (!(4 * most * mass * mass > noticed * noticed)) return 0;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        const btManifoldPoint& point = manifold.getContactPoint(k);
+        const btVector3 away =
+            velocity(a, point.getPositionWorldOnA()) - velocity(b, point.getPositionWorldOnB());
+        const double gap = std::max(0.0, double(point.getDistance()));
+        speed = std::max(speed, -double(point.m_normalWorldOnB.dot(away)) - 2 * gap / dt);
+    }
+    return speed * mass;
+}
+
+} // namespace detail
 
 } // namespace ductile::bullet

@@ -12,6 +12,7 @@
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/numeric/lu.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile::bullet {
 
@@ -42,6 +43,12 @@ namespace ductile::bullet {
         axes[row] = btVector3(btScalar(m(row, 0)), btScalar(m(row, 1)), btScalar(m(row, 2)));
     }
     return btTransform(axes, to_bullet(frame.origin));
+}
+
+/// Static: at rest, whatever it was told.
+[[nodiscard]] inline ContactBody contact_body(const btRigidBody& body) noexcept {
+    if (body.isStaticObject()) return {};
+    return {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
 }
 
 /// Place and velocities of the body as they are now, without its mass.

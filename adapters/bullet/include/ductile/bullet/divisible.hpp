@@ -72,6 +72,7 @@ class Divisible {
     virtual void touch(const ContactTouch& touch, double sum) = 0;
     /// Contacts are known: adds up the rest.
     virtual void sum_up(double dt) = 0;
+    /// Something struck it, or may have, through what holds it.
     [[nodiscard]] virtual bool touched() const = 0;
     /// Whether what acted on it could load a section beyond its strength. `before`: by place in the
     /// world.
@@ -81,7 +82,13 @@ class Divisible {
     virtual void read(double dt, std::span<const BodyBefore> before, const btVector3& gravity) = 0;
     /// Sections to open after a tick that was read.
     virtual void find_beyond(double dt, std::vector<int>& sections) = 0;
-    virtual void begin_blow() = 0;
+    /// Constraints of the user's count in it that take more than `noticed` [J].
+    virtual void begin_blow(double noticed) = 0;
+    /// Constraints that hold on to it what can move are off, so that the bodies go as they would
+    /// without it; false: there are none.
+    virtual bool switch_holds_off() { return false; }
+    /// So they go, until the next blow.
+    virtual void see_coming() {}
     virtual void find_struck(std::vector<int>& sections) = 0;
     virtual void open(std::span<const int> sections, bool ahead,
                       std::vector<DivisionChange>& told) = 0;

@@ -96,6 +96,8 @@ class Member : public DividedMember<OpenSection> {
         std::unique_ptr<btJointFeedback> feedback;
         btJointFeedback told = btJointFeedback(); ///< when it was last solved
         const btRigidBody* body = nullptr;        ///< of the constraint
+        bool off = false; ///< it broke, or hands switched it off, before its bodies were others
+        std::array<ContactBody, 2> before{}; ///< a blow, of its bodies
     };
     [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;

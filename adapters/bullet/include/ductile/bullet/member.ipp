@@ -94,6 +94,10 @@ DUCTILE_INLINE void Member::require_possible() const {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
     }
     if (user_.isKinematicObject()) throw std::logic_error("Member.body: must not be kinematic");
+    if (description().clamped() &&
+        !(user_.getLinearVelocity().isZero() && user_.getAngularVelocity().isZero())) {
+        throw std::logic_error("Member.body: must not move where the member is clamped");
+    }
     if (!whole() && user_.getBroadphaseHandle() != nullptr) {
         throw std::logic_error(
             "Member.body: must not be in the world while the member is open: removeRigidBody it");

@@ -127,12 +127,14 @@ DUCTILE_INLINE void Member::make_attachments() {
         }
         attachment.told = btJointFeedback(); // was of another body
         attachment.constraint->setJointFeedback(attachment.feedback.get());
+        if (attachment.off) attachment.constraint->setEnabled(false);
         world_->addConstraint(attachment.constraint.get());
     }
 }
 
 DUCTILE_INLINE void Member::drop_attachment(Attachment& attachment) {
     if (attachment.constraint == nullptr) return;
+    attachment.off = !attachment.constraint->isEnabled();
     world_->removeConstraint(attachment.constraint.get());
     attachment.constraint.reset();
     attachment.body = nullptr;

@@ -48,13 +48,17 @@ class MemberTick final : public Divisible {
         read_constraints(dt, false);
         read_forces(dt, false);
     }
-    [[nodiscard]] bool touched() const override { return !touches_.empty(); }
+    [[nodiscard]] bool touched() const override {
+        return !touches_.empty() || !member_.attachments_.empty();
+    }
     [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
                                                     const btVector3& gravity) const override;
     DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
                              const btVector3& gravity) override;
     DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
-    DUCTILE_INLINE void begin_blow() override;
+    DUCTILE_INLINE void begin_blow(double noticed) override;
+    DUCTILE_INLINE bool switch_holds_off() override;
+    DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;
@@ -64,6 +68,7 @@ class MemberTick final : public Divisible {
 
   private:
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
+    void read_attachments(double dt);
     [[nodiscard]] static bool is_support(const Member::Attachment& attachment);
     [[nodiscard]] static std::array<bool, 3> borne_by(btTypedConstraint& constraint,
                                                       const btTransform& pose);
@@ -80,7 +85,7 @@ class MemberTick final : public Divisible {
     std::vector<PieceStep> steps_;
     std::vector<ContactTouch> touches_;
     std::vector<MemberLoad> loads_;
-    MemberStrike strike_;
+    MemberStrike strike_, by_joints_;
     double sum_ = 0;                           ///< of impulses [N s]
     double own_about_x_ = 0, own_inertia_ = 0; ///< of its segments, each about its middle [kg m²]
 };

@@ -51,10 +51,27 @@ DUCTILE_INLINE void MemberTick::drop_forces() { member_.forces_.clear(); }
 DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::vector<int>& sections) {
     sections = member_.course_.beyond(steps_, loads_, dt);
 }
-DUCTILE_INLINE void MemberTick::begin_blow() { member_.course_.begin_blow(); }
+DUCTILE_INLINE void MemberTick::begin_blow(double noticed) { member_.course_.begin_blow(noticed); }
+DUCTILE_INLINE bool MemberTick::switch_holds_off() {
+    bool any = false;
+    for (const Member::Attachment& attachment : member_.attachments_) {
+        btTypedConstraint& constraint = *attachment.constraint;
+        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
+        const btRigidBody& other = &a == attachment.body ? b : a;
+        if (!constraint.isEnabled() || other.isStaticOrKinematicObject()) continue;
+        any = true;
+        constraint.setEnabled(false);
+    }
+    return any;
+}
+DUCTILE_INLINE void MemberTick::see_coming() {
+    for (Member::Attachment& attachment : member_.attachments_) {
+        attachment.before = {contact_body(attachment.constraint->getRigidBodyA()),
+                             contact_body(attachment.constraint->getRigidBodyB())};
+    }
+}
 DUCTILE_INLINE void MemberTick::find_struck(std::vector<int>& sections) {
-    if (!(strike_.energy > 0)) return;
-    const int section = member_.course_.struck(steps_, loads_, strike_);
+    const int section = member_.course_.struck(steps_, loads_, strike_, by_joints_);
     if (section != no_section) sections.push_back(section);
 }
 DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, bool ahead,
@@ -100,7 +117,7 @@ DUCTILE_INLINE void MemberTick::begin() {
 DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> before,
                                      const btVector3& gravity) {
     loads_.clear();
-    strike_ = {};
+    strike_ = by_joints_ = {};
     steps_.resize(member_.pieces_.size());
     for (std::size_t i = 0; i < steps_.size(); ++i) {
         const btRigidBody& body = *member_.pieces_[i].body;
@@ -115,6 +132,7 @@ DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> befo
     }
     for (const ContactTouch& touch : touches_) read_contact(touch, before);
     read_constraints(dt, true);
+    read_attachments(dt);
     read_forces(dt, true);
     finish_steps(dt, before, gravity);
 }
@@ -222,11 +240,32 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
         load.segment = nearest_segment(member.description(), member.course_.pieces()[piece],
                                        steps_[piece].pose, load.point);
         load.impulse = scaled(touch.share, to_core(contact.impulse));
-        strike_.energy += contact.energy;
-        if (contact.closing > strike_.speed) {
-            strike_.speed = contact.closing;
-            strike_.segment = load.segment;
-        }
+        strike_.add(contact.energy, contact.closing, load.segment);
+    }
+}
+
+/// What constraints took that hold it, as a blow.
+DUCTILE_INLINE void MemberTick::read_attachments(double dt) {
+    for (const Member::Attachment& attachment : member_.attachments_) {
+        const btTypedConstraint& constraint = *attachment.constraint;
+        if (!constraint.isEnabled()) continue;
+        const btJointFeedback& told = attachment.told;
+        const btTransform segment = member_.pose(attachment.at.segment);
+        const btVector3 place = segment * to_bullet(attachment.at.in_segment);
+        const auto side = [&](const btRigidBody& body, const ContactBody& before,
+                              const btVector3& force, const btVector3& torque) -> JointSide {
+            return {.before = before,
+                    .after = contact_body(body),
+                    .arm = to_core(place - body.getCenterOfMassPosition()),
+                    .impulse = scaled(dt, to_core(force)),
+                    .moment = scaled(dt, to_core(torque))};
+        };
+        const JointSide a = side(constraint.getRigidBodyA(), attachment.before[0],
+                                 told.m_appliedForceBodyA, told.m_appliedTorqueBodyA),
+                        b = side(constraint.getRigidBodyB(), attachment.before[1],
+                                 told.m_appliedForceBodyB, told.m_appliedTorqueBodyB);
+        const bool first = &constraint.getRigidBodyA() == attachment.body;
+        by_joints_.add(first ? a : b, first ? b : a, attachment.at.segment);
     }
 }
 

@@ -80,6 +80,9 @@ class Members {
         return owners_.contains(&object);
     }
 
+    /// Islands of what constraints hold to members, as the last tick had them, sorted; -1: of none.
+    [[nodiscard]] std::vector<int> held_islands() const;
+
     /// Forces that were applied to members act in the coming tick, too.
     void apply_forces();
     /// They do not any more.
@@ -87,8 +90,12 @@ class Members {
 
     void before_solve();
     [[nodiscard]] bool look(double dt);
-    /// Members among bodies that close, or that these touch, are solved at once.
-    void begin_blow(std::span<const btRigidBody* const> closing);
+    /// Members among bodies that close, or that these touch, are solved at once; those that
+    /// constraints hold, too, where something was `thrown`. `noticed`: as Divisible's.
+    void begin_blow(std::span<const btRigidBody* const> closing, bool thrown, double noticed);
+    /// As Divisible's.
+    [[nodiscard]] bool switch_holds_off();
+    void see_coming();
     [[nodiscard]] bool look_blow(double dt);
     void open_found();
     [[nodiscard]] bool close_held(Closing when = Closing::after_step);
@@ -102,6 +109,7 @@ class Members {
 
   private:
     struct Course {
+        [[nodiscard]] DUCTILE_INLINE bool is_held() const;
         Divisible* of;
         const Member* member;               ///< null: a structure
         std::unique_ptr<MemberTick> tick{}; ///< of a member

@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
@@ -131,6 +132,22 @@ DUCTILE_INLINE double Members::unmissed_work() const {
     return least;
 }
 
+DUCTILE_INLINE bool Members::Course::is_held() const {
+    return member != nullptr && !member->attachments_.empty();
+}
+DUCTILE_INLINE std::vector<int> Members::held_islands() const {
+    std::vector<int> islands;
+    for (const Course& course : members_) {
+        if (!course.is_held()) continue;
+        for (const Member::Attachment& held : course.member->attachments_) {
+            islands.push_back(held.constraint->getRigidBodyA().getIslandTag());
+            islands.push_back(held.constraint->getRigidBodyB().getIslandTag());
+        }
+    }
+    std::sort(islands.begin(), islands.end());
+    return islands;
+}
+
 DUCTILE_INLINE void Members::apply_forces() {
     for (const std::size_t i : watched_) { // structures are
         if (members_[i].member == nullptr) members_[i].of->apply_forces();
@@ -204,39 +221,6 @@ DUCTILE_INLINE double Members::noticed_impulse(const Course& course, double dt) 
     return noticed * of.least_strength() * dt / of.member().length();
 }
 
-namespace detail {
-
-/// What sweeps left of a contact that still closes, at most; 0 where no more than `noticed` [N s]
-/// is moved at all, at an arm of `arm` [m].
-[[nodiscard]] DUCTILE_INLINE double left_by_sweeps(const btPersistentManifold& manifold, double dt,
-                                                   double noticed, double arm) {
-    const btRigidBody *a = btRigidBody::upcast(manifold.getBody0()),
-                      *b = btRigidBody::upcast(manifold.getBody1());
-    const auto velocity = [](const btRigidBody* body, const btVector3& at) {
-        return body == nullptr
-                   ? btVector3(0, 0, 0)
-                   : body->getVelocityInLocalPoint(at - body->getCenterOfMassPosition());
-    };
-    double speed = 0, mass = 0, most = 0;
-    for (const btRigidBody* body : {a, b}) {
-        if (body == nullptr || body->isStaticObject()) continue;
-        mass = std::max(mass, double(body->getMass()));
-        most += double(body->getLinearVelocity().length2()) +
-                arm * arm * double(body->getAngularVelocity().length2());
-    }
-    if (!(4 * most * mass * mass > noticed * noticed)) return 0;
-    for (int k = 0; k < manifold.getNumContacts(); ++k) {
-        const btManifoldPoint& point = manifold.getContactPoint(k);
-        const btVector3 away =
-            velocity(a, point.getPositionWorldOnA()) - velocity(b, point.getPositionWorldOnB());
-        const double gap = std::max(0.0, double(point.getDistance()));
-        speed = std::max(speed, -double(point.m_normalWorldOnB.dot(away)) - 2 * gap / dt);
-    }
-    return speed * mass;
-}
-
-} // namespace detail
-
 DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
@@ -307,8 +291,7 @@ DUCTILE_INLINE bool Members::look(double dt) {
         }
         course->of->read(dt, before_, gravity);
         course->of->find_beyond(dt, course->found);
-        const bool held = course->member != nullptr && !course->member->attachments_.empty();
-        if (course->found.empty() && !vain && (course->direct > 0 || !held)) continue;
+        if (course->found.empty() && !vain && (course->direct > 0 || !course->is_held())) continue;
         any = true;
         if (!is_decided(*course)) course->found.clear();
     }
@@ -316,8 +299,20 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing) {
-    for (Course& course : members_) course.of->begin_blow();
+DUCTILE_INLINE bool Members::switch_holds_off() {
+    bool any = false;
+    for (Course& course : members_) any = course.of->switch_holds_off() || any;
+    return any;
+}
+DUCTILE_INLINE void Members::see_coming() {
+    for (Course& course : members_) course.of->see_coming();
+}
+DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing, bool thrown,
+                                        double noticed) {
+    for (Course& course : members_) {
+        course.of->begin_blow(noticed);
+        if (thrown && course.is_held()) (void)is_decided(course);
+    }
     const auto solve_at_once = [this](const btCollisionObject& object) {
         if (Course* course = course_of(object)) (void)is_decided(*course);
     };

@@ -100,7 +100,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
                              const btVector3& gravity) override;
     DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
-    void begin_blow() override {}
+    void begin_blow(double /*noticed*/) override {}
     DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
                              std::vector<DivisionChange>& told) override;

@@ -51,7 +51,7 @@ class TouchingIslands {
     void find(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
               int manifold_count, btTypedConstraint** constraints, int constraint_count,
               Choice choice, const DirectBodies& direct);
-    /// Islands with a constraint or body that was chosen, or that touch such a body.
+    /// Islands with a constraint or body that was chosen, or that touch such a body, or hang on it.
     [[nodiscard]] std::span<IslandParts> chosen() noexcept { return {islands_.data(), count_}; }
     [[nodiscard]] IslandParts& others() noexcept { return others_; }
 

@@ -31,8 +31,10 @@ DUCTILE_INLINE void TouchingIslands::find(btCollisionObject** bodies, int body_c
     count_ = 0;
     others_.clear();
     for (int i = 0; i < constraint_count; ++i) {
-        if (!choice(constraints[i])) continue;
-        choose(island_of(constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB()));
+        const btRigidBody &a = constraints[i]->getRigidBodyA(),
+                          &b = constraints[i]->getRigidBodyB();
+        const bool on_direct = constraints[i]->isEnabled() && (direct.has(a) || direct.has(b));
+        if (choice(constraints[i]) || on_direct) choose(island_of(a, b));
     }
     for (int i = 0; direct.any && i < body_count; ++i) {
         if (direct.has(*bodies[i])) choose(island_of(*bodies[i], *bodies[i]));

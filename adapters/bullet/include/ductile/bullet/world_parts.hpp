@@ -46,6 +46,7 @@
 #include "ductile/bullet/local_tick.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
 #include "ductile/bullet/part_risk.hpp"
+#include "ductile/bullet/thrown_bodies.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -118,6 +119,8 @@ class WorldParts final : public PartEngine {
 
     /// Back to before it, with the sections open that it was beyond.
     void begin_blow();
+    void find_thrown();
+    void see_coming();
     void close_held(Closing when);
     void do_again();
     const PartMotion& tell();
@@ -139,6 +142,7 @@ class WorldParts final : public PartEngine {
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;
     HeldContacts held_;
+    ThrownBodies thrown_;
     double half_ = 0; ///< of the last part that stands, since which bodies went straight on [s]
     double touching_ = 0, apart_ = 0; ///< energies that a contact, a gap has to close with [J]
     bool closes_ = false;             ///< a contact, as the last look ahead found

@@ -132,11 +132,13 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
         }
         plastic->begin_part();
     }
+    find_thrown();
 }
 
 DUCTILE_INLINE void WorldParts::end() {
     world_.synchronizeMotionStates();
     widen();
+    thrown_.leave(world_);
 }
 
 DUCTILE_INLINE void WorldParts::widen() {
@@ -285,41 +287,6 @@ DUCTILE_INLINE void WorldParts::look_at_pushes(double h) {
     motion_.contact_lost = held_.lost(world_, manifolds(), h, concerned);
 }
 
-DUCTILE_INLINE void WorldParts::do_again() {
-    put_back();
-    const double before = meter_.held().total();
-    members_.open_found();
-    meter_.bodies_rearranged(before);
-    save();
-}
-
-/// Members are as whole as they are without it.
-DUCTILE_INLINE void WorldParts::begin_blow() {
-    if (members_.empty()) return;
-    close_held(Closing::before_blow);
-    save();
-    members_.begin_blow(closing_.found_bodies());
-}
-
-DUCTILE_INLINE void WorldParts::close_held(Closing when) {
-    const double before = meter_.held().total();
-    if (!members_.close_held(when)) return;
-    meter_.bodies_rearranged(before);
-    closing_.forget_open();
-}
-
-DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    if (members_.empty() && local_) save();
-    begin_blow();
-    for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
-        do_again();
-    }
-    while (local_ && join_touched()) tick(blow_length, false);
-    motion_.closed = 0;
-    motion_.contact_lost = false;
-    return tell();
-}
-
 DUCTILE_INLINE void WorldParts::accept(double h) {
     half_ = h / 2;
     held_.accept();
@@ -372,6 +339,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
+    found.strikes = found.strikes || !thrown_.bodies().empty();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
     return found;
@@ -395,3 +363,4 @@ DUCTILE_INLINE double WorldParts::kinetic_energy() const {
 } // namespace ductile::bullet
 
 #include "ductile/bullet/world_parts_alone.ipp" // IWYU pragma: keep
+#include "ductile/bullet/world_parts_blows.ipp" // IWYU pragma: keep

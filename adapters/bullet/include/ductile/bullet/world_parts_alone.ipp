@@ -21,6 +21,7 @@ DUCTILE_INLINE void WorldParts::decide() {
     if (std::exchange(decided_, true)) return;
     if (!std::exchange(looked_, true)) find_risk();
     for (const btRigidBody* body : closing_.found_bodies()) suspects_.push_back(body);
+    for (const btRigidBody* body : thrown_.bodies()) suspects_.push_back(body);
     at_risk_ = true;
     if (!members_.empty() || !ways_.empty() || calls_others_ || islands_ == nullptr) return;
     if (!is_little() || !LocalTick::is_possible(world_, front_.usual())) return;
@@ -80,6 +81,7 @@ DUCTILE_INLINE std::vector<btRigidBody*> WorldParts::find_trouble() {
         }
     };
     for (const btRigidBody* body : closing_.found_bodies()) choose(*body);
+    for (const btRigidBody* body : thrown_.bodies()) choose(*body);
     if (closing_.closed_early(world_, length_, apart_) > 0) {
         for (const btRigidBody* body : closing_.found_bodies()) choose(*body);
     }

@@ -42,10 +42,6 @@ namespace detail {
              .arm_a = arm_of(bodies.a, point),
              .arm_b = arm_of(bodies.b, point)}};
 }
-[[nodiscard]] DUCTILE_INLINE ContactBody contact_body(dBodyID body) {
-    return body == nullptr ? ContactBody{}
-                           : ContactBody{linear_velocity(body), angular_velocity(body)};
-}
 
 /// Smallest extent of a geom; infinite for what has no other side [m].
 [[nodiscard]] DUCTILE_INLINE double thickness(dGeomID geom) {
@@ -126,7 +122,7 @@ DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
     : seen(detail::seen_contact(named).second) {
     constexpr double followed = 0.02; // of what turns it
     const AttachedBodies bodies = attached_bodies(named.joint);
-    const ContactBody a = detail::contact_body(bodies.a), b = detail::contact_body(bodies.b);
+    const ContactBody a = contact_body(bodies.a), b = contact_body(bodies.b);
     const Vector3<double> comes = difference(b.at(seen.arm_b), a.at(seen.arm_a));
     speed = dot(seen.normal, comes);
     yields = detail::yield_at(bodies.a, seen.arm_a, seen.normal) +
@@ -169,8 +165,11 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
         const dBodyID body = island_[at];
         for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
-            if (dJointIsEnabled(joint) == 0) continue;
-            if (dJointGetType(joint) == dJointTypeContact && !named.contains(joint)) {
+            const bool touches = dJointGetType(joint) == dJointTypeContact;
+            // what members hold hangs together with them while it is cut off, too
+            const bool may_be_cut = at < members.size() && !touches;
+            if (dJointIsEnabled(joint) == 0 && !may_be_cut) continue;
+            if (touches && !named.contains(joint)) {
                 throw std::logic_error(
                     "World.step: a contact of a body with plastic joints was not named: in a world "
                     "with a tolerance all are made and named (add_contact) by what on_contacts was "
@@ -211,7 +210,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
 
 DUCTILE_INLINE void ClosingContactsFinder::see_motions(std::span<const dBodyID> bodies) {
     motions_.clear();
-    for (dBodyID body : bodies) motions_.emplace_back(body, detail::contact_body(body));
+    for (dBodyID body : bodies) motions_.emplace_back(body, contact_body(body));
     std::sort(motions_.begin(), motions_.end(), [](const Motion& x, const Motion& y) {
         return std::less<dBodyID>()(x.first, y.first);
     });
@@ -220,8 +219,7 @@ DUCTILE_INLINE ContactBody ClosingContactsFinder::motion_before(dBodyID body) co
     const auto found = std::lower_bound(
         motions_.begin(), motions_.end(), body,
         [](const Motion& one, dBodyID key) { return std::less<dBodyID>()(one.first, key); });
-    return found != motions_.end() && found->first == body ? found->second
-                                                           : detail::contact_body(body);
+    return found != motions_.end() && found->first == body ? found->second : contact_body(body);
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {

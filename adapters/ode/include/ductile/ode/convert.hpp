@@ -8,6 +8,7 @@
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/numeric/lu.hpp"
+#include "ductile/world/turned_contact.hpp"
 
 namespace ductile::ode {
 
@@ -51,6 +52,12 @@ namespace ductile::ode {
     if (body == nullptr) return Vector3<double>(0, 0, 0);
     const Vector3<double> arm = difference(point, to_core(dBodyGetPosition(body)));
     return sum(linear_velocity(body), cross(angular_velocity(body), arm));
+}
+
+/// Null: the static world.
+[[nodiscard]] inline ContactBody contact_body(dBodyID body) noexcept {
+    return body == nullptr ? ContactBody{}
+                           : ContactBody{linear_velocity(body), angular_velocity(body)};
 }
 
 /// The body as a joint at `point` (world) sees it; the static world and kinematic bodies cannot

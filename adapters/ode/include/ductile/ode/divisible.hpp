@@ -80,7 +80,13 @@ class Divisible {
     virtual void after_solve() = 0;
     /// Sections to open after a step of `dt` [s] on which these contacts acted, or a blow.
     virtual void find_beyond(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;
-    virtual void begin_blow() = 0;
+    /// Joints of the user's count in it that take more than `noticed` [J].
+    virtual void begin_blow(double noticed) = 0;
+    /// Joints that hold on to it what can move are off, or on again, so that the bodies go as they
+    /// would without it; false: there are none.
+    virtual bool switch_holds(bool /*on*/) { return false; }
+    /// So they go, until the next blow.
+    virtual void see_coming() {}
     virtual void find_struck(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;
     virtual void open(std::span<const int> sections, bool ahead) = 0;
     /// Has a segment, or body of a plan, now.

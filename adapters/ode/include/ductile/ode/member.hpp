@@ -117,9 +117,11 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         dJointID joint;
         dBodyID body;
         MemberPlace at;
-        bool acts;        ///< it is enabled
-        HeldBy support{}; ///< by what
-        Wrench wrench{};  ///< when it was last solved; the ledger may have lent its feedback
+        bool acts;         ///< it is enabled
+        HeldBy support{};  ///< by what
+        Wrench wrench{};   ///< when it was last solved; the ledger may have lent its feedback
+        Wrench on_other{}; ///< the same, on what is on its other side
+        std::array<ContactBody, 2> before{}; ///< a blow: of its body, of the other
     };
     // ---- what the World asks
 
@@ -144,7 +146,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    void begin_blow() override { course_.begin_blow(); }
+    void begin_blow(double noticed) override { course_.begin_blow(noticed); }
+    DUCTILE_INLINE bool switch_holds(bool on) override;
+    DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
@@ -172,6 +176,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
     void read_steps(double dt);
+    [[nodiscard]] JointSide side_of(const Hold& hold, bool member, double dt) const;
     void add_load(const Wrench& wrench, int segment, double dt);
 
     dBodyID user_;

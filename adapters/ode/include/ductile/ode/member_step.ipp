@@ -29,6 +29,23 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
     before_.clear();
     for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
 }
+DUCTILE_INLINE bool Member::switch_holds(bool on) {
+    bool any = false;
+    for (const Hold& hold : holds_) {
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        if (!hold.acts || !can_move(bodies.a == hold.body ? bodies.b : bodies.a)) continue;
+        any = true;
+        (on ? dJointEnable : dJointDisable)(hold.joint);
+    }
+    return any;
+}
+DUCTILE_INLINE void Member::see_coming() {
+    for (Hold& hold : holds_) {
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        const dBodyID other = bodies.a == hold.body ? bodies.b : bodies.a;
+        hold.before = {contact_body(hold.body), contact_body(other)};
+    }
+}
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
     for (Hold& hold : holds_) {
@@ -39,6 +56,7 @@ DUCTILE_INLINE void Member::after_solve() {
         // what sleeps carries on as when it was solved; between what cannot move nothing is
         if (!detail::is_solved(bodies.a) && !detail::is_solved(bodies.b)) continue;
         hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
+        hold.on_other = wrench_of(*dJointGetFeedback(hold.joint), !of_a);
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
         before_[i].see(pieces_[i].body);
@@ -179,21 +197,36 @@ DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
     sections = course_.beyond(steps_, loads_, dt);
 }
 
+/// Of a joint that holds it, in a blow of `dt` [s]: of the member, or of what is on the other side.
+DUCTILE_INLINE JointSide Member::side_of(const Hold& hold, bool member, double dt) const {
+    const AttachedBodies bodies = attached_bodies(hold.joint);
+    const dBodyID body = (bodies.a == hold.body) == member ? bodies.a : bodies.b;
+    if (body == nullptr || !(detail::is_solved(bodies.a) || detail::is_solved(bodies.b))) return {};
+    const JointFrame<double> segment = pose(hold.at.segment);
+    const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
+    const Wrench& wrench = member ? hold.wrench : hold.on_other;
+    return {.before = hold.before[member ? 0 : 1],
+            .after = contact_body(body),
+            .arm = difference(place, to_core(dBodyGetPosition(body))),
+            .impulse = scaled(dt, wrench.force),
+            .moment = scaled(dt, wrench.torque)};
+}
+
 DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
-    if (touches.empty()) return;
+    if (touches.empty() && holds_.empty()) return;
     read(dt, touches);
-    MemberStrike strike;
+    MemberStrike strike, by_joints;
     for (const Touch& touch : touches) {
         const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
-        strike.energy += pressed * (touch.closing + touch.closing_speed()) / 2;
-        if (touch.closing > strike.speed) {
-            strike.speed = touch.closing;
-            strike.segment = touch.segment;
-        }
+        strike.add(pressed * (touch.closing + touch.closing_speed()) / 2, touch.closing,
+                   touch.segment);
     }
-    if (!(strike.energy > 0)) return;
-    const int section = course_.struck(steps_, loads_, strike);
+    for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        by_joints.add(side_of(hold, true, dt), side_of(hold, false, dt), hold.at.segment);
+    }
+    const int section = course_.struck(steps_, loads_, strike, by_joints);
     if (section != no_section) sections.push_back(section);
 }
 

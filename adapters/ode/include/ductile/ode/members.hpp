@@ -65,7 +65,10 @@ class Members {
     void after_solve() const;
     [[nodiscard]] bool any_open() const;
     [[nodiscard]] bool look(double dt) { return look(dt, false); }
-    void begin_blow() const;
+    /// As Divisible's.
+    void begin_blow(double noticed) const;
+    [[nodiscard]] bool switch_holds(bool on) const;
+    void see_coming() const;
     [[nodiscard]] bool look_blow(double dt) { return look(dt, true); }
     /// `ahead`: how the forces of joints act from now on. Contacts go to the bodies that have the
     /// segments that they act on.

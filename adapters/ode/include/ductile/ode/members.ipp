@@ -160,8 +160,16 @@ DUCTILE_INLINE void Members::after_solve() const {
 
 // ---- after it
 
-DUCTILE_INLINE void Members::begin_blow() const {
-    for (const Course& course : members_) course.of->begin_blow();
+DUCTILE_INLINE void Members::begin_blow(double noticed) const {
+    for (const Course& course : members_) course.of->begin_blow(noticed);
+}
+DUCTILE_INLINE bool Members::switch_holds(bool on) const {
+    bool any = false;
+    for (const Course& course : members_) any = course.of->switch_holds(on) || any;
+    return any;
+}
+DUCTILE_INLINE void Members::see_coming() const {
+    for (const Course& course : members_) course.of->see_coming();
 }
 
 DUCTILE_INLINE bool Members::look(double dt, bool blow) {

@@ -118,7 +118,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    void begin_blow() override {}
+    void begin_blow(double /*noticed*/) override {}
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;

@@ -35,6 +35,7 @@
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/members.hpp"
 #include "ductile/ode/resting_islands.hpp"
+#include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/driven_course.hpp"
@@ -107,6 +108,9 @@ class WorldParts final : public PartEngine {
     template <class Change>
     void rearrange(const Change& change);
     void begin_blow();
+    /// Hands threw what hangs together with a plastic joint or a member.
+    [[nodiscard]] bool is_thrown();
+    void see_coming();
     void close_held(Closing when);
     void do_again();
     void begin_driven();
@@ -137,6 +141,7 @@ class WorldParts final : public PartEngine {
     double length_ = 1;               ///< of the frame [s]
     double time_ = 0, kept_time_ = 0; ///< since it began [s]
     std::vector<Driven> driven_, last_driven_;
+    ThrownBodies thrown_;
     HalfAhead half_ahead_;
     HeldForces forces_;
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
@@ -148,6 +153,7 @@ class WorldParts final : public PartEngine {
     std::vector<std::pair<AttachedBodies, Push>> pushes_, kept_pushes_;    ///< of the last part
     bool looked_ = false; ///< where the bodies are, and as fast as they are
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
+    double touching_ = 0;                                    ///< of what touches [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
     PartMotion motion_;
 };

@@ -89,6 +89,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     begin_driven();
     looked_ = false;
+    thrown_.find(of_.bodies, of_.joints);
     forces_.hold(of_.bodies);
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
@@ -127,6 +128,7 @@ DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
     forces_.forget(body);
     resting_.forget(body);
     std::erase(asleep_, body);
+    thrown_.forget(body);
     std::erase_if(damped_, is_it);
     std::erase_if(driven_, is_it);
     std::erase_if(last_driven_, is_it);
@@ -175,6 +177,7 @@ DUCTILE_INLINE void WorldParts::end() {
     forces_.apply_to(asleep_);
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
+    thrown_.leave(of_.bodies);
 }
 
 DUCTILE_INLINE void WorldParts::drop_forces() {
@@ -303,7 +306,21 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
     if (of_.members.empty()) return;
     if (of_.members.any_open()) close_held(Closing::before_blow);
     save();
-    of_.members.begin_blow();
+    of_.members.begin_blow(touching_);
+    see_coming();
+}
+
+/// As bodies go that hang on members, were these not there.
+DUCTILE_INLINE void WorldParts::see_coming() {
+    const struct Cut {
+        const Members& of;
+        bool any;
+        explicit Cut(const Members& members) : of(members), any(of.switch_holds(false)) {}
+        ~Cut() { (void)of.switch_holds(true); }
+    } cut(of_.members);
+    if (cut.any) tick(blow_length, true);
+    of_.members.see_coming();
+    if (cut.any) put_back();
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
@@ -311,6 +328,7 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    thrown_.strike();
     begin_blow();
     for (tick(blow_length, true); of_.members.look_blow(blow_length); tick(blow_length, true)) {
         do_again();

@@ -95,8 +95,8 @@ DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) co
     const auto [bodies, now] = detail::seen_contact(named);
     const SeenContact* nearest = detail::nearest(seen_, bodies, now.point);
     if (nearest == nullptr) return 0;
-    return turned_contact(now, *nearest, detail::contact_body(bodies.a),
-                          detail::contact_body(bodies.b), h / 2, h / 2);
+    return turned_contact(now, *nearest, contact_body(bodies.a), contact_body(bodies.b), h / 2,
+                          h / 2);
 }
 
 DUCTILE_INLINE void WorldParts::begin_pushes() {
@@ -137,15 +137,23 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
 }
 
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
+    touching_ = touching;
     apart_ = apart;
     see_contacts();
-    ClosingContacts found;
-    if (!of_.maker || !closing_.any_plastic()) return found;
+    ClosingContacts found{.strikes = is_thrown()};
+    if (found.strikes || !of_.maker || !closing_.any_plastic()) return found;
     found.strikes = closing_.strikes(touching);
     if (found.strikes) return found;
     found.time = closing_.next_gap(apart);
     if (!(found.time < h)) found.time = next_gap(h, apart);
     return found;
+}
+
+DUCTILE_INLINE bool WorldParts::is_thrown() {
+    if (thrown_.bodies().empty()) return false;
+    if (!std::exchange(looked_, true)) look();
+    return std::any_of(thrown_.bodies().begin(), thrown_.bodies().end(),
+                       [this](dBodyID body) { return closing_.is_plastic(body); });
 }
 
 DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {

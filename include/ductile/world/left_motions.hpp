@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+//
+// How a frame left the bodies, and what joins them: whom hands threw, or joined, since then. A body
+// that was not there is taken to have been at rest, and joined to nothing while it is.
+//
+// Not thread-safe.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "ductile/world/turned_contact.hpp"
+
+namespace ductile {
+
+class LeftMotions {
+  public:
+    /// A frame is over: they are as follow.
+    void clear() noexcept { left_.clear(); }
+    /// `joints`: the sum of joint_mark over what is joined to it.
+    void leave(const void* body, const ContactBody& motion, std::size_t joints) {
+        left_.push_back({body, motion, joints});
+    }
+    /// All were told.
+    void sort() { std::sort(left_.begin(), left_.end(), is_before); }
+    /// It moves, and is joined, as it was left.
+    [[nodiscard]] bool is_left(const void* body, const ContactBody& motion,
+                               std::size_t joints) const {
+        const Body now{body, motion, joints};
+        const auto was = std::lower_bound(left_.begin(), left_.end(), now, is_before);
+        const bool known = was != left_.end() && was->body == body;
+        const ContactBody before = known ? was->motion : ContactBody{};
+        return before.velocity == motion.velocity && before.spin == motion.spin &&
+               (!known || was->joints == joints);
+    }
+
+  private:
+    struct Body {
+        const void* body;
+        ContactBody motion;
+        std::size_t joints;
+    };
+    [[nodiscard]] static bool is_before(const Body& x, const Body& y) {
+        return std::less<const void*>()(x.body, y.body);
+    }
+    std::vector<Body> left_; ///< sorted
+};
+
+/// Of a joint that acts between two bodies: another one almost certainly has another mark.
+[[nodiscard]] inline std::size_t joint_mark(const void* joint, const void* a,
+                                            const void* b) noexcept {
+    std::uint64_t mark = 0;
+    for (const void* each : {joint, a, b}) {
+        mark = (mark ^ std::uint64_t(std::hash<const void*>()(each))) * 0x9e3779b97f4a7c15u;
+        mark ^= mark >> 29u;
+    }
+    return std::size_t(mark);
+}
+
+} // namespace ductile
