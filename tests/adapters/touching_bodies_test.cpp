@@ -154,3 +154,31 @@ TEST_CASE("Frames: bodies that overlap come apart, in short frames no faster", "
         (void)apart(depth, false, 1.0 / 60); // without a joint the engine's own, but half ahead
     }
 }
+
+TEST_CASE("Frames: a box that flies by the edge of a post strikes what it meets of it", "[frame]") {
+    // by 25 mm of a side, as wide as both shapes are rounded in Bullet's closest points
+    constexpr double half = 0.091, of_box = 0.164, overlap = 0.025, ahead = 0.0033;
+    const V3 velocity(4.03, 9.4, 0);
+    const auto work = [&](double frame) {
+        WorldRig rig(false, 0.01, 256);
+        const auto post = rig.box(60, V3(half, half, 1.47), V3(0, 0, 1.5));
+        Eigen::Matrix<double, 6, 1> capacity;
+        capacity << 4e5, 4e5, 7e5, 2e4, 2e4, 1.6e4;
+        const auto& joint = rig.six_axes(post, V3::Zero(),
+                                         SixAxes(Ellipsoid<double, 6>({.capacity = capacity}),
+                                                 Perfect<double>({.strength = 2e4})));
+        const double apart = half + of_box;
+        const auto box = rig.box(
+            39, V3(of_box, of_box, of_box),
+            V3(-apart - velocity.x() * ahead, -apart + overlap - velocity.y() * ahead, 1.618));
+        WorldRig::set_velocity(box, velocity);
+        while (rig.world().time() < 1.0 / 15 - 1e-9) rig.world().step(frame);
+        return joint.absorbed_energy();
+    };
+    const double fine = work(1.0 / 960);
+    CHECK(fine > 100);
+    for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(frame);
+        CHECK(work(frame) == Approx(fine).epsilon(0.03));
+    }
+}

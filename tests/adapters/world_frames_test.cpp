@@ -542,6 +542,35 @@ TEST_CASE("Frames: a rigid joint whose load turns flows the way that its bodies 
     check(rectangle, of_rectangle, 0.01); // by bounds around the force that is expected: 2 %
 }
 
+TEST_CASE("Frames: a joint that is freed of one axis flows along the others alone", "[frame]") {
+    using Vector6d = Eigen::Matrix<double, 6, 1>;
+    constexpr double inertia = 2, spin = 3, free_spin = 0.2, strength = 30, load = 0.3 * strength;
+    Vector6d stiffness = Vector6d::Constant(unlimited), capacity;
+    stiffness[3] = 1e-6; // N m/rad about x: as a structure's pin, a billionth of a section's
+    capacity << V3::Constant(1e3 * strength), V3::Constant(strength);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(10, V3::Constant(inertia), V3::Zero());
+        WorldRig::set_spin(body, V3(free_spin, spin, 0));
+        const auto& joint =
+            rig.six_of(body, UsualSixAxisJoint(Ellipsoid<double, 6>({.capacity = capacity}),
+                                               Perfect<double>({.strength = strength}),
+                                               TravelLimit<double>(), {.stiffness = stiffness}));
+        while (rig.world().time() < 0.9) {
+            WorldRig::apply_force_at(body, V3(load, 0, 0), V3(0, 0, 1));
+            rig.world().step(frame);
+        }
+        CHECK(rig.world().run().believed());
+        double turn = 0; // the force keeps its direction, its arm turns
+        for (int i = 0; i < 20; ++i) {
+            turn = (inertia * spin * spin / 2 + load * std::sin(turn)) / strength;
+        }
+        CHECK(joint.absorbed_energy() == Approx(strength * turn).epsilon(0.01));
+        CHECK(WorldRig::spin(body).x() == Approx(free_spin).epsilon(0.01));
+    }
+}
+
 TEST_CASE("Frames: six elastic axes keep their energy at any stiffness and frame", "[frame]") {
     using Vector6d = Eigen::Matrix<double, 6, 1>;
     for (const double stiffness : {1e3, 1e5, 1e7}) {
@@ -601,6 +630,24 @@ TEST_CASE("Frames: six elastic axes flow from where they reach their strength, i
                   Approx(mass * speed * speed / 2 - held).epsilon(rough ? 1e-2 : 5e-3));
             CHECK(rig.world().run().believed());
         }
+    }
+}
+
+TEST_CASE("Frames: a rod that is thrown without its spin, and stops in a frame, is not lost",
+          "[frame]") {
+    // its hinge does not turn as the frame begins nor as it ends: m v l/2 = (m l²/3) ω, then ω
+    // stops
+    constexpr double mass = 3, length = 1, speed = 10, strength = 4000;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto rod =
+            rig.body(mass, V3::Constant(mass * length * length / 12), V3(length / 2, 0, 0));
+        WorldRig::set_velocity(rod, V3(0, speed, 0));
+        const auto& hinge = rig.hinge(rod, nullptr, V3::Zero(), law(strength), "hinge");
+        rig.run(0.2, frame);
+        CHECK(hinge.absorbed_energy() == Approx(0.375 * mass * speed * speed).epsilon(0.01));
+        CHECK(rig.world().run().believed());
     }
 }
 

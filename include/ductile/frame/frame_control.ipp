@@ -262,6 +262,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     double ahead = 0, of_flows = 0, largest = 0;
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
+    bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         const double least = row.strength * row.least;
@@ -275,6 +276,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.turned =
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
+        lets_go = lets_go || row.broke > 0;
         if (breaks(i, motion)) {
             const BrokeAlone broke = row.alone
                                          ? broke_alone(row, before(i, motion), flowed(i, motion))
@@ -310,6 +312,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given + judged.astray;
+    // velocities that did not fit may rest within the part, where no row that flows tells of them
+    judged.moves = judged.moves || (!lets_go && motion.rigid_work > judged.least);
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;

@@ -68,12 +68,14 @@ DUCTILE_INLINE void rule(solve::IslandRow& row, const RowLimits<double>& limits,
     row.upper = limits.upper * dt;
 }
 
-/// Whether its bodies alone would need more than the surface has to meet the rows' velocities.
+/// Whether its bodies alone, and what its springs give, would need more than the surface has to
+/// meet the rows' velocities.
 DUCTILE_INLINE bool passes(const solve::Island& island, const solve::IslandBlock& block) {
     Vector6<double> share = Vector6<double>::Zero();
     for (int i = 0; i < block.count; ++i) {
         const solve::IslandRow& row = island.rows[std::size_t(block.first + i)];
-        const double effect = own_effect(island, row) * block.size[std::size_t(i)];
+        const double effect =
+            (own_effect(island, row) + row.compliance) * block.size[std::size_t(i)];
         if (effect > 0) share[i] = row.target / effect;
     }
     return block.surface != nullptr ? block.surface->value(share) > 1 : share.squaredNorm() > 1;

@@ -37,10 +37,11 @@ namespace detail {
 
 [[nodiscard]] DUCTILE_INLINE double parting_speed(const btCollisionObject& a,
                                                   const btCollisionObject& b,
-                                                  const btManifoldPoint& point) {
+                                                  const btManifoldPoint& point,
+                                                  const btVector3& normal) {
     const btVector3 parts =
         velocity_at(a, point.getPositionWorldOnA()) - velocity_at(b, point.getPositionWorldOnB());
-    return double(point.m_normalWorldOnB.dot(parts));
+    return double(normal.dot(parts));
 }
 
 [[nodiscard]] DUCTILE_INLINE btVector3 spin(const btCollisionObject& object) {
@@ -121,15 +122,15 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
                              const btCollisionObjectWrapper* b, int, int) override {
         const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
         const btVector3 &on_a = point.getPositionWorldOnA(), &on_b = point.getPositionWorldOnB();
-        const btVector3& normal = point.m_normalWorldOnB;
-        const double speed = -parting_speed(of_a, of_b, point);
+        const auto [away, normal] = gap_at(point, *a, *b);
+        const double speed = -parting_speed(of_a, of_b, point, normal);
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
-        const double faster = gain(of_a, normal), away = distance(point, *a, *b);
+        const double faster = gain(of_a, normal);
         const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
         const double gap = std::max(away, 0.0);
         const btVector3 turns =
             speed > 0 ? btScalar(gap / speed) * (spin(of_a) - spin(of_b)) : btVector3(0, 0, 0);
-        const double way = gap + closed_gap / 2 + flush_depth(point, *a, *b, turns);
+        const double way = gap + closed_gap / 2 + flush_depth(normal, *a, *b, turns);
         if (away < nearest.away) nearest = {away, speed, taken, way};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;

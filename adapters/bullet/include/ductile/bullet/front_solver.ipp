@@ -98,8 +98,8 @@ class StruckContacts {
                                 const btManifoldPoint& point) const {
         constexpr double hardly_less = 0.99;
         const auto e = double(point.m_combinedRestitution);
-        return e > 0 && parting_speed(*manifold.getBody0(), *manifold.getBody1(), point) >
-                            hardly_less * e * slowest_;
+        return e > 0 && parting_speed(*manifold.getBody0(), *manifold.getBody1(), point,
+                                      point.m_normalWorldOnB) > hardly_less * e * slowest_;
     }
 
     double slowest_; ///< speed from which contacts rebound [m/s]

@@ -77,7 +77,7 @@ struct AnyContact final : btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        found = found || distance(point, *a, *b) <= reach;
+        found = found || gap_at(point, *a, *b).away <= reach;
         return 0;
     }
 };

@@ -5,11 +5,13 @@
 // tilted by θ would be r θ apart while it touches, 1.2 mm of a deck that hangs by 0.03 rad over
 // the edge of its support.
 //
-//   gap of two boxes = n·x_A - n·x_B along the normal n of their closest points, x the farthest
-//   point of each towards the other
+//   gap of two boxes = n·x_A - n·x_B, x the farthest point of each towards the other, along that n
+//   of their faces, pairs of edges and closest points for which it is largest
 //
-// n is that of the sharp boxes wherever a face or two edges meet; between two corners the gap is
-// too small, and grows right as they come near. All other pairs are left as they are, as Bullet
+// Two boxes are apart as long as one of these is positive, and touch along the last of them, which
+// is the normal of their contact. Closest points alone do not know it where boxes meet by less than
+// their margins, as one that flies by the edge of a post. Between two corners the gap is too small,
+// and grows right as they come near. All other pairs are left as they are, as Bullet
 // rounds them in its contacts too: a ball that hits two boxes in a line where they meet pushes them
 // apart. A small btBoxShape::setMargin makes such edges sharp.
 //
@@ -42,35 +44,58 @@ namespace ductile::bullet {
     return most;
 }
 
-/// Of closest points that a contactPairTest found; negative where they overlap [m].
-[[nodiscard]] inline double distance(const btManifoldPoint& point,
-                                     const btCollisionObjectWrapper& a,
-                                     const btCollisionObjectWrapper& b) {
-    const auto rounded = double(point.getDistance());
-    const btVector3& normal = point.m_normalWorldOnB; // towards a
-    const auto farthest = [&normal](const btCollisionObjectWrapper& of, btScalar side) {
-        const btTransform& at = of.getWorldTransform();
-        const auto& box = static_cast<const btBoxShape&>(*of.getCollisionShape());
-        return normal.dot(at * box.localGetSupportingVertex((side * normal) * at.getBasis()));
-    };
+/// How far two shapes are apart, negative where they overlap [m], and along what.
+struct Gap {
+    double away;
+    btVector3 normal; ///< towards the first
+};
+
+/// Of closest points that a contactPairTest found.
+[[nodiscard]] inline Gap gap_at(const btManifoldPoint& point, const btCollisionObjectWrapper& a,
+                                const btCollisionObjectWrapper& b) {
+    Gap gap{double(point.getDistance()), point.m_normalWorldOnB};
     if (a.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE ||
         b.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE) {
-        return rounded;
+        return gap;
     }
+    const btTransform &at_a = a.getWorldTransform(), &at_b = b.getWorldTransform();
+    const auto farthest = [](const btCollisionObjectWrapper& of, const btVector3& towards) {
+        const btTransform& at = of.getWorldTransform();
+        const auto& box = static_cast<const btBoxShape&>(*of.getCollisionShape());
+        return at * box.localGetSupportingVertex(towards * at.getBasis());
+    };
+    const auto along = [&](const btVector3& normal) {
+        return double(normal.dot(farthest(a, -normal)) - normal.dot(farthest(b, normal)));
+    };
     // the digits of places in the world are no edge
     const auto size = [](const btCollisionObjectWrapper& of) {
         return of.getWorldTransform().getOrigin().length() +
                of.getCollisionShape()->getAngularMotionDisc();
     };
-    const double sharp = farthest(a, -1) - farthest(b, 1);
     const double digits = 16 * double(SIMD_EPSILON) * double(size(a) + size(b));
-    return rounded - sharp > digits ? sharp : rounded;
+    const double sharp = along(gap.normal);
+    if (gap.away - sharp > digits) gap.away = sharp;
+    const auto see = [&](btVector3 normal) {
+        if (normal.dot(at_a.getOrigin() - at_b.getOrigin()) < 0) normal = -normal;
+        const double away = along(normal);
+        if (away - gap.away > digits) gap = {away, normal};
+    };
+    for (int i = 0; i < 3; ++i) {
+        see(at_a.getBasis().getColumn(i));
+        see(at_b.getBasis().getColumn(i));
+    }
+    constexpr btScalar parallel = btScalar(1e-6);
+    for (int i = 0; i < 9; ++i) {
+        const btVector3 across =
+            at_a.getBasis().getColumn(i / 3).cross(at_b.getBasis().getColumn(i % 3));
+        if (across.length2() > parallel) see(across.normalized());
+    }
+    return gap;
 }
 
-/// Of closest points that a contactPairTest found, as they meet after a further `turn` of `a`
-/// beside `b` [rad]; 0 where nothing is flush then [m].
-[[nodiscard]] inline double flush_depth(const btManifoldPoint& point,
-                                        const btCollisionObjectWrapper& a,
+/// Of two that meet along `meet` after a further `turn` of `a` beside `b` [rad]; 0 where nothing
+/// is flush then [m].
+[[nodiscard]] inline double flush_depth(const btVector3& meet, const btCollisionObjectWrapper& a,
                                         const btCollisionObjectWrapper& b, const btVector3& turn) {
     constexpr btScalar flush = btScalar(1e-4), of_a_face = btScalar(0.999);
     if (a.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE ||
@@ -86,7 +111,7 @@ namespace ductile::bullet {
                           &along = other.getWorldTransform().getBasis();
         for (int k = 0; k < 3; ++k) {
             const btVector3 normal = axes.getColumn(k);
-            if (btFabs(normal.dot(point.m_normalWorldOnB)) < of_a_face) continue;
+            if (btFabs(normal.dot(meet)) < of_a_face) continue;
             const btVector3 tilt = (normal + normal.cross(on_a ? -turn : turn)) * along;
             const btVector3 room = axes.transposeTimes(along).absolute().transpose() * half(face);
             btScalar depth = 0;
