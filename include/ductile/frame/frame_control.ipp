@@ -311,8 +311,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given + judged.astray;
-    // velocities that did not fit may rest within the part, where no row that flows tells of them
-    judged.moves = judged.moves || (!lets_go && motion.rigid_work > judged.least);
+    // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
+    const bool rested = unmissed > 0 && !lets_go && motion.rigid_work > judged.least;
+    judged.moves = judged.moves || rested;
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
