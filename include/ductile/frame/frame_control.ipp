@@ -312,9 +312,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given + judged.astray;
-    // velocities that did not fit may rest within the part, where no row that flows tells of them
-    judged.moves = judged.moves || (!lets_go && motion.rigid_work > judged.least);
-    if (judged.moves) {
+    // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
+    const double took = motion.rigid_work + std::min(taken_, 0.0);
+    const bool rested = unmissed > 0 && !lets_go && took > judged.least;
+    if (judged.moves = judged.moves || rested; judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
         if (!judged.fitted) judged.error += std::abs(motion.rigid_work);
