@@ -111,8 +111,8 @@ class Members {
     struct Course {
         [[nodiscard]] DUCTILE_INLINE bool is_held() const;
         Divisible* of;
-        const Member* member;               ///< null: a structure
-        std::unique_ptr<MemberTick> tick{}; ///< of a member
+        const Member* member;              ///< null: a structure
+        std::unique_ptr<Divisible> tick{}; ///< of a member; a program without any compiles none
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
         int direct = 0;       ///< ticks for which it is still solved at once
