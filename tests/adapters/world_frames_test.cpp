@@ -251,8 +251,7 @@ TEST_CASE("Frames: a brittle spring absorbs nothing, at any frame", "[frame]") {
 }
 
 TEST_CASE("Frames: a brittle spring that a load breaks acts no longer than it holds", "[frame]") {
-    // from rest: q = F/k (1 - cos ω t) until it reaches limit/k, in a share of a frame of 1/240 s
-    // on
+    // from rest: q = F/k (1 - cos ω t) until it reaches limit/k, within a frame or two
     constexpr double mass = 2, stiffness = 9e4, limit = 40, load = 1.5 * limit, time = 0.1;
     const double omega = std::sqrt(stiffness / mass), angle = std::acos(1 - limit / load);
     const double at_break = load / (mass * omega) * std::sin(angle);
@@ -635,8 +634,7 @@ TEST_CASE("Frames: six elastic axes flow from where they reach their strength, i
 
 TEST_CASE("Frames: a rod that is thrown without its spin, and stops in a frame, is not lost",
           "[frame]") {
-    // its hinge does not turn as the frame begins nor as it ends: m v l/2 = (m l²/3) ω, then ω
-    // stops
+    // its hinge turns neither as the frame begins nor as it ends: m v l/2 = (m l²/3) ω, and stops
     constexpr double mass = 3, length = 1, speed = 10, strength = 4000;
     for (const double frame : all_frames) {
         CAPTURE(frame);

@@ -271,7 +271,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
     const double took = motion.rigid_work + std::min(taken_, 0.0);
     const bool rested = unmissed > 0 && !lets_go && took > judged.least;
-    if (judged.moves = judged.moves || rested; judged.moves) {
+    judged.moves = judged.moves || rested;
+    if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
         if (!judged.fitted) judged.error += std::abs(motion.rigid_work);

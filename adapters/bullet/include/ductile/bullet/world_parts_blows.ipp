@@ -31,11 +31,14 @@ DUCTILE_INLINE void WorldParts::begin_blow() {
 }
 
 DUCTILE_INLINE void WorldParts::find_thrown() {
-    const std::vector<int> held = members_.held_islands();
-    std::optional<bool> any; // found where there is somebody to ask for
+    std::vector<int> held;
+    std::optional<bool> any; // both found where there is somebody to ask for
     thrown_.find(world_, [&](const btRigidBody& body) {
         if (members_.is_member(body)) return true;
-        if (!any) any = closing_.any_plastic(world_) || !held.empty();
+        if (!any) {
+            held = members_.held_islands();
+            any = closing_.any_plastic(world_) || !held.empty();
+        }
         if (!*any || body.isStaticOrKinematicObject()) return false;
         const int island = body.getIslandTag(); // none yet, of a body that is new
         return island < 0 || std::binary_search(held.begin(), held.end(), island) ||
