@@ -117,6 +117,8 @@ class FrameControl {
     struct Past {
         PartRow row;
         double acceleration = 0; ///< a₋ [m/s² | rad/s²]
+        bool driven = false;     ///< by more than its own force, so far
+        bool fast = false;       ///< it swings faster than a frame's parts can follow
     };
 
     /// How a part is done again.

@@ -81,7 +81,7 @@ DUCTILE_INLINE double FrameControl::followed(double h) const noexcept {
 /// When the first row stops that would then misplace more than what is allowed; else `h`.
 DUCTILE_INLINE double FrameControl::first_stop(double h) const noexcept {
     double stop = h;
-    for (const auto& [row, acceleration] : past_) {
+    for (const auto& [row, acceleration, driven, fast] : past_) {
         const double speed = std::abs(row.end);
         if (!(acceleration * row.end < 0) || !(row.strength > 0) || speed <= row.noise) continue;
         constexpr double nothing = 1e-3;
@@ -118,7 +118,10 @@ DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
     past_.resize(motion.rows.size());
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
-        past_[i] = {row, h > 0 ? (row.end - row.start) / h : past_[i].acceleration};
+        const PartBefore known = before(i, motion);
+        const bool driven = row.elastic && is_driven(row, known);
+        const bool fast = known.fast && row.moves() && !driven;
+        past_[i] = {row, h > 0 ? (row.end - row.start) / h : past_[i].acceleration, driven, fast};
     }
     if (h > 0) before_ = h;
 }
@@ -195,7 +198,10 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
 DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
                                                const PartMotion& motion) const noexcept {
     if (!detail::was_there(past_, motion, row)) return {};
-    return {past_[row].acceleration, before_};
+    const Past& past = past_[row];
+    const bool swings = past.row.swings && past.row.moves();
+    return {past.acceleration,        before_, past.row.end, swings, past.driven,
+            past.fast || used() > 0.5};
 }
 
 /// In the part before, at or near its strength.

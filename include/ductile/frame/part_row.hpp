@@ -21,7 +21,8 @@
 //   an elastic one        e = |a'| h³/8, weighted by max(|f|/R, 0.3), as it is the nearness of its
 //                         strength that makes it matter; nothing below 5 % of R, unless it stops
 //                         more in the part than its spring holds at yield
-//                         after a flow it swings, and what its phase is off by goes on as a speed:
+//                         after a flow it swings, and where more than its own force ever moved it
+//                         what its phase is off by goes on as a speed:
 //                         Δ = |a'| h² ω h/12,  R/m = 2 ω² U/R,  Δ/√(R/m) = |a'| h³/12 √(R/2U),
 //                         four times that, as those of a swing add up
 //                         one that turned at its strength had that for all of the part:
@@ -56,9 +57,9 @@ struct PartRow {
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation
     double own_share = 1;  ///< |f|/R of its axis alone: a strong one of a surface hardly flows [-]
+    double force = 0;      ///< f, along its velocity [N | N m]
     double strength = 0;   ///< R; 0 where broken [N | N m]
     double below = 0;      ///< share of R by which it flows below it, where its force was foretold
-    bool pushes = false;   ///< the force went with u: it is that of a flow the other way
     double noise = 0;      ///< speed that is as good as rest [m/s | rad/s]
     double turning = 0;    ///< speed that a row may keep that turns with its bodies and holds
                            ///< [m/s | rad/s]
@@ -73,7 +74,8 @@ struct PartRow {
     double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
     bool elastic = false;  ///< below its strength it is a spring
     double spring = 0;     ///< what that holds at yield [J]
-    bool swings = false;   ///< as a spring, after a flow and into the next one
+    bool swings = false;   ///< as a spring of one axis, not at its strength all along
+    bool yielded = false;  ///< that, or before
 
     /// Of what it stopped in a part of h, with its mean force [J]; nothing where that goes on.
     [[nodiscard]] double stopped(double h) const noexcept {
@@ -81,6 +83,8 @@ struct PartRow {
         if (!(change >= std::abs(start)) || change == 0) return 0;
         return std::min(share, own_share) * strength * h * start * start / (2 * change);
     }
+    /// The force went with u: it is that of a flow the other way.
+    [[nodiscard]] bool pushes() const noexcept { return force * start > 0; }
     [[nodiscard]] double speed() const noexcept { return std::max(std::abs(start), std::abs(end)); }
     /// Its force is its strength.
     [[nodiscard]] bool flows() const noexcept {
@@ -113,6 +117,10 @@ struct Misplaced {
 struct PartBefore {
     double acceleration = 0; ///< a₋ [m/s² | rad/s²]
     double length = 0;       ///< h₋ [s]
+    double end = 0;          ///< u' of it [m/s | rad/s]
+    bool swings = false;     ///< it moved as a spring
+    bool driven = false;     ///< by more than its own force, then or before
+    bool fast = false;       ///< it swings faster than a frame's parts can follow
 };
 
 /// s and Δ/√c of a row that stopped in a part with the force of one direction; nothing where it was
@@ -121,22 +129,37 @@ struct PartBefore {
                                             const PartBefore& before) noexcept {
     const double way = std::copysign(1.0, row.start), share = std::min(1.0, row.share);
     const double braked = -way * before.acceleration, mean = way * (row.start - row.end) / h;
-    const double not_its_own = 1 - (row.pushes ? -share : share);
+    const double not_its_own = 1 - (row.pushes() ? -share : share);
     const double own = (braked - mean) / not_its_own, back = braked - 2 * own;
     const double stop = std::abs(row.start) / braked;
     if (!(own > 0 && back > 0 && not_its_own > 0 && stop > 0 && stop < h)) return {};
     return {.stop = stop, .lacking = std::abs(back * (h - stop) + way * row.end) / std::sqrt(back)};
 }
 
+/// Whether more than its own force moved a row: a load of half its strength, against which it
+/// was pushed, or what gave it another speed while it swung. It may flow again, then.
+[[nodiscard]] inline bool is_driven(const PartRow& row, const PartBefore& before) noexcept {
+    constexpr double much = 0.5, another = 0.3;
+    const bool pushed =
+        std::abs(row.force) > much * row.strength && (row.end - row.start) * row.force < 0;
+    const double fastest = std::max(std::abs(row.start), std::abs(before.end));
+    const bool struck = before.swings && std::abs(row.start - before.end) > another * fastest;
+    return before.driven || pushed || struck;
+}
+
 /// Of a spring; `changed`: |a'|, `below`: travel by which it flows below its strength.
-[[nodiscard]] inline Misplaced misplaced_by_spring(const PartRow& row, double h, double changed,
+[[nodiscard]] inline Misplaced misplaced_by_spring(const PartRow& row, double h,
+                                                   const PartBefore& before, double changed,
                                                    double below) noexcept {
     constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 4;
     Misplaced result;
     if (row.share <= idle && !(row.stopped(h) > row.spring)) return result;
     const double share = std::min(1.0, row.share), cube = h * h * h;
-    result.travel = changed * cube / 8 * std::max(share, least_weight) + below;
-    if (row.swings) {
+    const bool driven = is_driven(row, before);
+    if (!(row.swings && before.swings && before.fast) || driven) {
+        result.travel = changed * cube / 8 * std::max(share, least_weight) + below;
+    }
+    if (row.swings && row.yielded && driven) {
         const double eased = std::sqrt(row.strength / (2 * row.spring)); // ω/√(R/m)
         result.lacking = parts_of_a_swing * changed * cube / 12 * eased;
     }
@@ -163,13 +186,13 @@ struct PartBefore {
     const double changed = 2 * std::abs(change / h - before.acceleration) / (h + before.length);
     const double below = row.below * std::abs(row.start + row.end) * h / 2;
     if (row.elastic) {
-        result = misplaced_by_spring(row, h, changed, below);
+        result = misplaced_by_spring(row, h, before, changed, below);
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
         result.travel = start * h * (1 - share) / 2;
         double stop = share * h;
         constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
         const bool turned = row.start * row.end < 0;
-        if (turned && (std::abs(row.end) > row.noise || (row.pushes && share >= whole))) {
+        if (turned && (std::abs(row.end) > row.noise || (row.pushes() && share >= whole))) {
             result.travel = std::max(result.travel, std::abs(change) * h / 8);
             stop = h * start / std::abs(change);
         }

@@ -37,8 +37,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
                           std::vector<PartRow>& rows) {
     const double share = acts ? link.utilisation() : 0;
     // waves along the axes of a section are for its dampers to end
-    const bool yielded =
-        link.axes().size() == 1 && !link.all_rigid() && link.totals().plastic_work > 0;
+    const bool spring = link.axes().size() == 1 && !link.all_rigid();
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
     double broke = link.last().held, misfit = acts ? link.last().misfit : 0;
     const bool alone = link.axes().size() == 1;
@@ -67,9 +66,10 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.end = link.end_velocities()[i];
         row.misfit = std::exchange(misfit, 0);
         row.share = share;
-        row.swings = yielded && swings(link.totals().flowing, share);
+        row.swings = spring && swings(link.totals().flowing, share);
+        row.yielded = link.totals().plastic_work > 0;
         row.below = link.totals().flowing ? std::max(0.0, 1 - share) : 0;
-        row.pushes = link.force(axis) * row.start > 0;
+        row.force = link.force(axis);
         row.strength = link.strength(axis);
         row.own_share = std::abs(link.force(axis)) / row.strength;
         row.spring = row.strength * row.strength / (2 * link.section_stiffness()[i]);
@@ -97,10 +97,10 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.misfit = axis.last().misfit;
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = axis.utilisation(force);
-    row.swings =
-        row.elastic && axis.totals().plastic_work > 0 && swings(axis.totals().flowing, row.share);
+    row.swings = row.elastic && swings(axis.totals().flowing, row.share);
+    row.yielded = axis.totals().plastic_work > 0;
     row.spring = row.strength * row.strength / (2 * axis.stiffness());
-    row.pushes = force * row.start > 0;
+    row.force = force;
 }
 
 } // namespace ductile

@@ -143,8 +143,8 @@ class Engine final : public ductile::PartEngine {
                                     .start = start[i],
                                     .end = breaks_down ? std::nan("") : end,
                                     .share = std::abs(force) / r.strength,
+                                    .force = force,
                                     .strength = r.strength,
-                                    .pushes = force * start[i] > 0,
                                     .noise = 1e-9,
                                     .least = 1e-6});
             motion_.plastic_work += r.work;
