@@ -240,9 +240,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.given += row.given;
         lets_go = lets_go || row.broke > 0;
         if (breaks(i, motion)) {
-            const BrokeAlone broke = row.alone
-                                         ? broke_alone(row, before(i, motion), flowed(i, motion))
-                                         : BrokeAlone{row.broke, row.astray};
+            const PartBefore known = before(i, motion);
+            const BrokeAlone broke =
+                row.alone ? broke_alone(row, known, flowed(i, motion)) : snapped(row, h, known);
             judged.astray += broke.astray;
             freed += row.freed;
             if (broke.astray > largest) {

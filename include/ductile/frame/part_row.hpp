@@ -151,7 +151,7 @@ struct PartBefore {
 [[nodiscard]] inline Misplaced misplaced_by_spring(const PartRow& row, double h,
                                                    const PartBefore& before, double changed,
                                                    double below) noexcept {
-    constexpr double idle = 0.05, least_weight = 0.3, parts_of_a_swing = 4;
+    constexpr double idle = 0.02, least_weight = 0.3, parts_of_a_swing = 4;
     Misplaced result;
     if (row.share <= idle && !(row.stopped(h) > row.spring)) return result;
     const double share = std::min(1.0, row.share), cube = h * h * h;
@@ -231,6 +231,15 @@ struct BrokeAlone {
     if (!(row.run > 0 && sum > 0)) return {row.broke, 0};
     const double stop = 2 * row.run / sum, other = stop * std::abs(row.start + row.end);
     return {stop, row.astray * std::min(std::abs(other / (2 * row.run) - 1), 1.0)};
+}
+
+/// Of one that broke otherwise all counts; until it snapped a spring is off by e as any other.
+[[nodiscard]] inline BrokeAlone snapped(const PartRow& row, double h,
+                                        const PartBefore& before) noexcept {
+    const double change = (row.end - row.start) / h - before.acceleration;
+    const double travel =
+        row.elastic ? 2 * std::abs(change) / (h + before.length) * h * h * h / 8 : 0;
+    return {row.broke, row.astray + std::abs(row.force) * travel};
 }
 
 /// What that is in energy; `work`: W [J].

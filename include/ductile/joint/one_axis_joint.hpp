@@ -222,20 +222,34 @@ class OneAxisJoint {
         return std::max(flow_.resistance(1), flow_.resistance(-1)) / (2 * parameters_.stiffness);
     }
 
-    /// True where the force reached a cap before the row could yield.
-    [[nodiscard]] bool brittle(const Taken& taken) const noexcept {
-        return (taken.at_upper && upper_ == cap(1)) || (taken.at_lower && lower_ == -cap(-1));
+    /// The force at which the row snapped, where it reached a cap before it could yield; else zero.
+    [[nodiscard]] Scalar snapped(const Taken& taken) const noexcept {
+        const Scalar above = cap(1), below = cap(-1);
+        const bool pushes = upper_ == above, pulls = lower_ == -below;
+        if (pushes && taken.at_upper) return above;
+        if (pulls && taken.at_lower) return -below;
+        if (rigid() || !ahead_) return 0;
+        // the force has reached it at the end of the part, or where the row turned round within
+        const Scalar u = taken.velocity;
+        const Scalar end = taken.position - state_.plastic_offset + spring_.damping * u;
+        const bool turned = start_ * u < 0;
+        const Scalar turn =
+            turned ? elastic_ + start_ * start_ * taken.dt / (2 * (start_ - u)) : end;
+        const Scalar k = parameters_.stiffness;
+        if (pushes && -k * std::min(end, turn) >= above) return above;
+        if (pulls && k * std::max(end, turn) >= below) return -below;
+        return 0;
     }
 
-    /// Breaks without flow: what the row took beyond its elastic energy is handed back.
-    void snap(Step<Scalar>& step, const Taken& taken) noexcept {
+    /// Breaks without flow, at `force`: what the row took beyond its elastic energy is handed back.
+    void snap(Step<Scalar>& step, const Taken& taken, Scalar force) noexcept {
         const Scalar k = parameters_.stiffness;
-        const Scalar strained = rigid() ? Scalar(0) : taken.force / k;
+        const Scalar strained = rigid() ? Scalar(0) : force / k;
         step.elastic = rigid() ? Scalar(0) : k * (strained * strained - elastic_ * elastic_) / 2;
         step.release = std::max(taken.work - step.elastic, Scalar(0));
         step.other_work = taken.work - step.elastic - step.release;
         criterion_.update(state_.criterion,
-                          {Scalar(0), state_.plastic_travel, taken.force, Scalar(0), taken.dt});
+                          {Scalar(0), state_.plastic_travel, force, Scalar(0), taken.dt});
         state_.broken = true;
     }
 
@@ -353,7 +367,7 @@ class OneAxisJoint {
     /// Puts time and force of the state to the break, the step being booked as a whole by `settle`.
     void place_break(Step<Scalar>& step, const Taken& taken) noexcept {
         const bool flowed = step.plastic_work > 0;
-        const Scalar direction = std::copysign(Scalar(1), flowed ? taken.travel : -taken.force);
+        const Scalar direction = std::copysign(Scalar(1), flowed ? taken.travel : -state_.force);
         if (flowed) state_.force = -law_.resistance(state_.law, Scalar(0), direction) * fade_;
         Scalar distance = flowed ? left_ : Scalar(0); // a rigid row is loaded from the start
         if (!rigid()) {

@@ -66,10 +66,11 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
     if (!sound_ || !are_finite(taken.work, taken.position)) return unbooked_step<Step<Scalar>>();
     step.residual = violation(reaction, taken);
     const bool solved = step.residual <= allowed_residual(reaction.velocity);
+    const Scalar snaps_at = solved ? snapped(taken) : Scalar(0);
     if (!solved) {
         commit_unsolved(step, taken);
-    } else if (brittle(taken)) {
-        snap(step, taken);
+    } else if (snaps_at != 0) {
+        snap(step, taken, snaps_at);
     } else if (rigid()) {
         commit_rigid(step, taken);
     } else {
@@ -79,7 +80,7 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
     settle(state_, step,
            StepEnd<Scalar, Scalar>{.start = start_,
                                    .velocity = reaction.velocity,
-                                   .force = reaction.force,
+                                   .force = snaps_at != 0 ? snaps_at : reaction.force,
                                    .start_speed = std::abs(start_),
                                    .absolute_residual = parameters_.absolute_residual,
                                    .allowed_residual = allowed_residual(reaction.velocity),

@@ -29,7 +29,8 @@ inline constexpr double resting_share = 0.01;
 template <class Step>
 [[nodiscard]] double released_late(const Step& last) noexcept {
     if (last.plastic_work > 0 || !(last.held > 0)) return 0;
-    return last.release * last.after_break / (last.held + last.after_break);
+    const double taken = std::abs(last.release) + std::abs(last.other_work);
+    return taken * last.after_break / (last.held + last.after_break);
 }
 
 /// Adds a row for each plastic axis; `joint`: its number; `acts`: the part was solved with it.
@@ -55,8 +56,9 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
             const double after = link.last().after_break;
             row.astray = link.last().plastic_work * (alone ? 1 : after / (row.broke + after)) +
                          released_late(link.last());
-            row.alone = alone;
+            row.alone = alone && link.last().plastic_work > 0;
             row.run = link.last().run;
+            row.force = link.force(axis);
             row.start = link.start_velocities()[i];
             row.end = link.end_velocities()[i];
         }
@@ -86,9 +88,10 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.least = axis.least_travel();
     row.elastic = !axis.rigid();
     row.broke = axis.last().held;
-    row.alone = true;
+    row.alone = axis.last().plastic_work > 0;
     row.run = axis.last().run;
     row.freed = axis.last().lost;
+    row.force = force;
     if (row.broke > 0) row.astray = axis.last().plastic_work + released_late(axis.last());
     if (!acts && !(row.broke > 0)) return;
     row.start = axis.start_velocity();
@@ -100,7 +103,6 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.swings = row.elastic && swings(axis.totals().flowing, row.share);
     row.yielded = axis.totals().plastic_work > 0;
     row.spring = row.strength * row.strength / (2 * axis.stiffness());
-    row.force = force;
 }
 
 } // namespace ductile
