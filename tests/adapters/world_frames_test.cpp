@@ -275,6 +275,59 @@ TEST_CASE("Frames: a brittle spring that a load breaks acts no longer than it ho
     }
 }
 
+TEST_CASE("Frames: a weld snaps where its force reaches the cap, not where the mean of a part does",
+          "[frame]") {
+    // thrown, or from rest under a load that grows by equal steps for six frames and then stays
+    struct Case {
+        double turn;  // ω h
+        double load;  // of the cap, at last
+        double share; // of what is thrown, that the spring holds at the cap
+    };
+    constexpr double mass = 2, cap = 100, frame = 1.0 / 60;
+    constexpr int frames = 14, growing = 6, fine = 4000;
+    for (const Case& of : {Case{8.53, 0, 0.4}, Case{1.22, 0, 0.4}, Case{2.35, 0.98, 0},
+                           Case{1.18, 0.98, 0}, Case{5.28, 0.88, 0}}) {
+        const double stiffness = mass * of.turn * of.turn / (frame * frame);
+        const double held = cap * cap / (2 * stiffness);
+        const double thrown = of.share > 0 ? std::sqrt(2 * held / of.share / mass) : 0;
+        const auto load = [&](int i) { return of.load * cap * std::min(1.0, (i + 0.5) / growing); };
+        double velocity = thrown, position = 0;
+        bool broken = false;
+        for (int i = 0; i < frames * fine; ++i) {
+            constexpr double h = frame / fine;
+            const double force = broken ? 0 : stiffness * (position + velocity * h / 2);
+            broken = broken || std::abs(force) >= cap;
+            const double before = velocity;
+            velocity += (load(i / fine) - (broken ? 0 : force)) / mass * h;
+            position += (before + velocity) / 2 * h;
+        }
+        const auto check = [&](auto joint, auto axes) {
+            CAPTURE(of.turn, of.load, axes.size());
+            Rig rig;
+            const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+            WorldRig::set_velocity(body, V3(thrown, 0, 0));
+            auto& weld = rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(),
+                                     std::move(joint), axes);
+            for (int i = 0; i < frames; ++i) {
+                WorldRig::apply_force(body, V3(load(i), 0, 0));
+                rig.world().step(frame);
+            }
+            CHECK(weld.broken() == broken);
+            const double energy = WorldRig::velocity(body).squaredNorm() * mass / 2;
+            const double expected = velocity * velocity * mass / 2;
+            if (broken) CHECK(std::abs(energy - expected) < 0.01 * (expected + held));
+            CHECK(rig.world().run().believed());
+        };
+        const BrittleForce<double> snaps({.limit = cap});
+        const Perfect<double> strong({.strength = 10 * cap});
+        check(OneAxisJoint(strong, snaps, {.stiffness = stiffness}),
+              std::array<JointAxis, 1>{JointAxis::shear_x});
+        check(CoupledJoint(Ellipsoid<double, 2>({.capacity = {10 * cap, 10 * cap}}), strong, snaps,
+                           {.stiffness = {stiffness, stiffness}}),
+              std::array<JointAxis, 2>{JointAxis::shear_x, JointAxis::shear_y});
+    }
+}
+
 TEST_CASE("Frames: a load meets a spring's swing in its phase", "[frame]") {
     constexpr double mass = 2, strength = 20, frame = 1.0 / 60;
     constexpr double soft = 4000, stiff = 9e4; // ω h = 0.75, 3.5

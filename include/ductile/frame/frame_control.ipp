@@ -242,7 +242,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (breaks(i, motion)) {
             const PartBefore known = before(i, motion);
             const BrokeAlone broke =
-                row.alone ? broke_alone(row, known, flowed(i, motion)) : snapped(row, h, known);
+                row.alone ? broke_alone(row, known, flowed(i, motion)) : broke_with_others(row, h, known);
             judged.astray += broke.astray;
             freed += row.freed;
             if (broke.astray > largest) {

@@ -70,6 +70,7 @@ struct PartRow {
     double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
     double freed = 0;      ///< that its springs held as it broke [J]
     bool alone = false;    ///< of a joint of one axis: `astray` is all of its work then
+    bool snapped = false;  ///< it broke before it flowed
     double run = 0;        ///< its way then, until it broke [m | rad]
     double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
     bool elastic = false;  ///< below its strength it is a spring
@@ -234,11 +235,11 @@ struct BrokeAlone {
 }
 
 /// Of one that broke otherwise all counts; until it snapped a spring is off by e as any other.
-[[nodiscard]] inline BrokeAlone snapped(const PartRow& row, double h,
-                                        const PartBefore& before) noexcept {
+[[nodiscard]] inline BrokeAlone broke_with_others(const PartRow& row, double h,
+                                                  const PartBefore& before) noexcept {
+    if (!row.snapped || !row.elastic) return {row.broke, row.astray};
     const double change = (row.end - row.start) / h - before.acceleration;
-    const double travel =
-        row.elastic ? 2 * std::abs(change) / (h + before.length) * h * h * h / 8 : 0;
+    const double travel = std::abs(change) / (h + before.length) * h * h * h / 4;
     return {row.broke, row.astray + std::abs(row.force) * travel};
 }
 

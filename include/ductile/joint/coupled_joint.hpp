@@ -110,9 +110,10 @@ class CoupledJoint {
     /// rad/s].
     void carry(const Vector& u) noexcept { state_.velocity = is_finite(u) ? u : state_.velocity; }
 
-    /// γ of the last step's forces on the present surface: 1 where it flows [-].
+    /// γ of the last step's forces on the present surface: 1 where it flows, or snaps [-].
     [[nodiscard]] Scalar utilisation() const noexcept {
-        return state_.broken ? Scalar(0) : surface_.value(state_.force) / growth(0);
+        const Scalar most = std::min(growth(0), cap());
+        return state_.broken ? Scalar(0) : surface_.value(state_.force) / most;
     }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
@@ -229,7 +230,7 @@ class CoupledJoint {
             left_ = std::min(left_, travel_left(Scalar(1), life, state_.life));
         }
         share_ = unspent_share(left_, least);
-        cap_ = criterion_.force_cap(state_.criterion, 0) / first_strength_;
+        cap_ = cap();
         const bool capped = cap_ <= grown_ * share_;
         if (capped) share_ = 1; // the cap is met before the travel left is used up
         const Grown<Surface> reached{surface_, capped ? cap_ : grown_};
@@ -292,14 +293,21 @@ class CoupledJoint {
         return parameters_.yield_energy(upper_.cwiseMax(-lower_)) / (first_strength_ * grown_);
     }
 
-    /// True where the forces reached the cap, which need not be where a row reached its bound.
-    [[nodiscard]] bool brittle(const Vector& force) const noexcept {
-        return cap_ < std::numeric_limits<Scalar>::infinity() &&
-               surface_.value(force) >= cap_ * (1 - bound_tolerance);
+    /// γ at which it snaps.
+    [[nodiscard]] Scalar cap() const noexcept {
+        return criterion_.force_cap(state_.criterion, 0) / first_strength_;
     }
 
-    /// Breaks without flow: what the rows took beyond their elastic energy is handed back.
-    void snap(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept;
+    /// The forces at `time` of a step of springs that did not flow.
+    [[nodiscard]] Vector force_at(Scalar time, const Reaction& reaction, Scalar dt) const noexcept;
+
+    /// When the forces reached the cap, at the mean, at the end of the step or where they turned
+    /// round within it [s]; longer than the step: they did not.
+    [[nodiscard]] Scalar snapped(const Reaction& reaction, Scalar dt) const noexcept;
+
+    /// Breaks without flow at `time`: what the rows took beyond their elastic energy is handed
+    /// back.
+    void snap(Step& step, Taken& taken, const Reaction& reaction, Scalar time, Scalar dt) noexcept;
 
     /// Uses up life for the work of flow of all rows together.
     void flow(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept {

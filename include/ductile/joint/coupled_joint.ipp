@@ -162,8 +162,9 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
             off_normal_work(surface_, reaction.force, step.direction, taken.flow);
         taken.error.flow = std::max(taken.error.flow, misdirected);
     }
-    if (solved && brittle(reaction.force)) {
-        snap(step, taken, reaction, dt);
+    const Scalar snaps = solved ? snapped(reaction, dt) : 2 * dt;
+    if (snaps <= dt) {
+        snap(step, taken, reaction, snaps, dt);
     } else {
         flow(step, taken, reaction, dt);
     }
@@ -207,26 +208,73 @@ auto CoupledJoint<Surface, Law, Criterion>::missed_onset(const Reaction& reactio
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::force_at(Scalar time, const Reaction& reaction,
+                                                     Scalar dt) const noexcept -> Vector {
+    Vector force = reaction.force;
+    for (int i = 0; i < dimension; ++i) {
+        if (rigid(i)) continue;
+        const Scalar change = (reaction.velocity[i] - start_[i]) / dt;
+        const Scalar strained = elastic_[i] + (start_[i] - drift_[i] + change * time / 2) * time;
+        const Scalar speed = start_[i] - drift_[i] + change * time;
+        force[i] = -parameters_.stiffness[i] * (strained + damping(i) * speed);
+    }
+    return force;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+auto CoupledJoint<Surface, Law, Criterion>::snapped(const Reaction& reaction,
+                                                    Scalar dt) const noexcept -> Scalar {
+    const Scalar reached = cap_ * (1 - bound_tolerance);
+    const Scalar never = std::numeric_limits<Scalar>::infinity();
+    if (!(cap_ < never)) return never;
+    const auto beyond = [&](Scalar time) noexcept {
+        return surface_.value(force_at(time, reaction, dt)) >= reached;
+    };
+    Scalar last = dt;
+    if (ahead_ && !all_rigid_ && !beyond(last)) { // where the gauge goes back, as its rates tell
+        const Vector normal = surface_.normal(force_at(dt, reaction, dt));
+        Scalar first = 0, end = 0;
+        for (int i = 0; i < dimension; ++i) {
+            if (rigid(i)) continue;
+            first -= normal[i] * parameters_.stiffness[i] * start_[i];
+            end -= normal[i] * parameters_.stiffness[i] * reaction.velocity[i];
+        }
+        if (first > 0 && end < 0) last = dt * first / (first - end);
+    }
+    const bool at_end = (ahead_ || all_rigid_) && beyond(last);
+    if (!at_end) return surface_.value(reaction.force) >= reached ? dt : never;
+    Scalar before = 0;
+    if (beyond(before)) return 0;
+    constexpr int halvings = 40;
+    for (int i = 0; i < halvings; ++i) {
+        const Scalar middle = (before + last) / 2;
+        (beyond(middle) ? last : before) = middle;
+    }
+    return last;
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 void CoupledJoint<Surface, Law, Criterion>::snap(Step& step, Taken& taken, const Reaction& reaction,
-                                                 Scalar dt) noexcept {
-    const Scalar rest = taken.flow + step.other_work;
-    step.release = std::max(rest, Scalar(0));
-    step.other_work = rest - step.release;
+                                                 Scalar time, Scalar dt) noexcept {
+    taken.force = force_at(time, reaction, dt);
+    taken.force *= cap_ / surface_.value(taken.force);
+    const Scalar took = taken.flow + step.other_work + step.elastic;
+    step.elastic = 0;
+    for (int i = 0; i < dimension; ++i) {
+        const Scalar k = parameters_.stiffness[i], force = taken.force[i];
+        if (!rigid(i)) step.elastic += (force * force / k - k * elastic_[i] * elastic_[i]) / 2;
+    }
+    step.release = std::max(took - step.elastic, Scalar(0));
+    step.other_work = took - step.elastic - step.release;
     const Scalar reached = cap_ * first_strength_;
     criterion_.update(state_.criterion, {0, state_.plastic_travel, reached, 0, dt});
     state_.broken = true;
-    taken.force *= cap_ / surface_.value(taken.force); // the box has corners beyond
     int axis = 0;
     taken.force.cwiseProduct(surface_.normal(taken.force)).maxCoeff(&axis);
     state_.broken_axis = axis;
-    // a rigid row carries the force of its step from the start
-    const Scalar towards = std::copysign(Scalar(1), -taken.force[axis]);
-    const Scalar run = rigid(axis) ? Scalar(0)
-                                   : std::abs(taken.force[axis]) / parameters_.stiffness[axis] -
-                                         towards * elastic_[axis];
-    const Scalar elapsed =
-        time_to_run(run, towards * start_[axis], towards * reaction.velocity[axis], Scalar(1), dt);
-    step.after_break = dt - elapsed;
+    step.after_break = dt - time;
     state_.time -= step.after_break; // of the whole step that `settle` books
 }
 

@@ -40,8 +40,13 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     // waves along the axes of a section are for its dampers to end
     const bool spring = link.axes().size() == 1 && !link.all_rigid();
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
-    double broke = link.last().held, misfit = acts ? link.last().misfit : 0;
-    const bool alone = link.axes().size() == 1;
+    double misfit = acts ? link.last().misfit : 0, freed = link.last().lost;
+    double astray = 0; // by its break
+    const bool alone = link.axes().size() == 1, flowed = link.last().plastic_work > 0;
+    if (const double held = link.last().held; held > 0) {
+        const double after = link.last().after_break / (held + link.last().after_break);
+        astray = link.last().plastic_work * (alone ? 1 : after) + released_late(link.last());
+    }
     for (const JointAxis axis : link.axes()) {
         const auto i = Eigen::Index(index(axis));
         PartRow& row = rows.emplace_back();
@@ -50,13 +55,12 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.turning = link.turning_speed();
         row.least = link.least_travel();
         row.too_far = link.turned_too_far();
-        row.broke = std::exchange(broke, 0);
+        row.broke = link.last().held;
         if (row.broke > 0) {
-            row.freed = link.last().lost;
-            const double after = link.last().after_break;
-            row.astray = link.last().plastic_work * (alone ? 1 : after / (row.broke + after)) +
-                         released_late(link.last());
-            row.alone = alone && link.last().plastic_work > 0;
+            row.freed = std::exchange(freed, 0);
+            row.astray = std::exchange(astray, 0);
+            row.alone = alone && flowed;
+            row.snapped = !flowed;
             row.run = link.last().run;
             row.force = link.force(axis);
             row.start = link.start_velocities()[i];
@@ -89,6 +93,7 @@ inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint,
     row.elastic = !axis.rigid();
     row.broke = axis.last().held;
     row.alone = axis.last().plastic_work > 0;
+    row.snapped = !row.alone;
     row.run = axis.last().run;
     row.freed = axis.last().lost;
     row.force = force;
