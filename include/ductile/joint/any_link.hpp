@@ -222,6 +222,9 @@ class AnyLink {
     /// were solved, their turning taken out, in the order of JointAxis [m/s | rad/s].
     [[nodiscard]] const Vector6<S>& start_velocities() const noexcept { return start_; }
     [[nodiscard]] const Vector6<S>& end_velocities() const noexcept { return end_; }
+    /// The same velocities at the end of it, of the rows as they are where the bodies are now.
+    [[nodiscard]] const Vector6<S>& turned_velocities() const noexcept { return turned_; }
+    [[nodiscard]] S last_length() const noexcept { return length_; } ///< [s]
     /// What may be left of them where the joint holds, as parts of other lengths turn otherwise.
     [[nodiscard]] S turning_speed() const noexcept { return norm(linear(turning_.drift())); }
     /// Turn of a body in the last part that was too far for its rows, else 0 [rad].
@@ -323,6 +326,8 @@ class AnyLink {
 
     std::optional<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
+    Vector6<S> turned_ = Vector6<S>::Zero();      ///< u' of the rows as they are now
+    S length_ = 0;                                ///< of the last step [s]
     Vector6<S> before_blow_ = Vector6<S>::Zero(); ///< u' of the last step in which time passed
     RowTurning<S> turning_;                       ///< between prepare and commit
     bool ahead_ = false;                          ///< they were half a step ahead in it
