@@ -297,7 +297,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
-    if (used() > 0.5) judged.allowed *= std::pow(10.0, 4 * (used() - 0.5));
+    if (used() > 0.75) judged.allowed *= std::pow(10.0, 8 * (used() - 0.75));
     return judged;
 }
 
