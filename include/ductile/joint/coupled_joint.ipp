@@ -242,8 +242,9 @@ auto CoupledJoint<Surface, Law, Criterion>::snapped(const Reaction& reaction,
         }
         if (first > 0 && end < 0) last = dt * first / (first - end);
     }
-    const bool at_end = (ahead_ || all_rigid_) && beyond(last);
-    if (!at_end) return surface_.value(reaction.force) >= reached ? dt : never;
+    const bool at_end = beyond(last), at_mean = surface_.value(reaction.force) >= reached;
+    if (!at_mean && !(at_end && ahead_)) return never;
+    if (!at_end) return dt;
     Scalar before = 0;
     if (beyond(before)) return 0;
     constexpr int halvings = 40;
