@@ -328,6 +328,44 @@ TEST_CASE("Frames: a weld snaps where its force reaches the cap, not where the m
     }
 }
 
+TEST_CASE("Frames: a weld under an oblique load snaps where both forces together reach the cap",
+          "[frame]") {
+    using Eigen::Vector2d;
+    constexpr double mass = 2, frame = 1.0 / 60, last = 1.35; // load of the cap
+    constexpr int frames = 14, growing = 6, fine = 4000;
+    const Vector2d size(100, 54), way = Vector2d(0.58, -0.81).normalized();
+    const Vector2d stiffness = Vector2d(36, 57.6) * mass / (frame * frame); // ω h = 6, 7.6
+    const double whole = last / way.cwiseQuotient(size).norm();
+    const auto load = [&](int i) -> Vector2d {
+        return way * whole * std::min(1.0, (i + 0.5) / growing);
+    };
+    Vector2d velocity(0, 0), strain(0, 0);
+    bool broken = false;
+    for (int i = 0; i < frames * fine; ++i) {
+        constexpr double h = frame / fine;
+        Vector2d force = stiffness.cwiseProduct(strain + velocity * h / 2);
+        broken = broken || force.cwiseQuotient(size).norm() >= 1;
+        if (broken) force.setZero();
+        strain += velocity * h / 2;
+        velocity += (load(i / fine) - force) / mass * h;
+        strain += velocity * h / 2;
+    }
+    Rig rig;
+    const auto body = rig.body(mass, V3::Ones(), V3::Zero());
+    const CoupledJoint joint(Ellipsoid<double, 2>({.capacity = 10 * size}),
+                             Perfect<double>({.strength = 100}),
+                             BrittleForce<double>({.limit = 10}), {.stiffness = stiffness});
+    auto& weld = rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(), joint,
+                             std::array<JointAxis, 2>{JointAxis::shear_x, JointAxis::shear_y});
+    for (int i = 0; i < frames; ++i) {
+        WorldRig::apply_force(body, V3(load(i).x(), load(i).y(), 0));
+        rig.world().step(frame);
+    }
+    CHECK(weld.broken());
+    CHECK(WorldRig::velocity(body).norm() == Approx(velocity.norm()).epsilon(0.01));
+    CHECK(rig.world().run().believed());
+}
+
 TEST_CASE("Frames: a beam that hangs from its ends as it sags", "[frame]") {
     // Two rods, hinged at their supports, with a joint in the middle that gapes by 2 l (1 - cos θ)
     // as it turns by 2 θ. At once 1.9 times what the hinges bear: at rest nothing tells of N.

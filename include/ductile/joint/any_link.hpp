@@ -235,6 +235,7 @@ class AnyLink {
     [[nodiscard]] virtual S strength(JointAxis axis) const noexcept = 0;
     /// Plastic travel that nobody misses [m | rad].
     [[nodiscard]] virtual S least_travel() const noexcept = 0;
+    [[nodiscard]] virtual bool snaps() const noexcept = 0;               ///< before it flows
     [[nodiscard]] bool all_rigid() const noexcept { return all_rigid_; } ///< below its strength
     /// What a row may be off by at rest [m/s | rad/s].
     [[nodiscard]] S absolute_residual() const noexcept { return allowed_.absolute_residual; }

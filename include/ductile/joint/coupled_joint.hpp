@@ -115,6 +115,8 @@ class CoupledJoint {
         const Scalar most = std::min(growth(0), cap());
         return state_.broken ? Scalar(0) : surface_.value(state_.force) / most;
     }
+    /// It snaps before it flows.
+    [[nodiscard]] bool snaps() const noexcept { return cap() < growth(0); }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
         const bool ended = state_.broken && faded(law_, state_.plastic_travel);

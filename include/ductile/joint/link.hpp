@@ -167,6 +167,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
             return shared > 0 ? shared : std::max(limits.upper, -limits.lower);
         }
     }
+    [[nodiscard]] bool snaps() const noexcept override { return joint_.snaps(); }
     [[nodiscard]] S least_travel() const noexcept override {
         return joint_.parameters().least_travel;
     }

@@ -100,6 +100,11 @@ class OneAxisJoint {
                              criterion_.strength_factor(state_.criterion, Scalar(0));
         return std::min(flows, criterion_.force_cap(state_.criterion, -direction));
     }
+    /// It snaps before it flows.
+    [[nodiscard]] bool snaps() const noexcept {
+        const Scalar cap = std::min(this->cap(1), this->cap(-1));
+        return cap <= std::min(strength(1), strength(-1));
+    }
     /// Share of its strength that the row uses while it pushes its bodies with `force`; 1 where it
     /// flows, 0 where broken. Beyond the strength a back force makes it flow back [-].
     [[nodiscard]] Scalar utilisation(Scalar force) const noexcept {

@@ -65,6 +65,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     double misfit = acts ? link.last().misfit : 0, freed = link.last().lost;
     if (acts && link.totals().flowing && link.axes().size() > 1) misfit += turned_flow(link);
     double astray = 0; // by its break
+    const bool snaps = acts && link.snaps();
     const bool alone = link.axes().size() == 1, flowed = link.last().plastic_work > 0;
     if (const double held = link.last().held; held > 0) {
         const double after = link.last().after_break / (held + link.last().after_break);
@@ -103,6 +104,8 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.own_share = std::abs(link.force(axis)) / row.strength;
         row.spring = row.strength * row.strength / (2 * link.section_stiffness()[i]);
         row.given = std::exchange(given, 0);
+        // a spring that snaps never flows: what nobody misses is of what it holds then
+        if (row.elastic && snaps) row.least = std::min(row.least, row.spring / row.strength);
     }
 }
 
