@@ -355,9 +355,9 @@ struct BallOnHung : Scene {
     static void strike(btRigidBody* body, double speed) {
         body->setLinearVelocity({0, btScalar(speed), 0});
     }
-    /// The point holds no more.
-    void let_go() {
-        rig.engine.getConstraint(rig.engine.getNumConstraints() - 1)->setEnabled(false);
+    /// The point holds no more, or again.
+    void let_go(bool off = true) {
+        rig.engine.getConstraint(rig.engine.getNumConstraints() - 1)->setEnabled(!off);
     }
 };
 

@@ -336,8 +336,8 @@ struct BallOnHung : Scene {
         rig.meet(world);
     }
     static void strike(dBodyID body, double speed) { set_velocity(body, {0, speed, 0}); }
-    /// The point holds no more.
-    void let_go() const { dJointDisable(point); }
+    /// The point holds no more, or again.
+    void let_go(bool off = true) const { (off ? dJointDisable : dJointEnable)(point); }
 };
 
 /// A bar of one box of 0.1 m across along z from the origin on, laid on two pairs of balls 0.2 m

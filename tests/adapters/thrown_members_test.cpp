@@ -103,6 +103,25 @@ TEST_CASE("what hands let go of a member does not pull at it any more", "[member
     }
 }
 
+TEST_CASE("what a joint of the engine's brings in that hands switch on across a gap is not believed",
+          "[member]") {
+    for (const double frame : {1.0 / 30, 1.0 / 240}) {
+        BallOnHung scene(heavy_post(10, 5000));
+        scene.let_go();
+        scene.strike(scene.hung, 2);
+        scene.go(0.1, frame); // 0.2 m
+        scene.strike(scene.hung, 0);
+        scene.world.step(frame);
+        CAPTURE(frame);
+        CHECK(scene.world.run().brought_in < 1e-9);
+        CHECK(scene.world.run().believed());
+        scene.let_go(false);
+        scene.go(0.3, frame);
+        CHECK(scene.world.run().brought_in > 30); // 1.2 m/s in a frame of 1/30 s: 36 J
+        CHECK_FALSE(scene.world.run().believed());
+    }
+}
+
 TEST_CASE("a clamped member that hands set in motion is refused", "[member]") {
     BallOnHung scene(heavy_post());
     scene.strike(scene.post->pieces().front(), 3);
