@@ -103,6 +103,7 @@ class Member : public DividedMember<OpenSection> {
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
     [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
     void require_possible() const;
+    void require_attached(const btTypedConstraint& constraint) const;
     void require_free(const btDiscreteDynamicsWorld& world) const;
     void enter(btDiscreteDynamicsWorld& world);
     void leave();
