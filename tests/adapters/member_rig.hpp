@@ -261,6 +261,10 @@ inline btRigidBody& ball_of(Rig& rig, double mass, const btVector3& at) {
                     rig.shape(std::make_unique<btSphereShape>(btScalar(0.1))), usual, everything);
 }
 
+inline void set_velocity(btRigidBody* body, const Vector3<double>& v) {
+    body->setLinearVelocity(bullet::to_bullet(v));
+}
+
 struct Scene {
     Rig rig;
     bullet::World world;
