@@ -291,7 +291,8 @@ TEST_CASE("held at both ends an elastic beam bears the blows that its own profil
     }
 }
 
-TEST_CASE("what slides along a post, or off it, leaves in it what it does at fine frames", "[member]") {
+TEST_CASE("what slides along a post, or off it, leaves in it what it does at fine frames",
+          "[member]") {
     struct Slide {
         double length, mass, strength, stiffness; ///< of the post
         double ball, place;                       ///< [kg], [m]

@@ -119,8 +119,9 @@ TEST_CASE("what hands let go of a member does not pull at it any more", "[member
     }
 }
 
-TEST_CASE("what a joint of the engine's brings in that hands switch on across a gap is not believed",
-          "[member]") {
+TEST_CASE(
+    "what a joint of the engine's brings in that hands switch on across a gap is not believed",
+    "[member]") {
     for (const double frame : {1.0 / 30, 1.0 / 240}) {
         BallOnHung scene(heavy_post(10, 5000));
         scene.let_go();

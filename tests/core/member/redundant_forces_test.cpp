@@ -143,7 +143,8 @@ TEST_CASE("no shares of what holds a free beam by two pins bear more than the on
     }
 }
 
-TEST_CASE("a beam on two pins carries a blow as it is in balance, however stiff it is", "[member]") {
+TEST_CASE("a beam on two pins carries a blow as it is in balance, however stiff it is",
+          "[member]") {
     MemberParameters p;
     p.segments = lumped_segments(2, 24, 32, {1e-4, 1e-4, 2e-4});
     p.sections.assign(31, UsualAxisJoint(Perfect<double>({.strength = 500})));
@@ -159,8 +160,8 @@ TEST_CASE("a beam on two pins carries a blow as it is in balance, however stiff 
                           .held_at = {0, 0, z > 0 ? 1.0 / 32 : -1.0 / 32},
                           .bears = {pin != nullptr, pin == &first, false}};
     };
-    const std::vector<MemberLoad> loads{
-        load(15, 0, 2, nullptr), load(0, -1, -1, &first), load(31, 1, -1, &second)};
+    const std::vector<MemberLoad> loads{load(15, 0, 2, nullptr), load(0, -1, -1, &first),
+                                        load(31, 1, -1, &second)};
     std::vector<MemberSupport> supports;
     list_supports(bar, std::span(&whole, 1), std::vector<PieceStep>(1), loads, 1, supports);
     RedundantForces redundant;

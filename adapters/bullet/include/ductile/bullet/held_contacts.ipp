@@ -60,8 +60,8 @@ namespace detail {
         const btManifoldPoint& point = manifold.getContactPoint(k);
         if (!(point.getAppliedImpulse() > 0)) continue;
         const SeenContact seen = seen_contact(manifold, point, 0);
-        fastest = std::max(fastest, std::abs(dot(seen.normal, difference(a.at(seen.arm_a),
-                                                                         b.at(seen.arm_b)))));
+        fastest = std::max(
+            fastest, std::abs(dot(seen.normal, difference(a.at(seen.arm_a), b.at(seen.arm_b)))));
     }
     return fastest;
 }
@@ -175,8 +175,9 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
     }
     std::vector<std::pair<Bodies, double>> pushing; // and how fast they part [m/s]
     for (const Bodies& bodies : pushed_) {
-        pushing.emplace_back(bodies, norm(difference(detail::contact_body(*bodies.first).velocity,
-                                                     detail::contact_body(*bodies.second).velocity)));
+        pushing.emplace_back(bodies,
+                             norm(difference(detail::contact_body(*bodies.first).velocity,
+                                             detail::contact_body(*bodies.second).velocity)));
     }
     for (const btPersistentManifold* manifold : manifolds) {
         if (!(detail::pushes(*manifold) > noticed * largest)) continue;

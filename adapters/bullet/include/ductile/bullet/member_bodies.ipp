@@ -63,8 +63,8 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     let_pieces_pass();
 }
 
-/// Pieces that hang together do, and what holds on to one of them: Bullet lets pass what a constraint
-/// itself joins. Those with a broken section between them meet.
+/// Pieces that hang together do, and what holds on to one of them: Bullet lets pass what a
+/// constraint itself joins. Those with a broken section between them meet.
 DUCTILE_INLINE void Member::let_pieces_pass() {
     passing_.clear();
     broken_ = 0;

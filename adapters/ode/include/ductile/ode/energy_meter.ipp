@@ -95,10 +95,10 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
             found->second = feedback;
             continue;
         }
-        joints.push_back({id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
-                          to_core(feedback->f2), to_core(feedback->t2), nullptr,
-                          detail::drives(id) || detail::drives(bodies.a) ||
-                              detail::drives(bodies.b)});
+        joints.push_back(
+            {id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
+             to_core(feedback->f2), to_core(feedback->t2), nullptr,
+             detail::drives(id) || detail::drives(bodies.a) || detail::drives(bodies.b)});
     }
     for (const PlasticConstraint* constraint : plastic_) {
         const auto found = of_plastic.find(constraint->id());
