@@ -261,6 +261,10 @@ inline btRigidBody& ball_of(Rig& rig, double mass, const btVector3& at) {
                     rig.shape(std::make_unique<btSphereShape>(btScalar(0.1))), usual, everything);
 }
 
+inline void set_velocity(btRigidBody* body, const Vector3<double>& v) {
+    body->setLinearVelocity(bullet::to_bullet(v));
+}
+
 struct Scene {
     Rig rig;
     bullet::World world;
@@ -335,17 +339,25 @@ struct HungOn : Scene {
 };
 
 /// A ball of 50 kg fixed by a point to the tip of a clamped post that nothing else meets, and one
-/// of 100 kg 7 mm before it.
+/// of 100 kg 7 mm before it. `within`: the post has boxes, and they reach into the first one, which
+/// is as large as half a metre; the other is far away.
 struct BallOnHung : Scene {
     std::unique_ptr<bullet::Member> post;
     btRigidBody *hung, *ball;
 
-    explicit BallOnHung(const Member& of) : Scene({0, 0, 0}, 0.01, 0) {
+    explicit BallOnHung(const Member& of, bool within = false) : Scene({0, 0, 0}, 0.01, 0) {
         const auto tip = btScalar(of.length());
         hung = &ball_of(rig, 50, {0, 0, tip});
-        ball = &ball_of(rig, 100, {0, btScalar(-0.207), tip});
+        ball = &ball_of(rig, 100, {0, btScalar(within ? -1 : -0.207), tip});
         const btVector3 none(0, 0, 0);
-        post = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
+        if (within) {
+            post = std::make_unique<bullet::Member>(
+                rig.body(0, none, none, rig.post(0.05, of.length()), usual, everything), of, here,
+                bullet::MemberBox{0.05, 0.05});
+            hung->setCollisionShape(rig.shape(std::make_unique<btSphereShape>(btScalar(0.5))));
+        } else {
+            post = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
+        }
         post->attach(of.length(), [this](btRigidBody& piece, const btTransform& at) {
             return std::make_unique<btPoint2PointConstraint>(piece, *hung, at.getOrigin(),
                                                              btVector3(0, 0, 0));
@@ -355,9 +367,9 @@ struct BallOnHung : Scene {
     static void strike(btRigidBody* body, double speed) {
         body->setLinearVelocity({0, btScalar(speed), 0});
     }
-    /// The point holds no more.
-    void let_go() {
-        rig.engine.getConstraint(rig.engine.getNumConstraints() - 1)->setEnabled(false);
+    /// The point holds no more, or again.
+    void let_go(bool off = true) {
+        rig.engine.getConstraint(rig.engine.getNumConstraints() - 1)->setEnabled(!off);
     }
 };
 

@@ -399,4 +399,12 @@ TEST_CASE("what cannot be one body until it yields is refused", "[structure][mem
     scene.frame->remove("column 00");
     CHECK(message_of([&] { (void)scene.frame->body_of("column 00"); }) ==
           "Structure.body = column 00: must be one that was not removed");
+    // what hangs on one of its bodies would load it unseen
+    InTime held(in_frames({.elastic = false}));
+    held.rig.connect(
+        held.rig.box(1, {0.1, 0.1, 0.1}, {3, 0, 12}), held.frame->bodies().front(), {3, 0, 11},
+        UsualSixAxisJoint(Ellipsoid<double, 6>({.capacity = Vector6<double>::Constant(1e6)}),
+                          Perfect<double>({.strength = 1})));
+    CHECK(message_of([&] { held.rig.step(dt); }).find("StructureInTime.bodies") !=
+          std::string::npos);
 }

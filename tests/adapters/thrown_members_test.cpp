@@ -85,6 +85,22 @@ TEST_CASE("what strikes a body that hangs on a whole member strikes the member t
     }
 }
 
+TEST_CASE("what hangs on a member and lies within it strikes no piece of it", "[member]") {
+    constexpr double speed = 2, mass = 50;
+    const Member of = heavy_post(10, 5000);
+    const double tip = of.segment(of.segments() - 1).mass / 2;
+    for (const double frame : {1.0 / 30, 1.0 / 240}) {
+        BallOnHung scene(of, true);
+        scene.strike(scene.hung, speed);
+        scene.go(0.3, frame);
+        CAPTURE(frame);
+        CHECK(scene.world.run().believed());
+        CHECK(scene.world.ledger().booked(Account::contact) == 0);
+        CHECK(scene.post->absorbed_energy() ==
+              Approx(mass * speed * speed / 2 / (1 + tip / mass)).epsilon(0.01));
+    }
+}
+
 TEST_CASE("what hands let go of a member does not pull at it any more", "[member]") {
     const Member of = heavy_post(10, 5000);
     for (const double frame : {1.0 / 30, 1.0 / 240}) {
@@ -100,6 +116,26 @@ TEST_CASE("what hands let go of a member does not pull at it any more", "[member
         scene.strike(scene.hung, 2);
         scene.go(0.1, frame);
         CHECK(scene.post->absorbed_energy() == Approx(absorbed).epsilon(1e-6));
+    }
+}
+
+TEST_CASE(
+    "what a joint of the engine's brings in that hands switch on across a gap is not believed",
+    "[member]") {
+    for (const double frame : {1.0 / 30, 1.0 / 240}) {
+        BallOnHung scene(heavy_post(10, 5000));
+        scene.let_go();
+        scene.strike(scene.hung, 2);
+        scene.go(0.1, frame); // 0.2 m
+        scene.strike(scene.hung, 0);
+        scene.world.step(frame);
+        CAPTURE(frame);
+        CHECK(scene.world.run().brought_in < 1e-9);
+        CHECK(scene.world.run().believed());
+        scene.let_go(false);
+        scene.go(0.3, frame);
+        CHECK(scene.world.run().brought_in > 30); // 1.2 m/s in a frame of 1/30 s: 36 J
+        CHECK_FALSE(scene.world.run().believed());
     }
 }
 

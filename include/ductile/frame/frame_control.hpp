@@ -87,7 +87,7 @@ class FrameControl {
         run_.unreliable += joints;
     }
 
-    /// What contacts that nobody drives brought in so far; no number: nothing is known [J].
+    /// RunReport::brought_in so far; no number: nothing is known [J].
     void tell_contacts(double brought_in) noexcept { run_.brought_in = brought_in; }
 
     /// Somebody changed the bodies: what the last parts say of the next one is forgotten.

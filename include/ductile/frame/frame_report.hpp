@@ -55,8 +55,8 @@ struct RunReport {
     double tolerance = 0;    ///< that was asked for [-]
     Unresolved left;
     std::vector<UnresolvedJoint> joints;
-    /// By contacts of islands with plastic joints that nobody drives, beyond what they took, pair
-    /// by pair; 0 where no ledger is kept, no number where that is none [J].
+    /// By contacts, pair by pair, and joints of the engine's that nobody drives, beyond what they
+    /// took; 0 where no ledger is kept, no number where that is none [J].
     double brought_in = 0;
     /// By plastic joints that nobody drives, beyond what they took beside their flow; 0 where no
     /// ledger is kept [J].

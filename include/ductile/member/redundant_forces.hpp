@@ -261,6 +261,7 @@ class RedundantForces {
         lengths_.resize(rows_.size() / n);
         for (std::size_t i = 0; i < lengths_.size(); ++i) {
             lengths_[i] = take_off(row(i), balance.data(), 3);
+            if (lengths_[i] == 0) std::fill(row(i), row(i) + n, 0.0); // no round-off to relax along
         }
         take_off(beside_.data(), balance.data(), 3);
     }

@@ -66,7 +66,9 @@ struct MeteredJoint {
     Vector3<double> force_b{0, 0, 0};
     Vector3<double> torque_b{0, 0, 0};
     const PairQueries* plastic = nullptr; ///< whose flow is a part of this; null: nobody's
-    bool driven = false; ///< of a body whose motion is prescribed: what moves that pays too
+    /// Of a body whose motion is prescribed, or with a motor or spring of the engine's: what moves
+    /// that pays too.
+    bool driven = false;
 };
 
 /// One contact point of a step.
@@ -205,6 +207,8 @@ class EnergyMeter {
                               const Vector3<double>& torque, double dt);
     void book_joint(const MeteredJoint& joint, double dt);
     void book_contact(MeteredContact& contact);
+    /// What a pair took that nobody drives; `plastic`: with an account of its own.
+    void book_pair(const PairAccounts::Pair& pair, bool plastic, double taken);
     /// Sum of the velocities before and after the step at a world point of the body [m/s].
     [[nodiscard]] Vector3<double> velocity_sum(const void* body, const Vector3<double>& point);
 

@@ -143,10 +143,10 @@ DUCTILE_INLINE void EnergyMeter::book_lists(double dt) {
     }
     joints_.clear();
     list_joints(joints_);
-    for (const MeteredJoint& joint : joints_) book_joint(joint, dt);
     contacts_.clear();
     list_contacts(dt, contacts_);
     find_islands();
+    for (const MeteredJoint& joint : joints_) book_joint(joint, dt);
     for (MeteredContact& contact : contacts_) book_contact(contact);
     ledger_.set_brought_in(pairs_.brought_in());
 }
@@ -307,7 +307,14 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
                 joint.plastic->release().energy - before->released;
     }
     add(Account::joints, taken - named);
-    if (joint.plastic != nullptr && !joint.driven) step_plastic_ += taken - named;
+    constexpr double instant = 1e-7; // what it takes in a blow it has no right to give back
+    if (joint.driven) {
+        // who drives it pays
+    } else if (joint.plastic != nullptr) {
+        step_plastic_ += taken - named;
+    } else if (dt > instant) {
+        book_pair({joint.joint, nullptr}, is_plastic(joint.a) || is_plastic(joint.b), taken);
+    }
     const std::size_t number = taken_numbers_.enter(joint.joint);
     if (number == taken_.size()) taken_.push_back(0);
     taken_[number] += sign_ * taken;
@@ -319,14 +326,17 @@ DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     contact.taken = -dot(contact.normal, twice) / 2;
     add(Account::contact, contact.taken);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
-    const bool plastic = is_plastic(contact.a) || is_plastic(contact.b);
-    // one account for all that no plastic joint holds
-    const PairAccounts::Pair pair =
-        plastic ? PairAccounts::Pair(contact.a, contact.b) : PairAccounts::Pair();
+    if (contact.driven) return;
+    book_pair({contact.a, contact.b}, is_plastic(contact.a) || is_plastic(contact.b),
+              contact.taken);
+}
+
+DUCTILE_INLINE void EnergyMeter::book_pair(const PairAccounts::Pair& pair, bool plastic,
+                                           double taken) {
     if (sign_ < 0 && plastic) {
         pairs_.take_back(pair);
-    } else if (!contact.driven) {
-        pairs_.book(pair, sign_ * contact.taken);
+    } else { // one account for all that no plastic joint holds
+        pairs_.book(plastic ? pair : PairAccounts::Pair(), sign_ * taken);
     }
 }
 

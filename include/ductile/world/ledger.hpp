@@ -75,8 +75,8 @@ class Ledger {
     [[nodiscard]] S supplied() const noexcept { return supplied_; }
     [[nodiscard]] S booked(Account account) const noexcept { return booked_[std::size_t(account)]; }
 
-    /// By contacts of islands with plastic joints that nobody drives, beyond what they took, pair
-    /// by pair; a part of Account::contact [J].
+    /// By contacts, pair by pair, and joints of the engine's that nobody drives, beyond what they
+    /// took; a part of Account::contact and Account::joints [J].
     void set_brought_in(S energy) noexcept { brought_in_ = energy; }
     [[nodiscard]] S brought_in() const noexcept { return brought_in_; }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// What contacts brought into a world, pair by pair: a pair that rebounds gives back what it took,
-// one that an engine pushes apart gives what nobody had, and what others lose as they meet is no
-// excuse for that.
+// What contacts brought into a world, pair by pair, and joints of the engine's, each by itself: a
+// pair that rebounds gives back what it took, one that an engine pushes apart, or pulls together,
+// gives what nobody had, and what others lose as they meet is no excuse for that.
 //
 //   brought in = Σ over pairs of  max(0, -T),  T the least that it had taken since it touched  [J]
 //

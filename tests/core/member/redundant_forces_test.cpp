@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/member/strips.hpp"
@@ -139,5 +140,40 @@ TEST_CASE("no shares of what holds a free beam by two pins bear more than the on
         CAPTURE(three);
         CHECK(bears(0.999 * limit));
         CHECK_FALSE(bears(1.001 * limit));
+    }
+}
+
+TEST_CASE("a beam on two pins carries a blow as it is in balance, however stiff it is",
+          "[member]") {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 32, {1e-4, 1e-4, 2e-4});
+    p.sections.assign(31, UsualAxisJoint(Perfect<double>({.strength = 500})));
+    p.bending_stiffness = 1e5;
+    const Member bar(p);
+    const MemberPiece whole = make_piece(bar, straight(bar), {0, 31});
+    // its frame is in its middle
+    const auto load = [](int segment, double z, double across, const void* pin) {
+        return MemberLoad{.segment = segment,
+                          .point = {0, 0, z},
+                          .impulse = {0, across, 0},
+                          .support = pin,
+                          .held_at = {0, 0, z > 0 ? 1.0 / 32 : -1.0 / 32},
+                          .bears = {pin != nullptr, pin == &first, false}};
+    };
+    const std::vector<MemberLoad> loads{load(15, 0, 2, nullptr), load(0, -1, -1, &first),
+                                        load(31, 1, -1, &second)};
+    std::vector<MemberSupport> supports;
+    list_supports(bar, std::span(&whole, 1), std::vector<PieceStep>(1), loads, 1, supports);
+    RedundantForces redundant;
+    redundant.learn(supports);
+    redundant.become(bar, whole);
+    InternalForces forces;
+    internal_forces(bar, whole, {}, loads, forces);
+    const InternalForces before = forces;
+    REQUIRE(std::abs(before.sections[15].bending) == Approx(1));
+    redundant.relax(bar, forces);
+    for (std::size_t i = 0; i < 31; ++i) {
+        CAPTURE(i);
+        CHECK(forces.sections[i].bending == Approx(before.sections[i].bending).epsilon(1e-9));
     }
 }

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 
 #include <cmath>
 
@@ -13,6 +16,37 @@
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
+
+namespace detail {
+
+/// May bring energy in by itself, as a motor or a spring does.
+[[nodiscard]] DUCTILE_INLINE bool drives(btTypedConstraint& constraint) {
+    const auto axes_drive = [](btGeneric6DofSpring2Constraint& axes) {
+        const btTranslationalLimitMotor2& move = *axes.getTranslationalLimitMotor();
+        for (int i = 0; i < 3; ++i) {
+            const btRotationalLimitMotor2& turn = *axes.getRotationalLimitMotor(i);
+            if (move.m_enableMotor[i] || move.m_enableSpring[i]) return true;
+            if (turn.m_enableMotor || turn.m_enableSpring) return true;
+        }
+        return false;
+    };
+    switch (constraint.getConstraintType()) {
+        case POINT2POINT_CONSTRAINT_TYPE:
+            return false;
+        case HINGE_CONSTRAINT_TYPE:
+            return static_cast<btHingeConstraint&>(constraint).getEnableAngularMotor();
+        case SLIDER_CONSTRAINT_TYPE: {
+            auto& slider = static_cast<btSliderConstraint&>(constraint);
+            return slider.getPoweredLinMotor() || slider.getPoweredAngMotor();
+        }
+        case D6_SPRING_2_CONSTRAINT_TYPE:
+            return axes_drive(static_cast<btGeneric6DofSpring2Constraint&>(constraint));
+        default:
+            return true;
+    }
+}
+
+} // namespace detail
 
 DUCTILE_INLINE EnergyMeter::EnergyMeter(btDiscreteDynamicsWorld& world) : world_(world) { open(); }
 
@@ -101,7 +135,8 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
              to_core(feedback->m_appliedForceBodyB), to_core(feedback->m_appliedTorqueBodyB),
              plastic != nullptr ? &plastic->queries() : nullptr,
              constraint.getRigidBodyA().isKinematicObject() ||
-                 constraint.getRigidBodyB().isKinematicObject()});
+                 constraint.getRigidBodyB().isKinematicObject() ||
+                 (plastic == nullptr && detail::drives(constraint))});
     });
 }
 

@@ -42,7 +42,7 @@ class HeldContacts {
     [[nodiscard]] double turned(const btPersistentManifold& manifold, const btManifoldPoint& point,
                                 double h) const;
     /// After a part of `h` [s]: whether bodies that pushed each other in it, or when it began, are
-    /// apart farther than they move in it, and were not so before: Bullet keeps points that slid,
+    /// apart farther than they part in it, and were not so before: Bullet keeps points that slid,
     /// and they go on pushing where shapes are 0.1 mm apart.
     [[nodiscard]] bool lost(btDiscreteDynamicsWorld& world,
                             std::span<btPersistentManifold* const> manifolds, double h,

@@ -6,6 +6,7 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "ductile/bullet/closing_contacts.hpp"
@@ -48,6 +49,21 @@ namespace detail {
         impulse += double(manifold.getContactPoint(k).getAppliedImpulse());
     }
     return impulse;
+}
+
+/// How fast its points that push leave, along their normals [m/s].
+[[nodiscard]] DUCTILE_INLINE double parting_speed(const btPersistentManifold& manifold) {
+    const ContactBody a = contact_body(*manifold.getBody0()),
+                      b = contact_body(*manifold.getBody1());
+    double fastest = 0;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        const btManifoldPoint& point = manifold.getContactPoint(k);
+        if (!(point.getAppliedImpulse() > 0)) continue;
+        const SeenContact seen = seen_contact(manifold, point, 0);
+        fastest = std::max(
+            fastest, std::abs(dot(seen.normal, difference(a.at(seen.arm_a), b.at(seen.arm_b)))));
+    }
+    return fastest;
 }
 
 /// As far a point may slide and stay [m]; Bullet's own 2 cm are a share of the bodies.
@@ -157,21 +173,24 @@ DUCTILE_INLINE bool HeldContacts::lost(btDiscreteDynamicsWorld& world,
     for (const btPersistentManifold* manifold : manifolds) {
         largest = std::max(largest, detail::pushes(*manifold));
     }
-    std::vector<Bodies> pushing = pushed_;
+    std::vector<std::pair<Bodies, double>> pushing; // and how fast they part [m/s]
+    for (const Bodies& bodies : pushed_) {
+        pushing.emplace_back(bodies,
+                             norm(difference(detail::contact_body(*bodies.first).velocity,
+                                             detail::contact_body(*bodies.second).velocity)));
+    }
     for (const btPersistentManifold* manifold : manifolds) {
         if (!(detail::pushes(*manifold) > noticed * largest)) continue;
         if (!concerns(*manifold->getBody0()) && !concerns(*manifold->getBody1())) continue;
-        pushing.push_back(detail::bodies_of(*manifold));
+        pushing.emplace_back(detail::bodies_of(*manifold), detail::parting_speed(*manifold));
     }
     std::sort(pushing.begin(), pushing.end());
-    pushing.erase(std::unique(pushing.begin(), pushing.end()), pushing.end());
+    const auto same = [](const auto& x, const auto& y) { return x.first == y.first; };
+    pushing.erase(std::unique(pushing.begin(), pushing.end(), same), pushing.end());
     lost_.clear();
     bool anew = false;
-    for (const Bodies& bodies : pushing) {
-        const ContactBody a = detail::contact_body(*bodies.first),
-                          b = detail::contact_body(*bodies.second);
-        detail::AnyContact contact(closed_gap + h * norm(difference(a.velocity, b.velocity)),
-                                   bodies);
+    for (const auto& [bodies, parting] : pushing) {
+        detail::AnyContact contact(closed_gap + h * parting, bodies);
         world.contactPairTest(const_cast<btCollisionObject*>(bodies.first),
                               const_cast<btCollisionObject*>(bodies.second), contact);
         if (contact.found) continue;

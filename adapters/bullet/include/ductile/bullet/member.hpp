@@ -17,8 +17,8 @@
 // a contact callback. Bodies of pieces end when sections open and close: keep no address of one.
 //
 // What holds on to it. Constraints cannot change their bodies in Bullet: `attach` makes them anew
-// for the piece that has their place. Forces: apply_force, as a body's own loses the point where it
-// acted.
+// for the piece that has their place; what it joins does not collide with the member. Forces:
+// apply_force, as a body's own loses the point where it acted.
 //
 // Where it ends or leaves its World while it is open it is one body first, bent as it is.
 //
@@ -103,6 +103,7 @@ class Member : public DividedMember<OpenSection> {
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
     [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
     void require_possible() const;
+    void require_attached(const btTypedConstraint& constraint) const;
     void require_free(const btDiscreteDynamicsWorld& world) const;
     void enter(btDiscreteDynamicsWorld& world);
     void leave();

@@ -117,15 +117,16 @@ DUCTILE_INLINE void Member::require_free(const btDiscreteDynamicsWorld& world) c
         if (&constraint.getRigidBodyA() != &user_ && &constraint.getRigidBodyB() != &user_) {
             continue;
         }
-        const bool own = std::any_of(attachments_.begin(), attachments_.end(),
-                                     [&](const Attachment& attachment) {
-                                         return attachment.constraint.get() == &constraint;
-                                     });
-        if (own) continue;
-        throw std::invalid_argument(
-            "World.add.member: no constraint of the world may hold its body but by "
-            "Member::attach, as Bullet's constraints cannot change their bodies");
+        require_attached(constraint);
     }
+}
+DUCTILE_INLINE void Member::require_attached(const btTypedConstraint& constraint) const {
+    for (const Attachment& held : attachments_) {
+        if (held.constraint.get() == &constraint) return;
+    }
+    throw std::invalid_argument(
+        "World.add.member: no constraint of the world may hold its body but by Member::attach, as "
+        "Bullet's constraints cannot change their bodies");
 }
 
 DUCTILE_INLINE void Member::enter(btDiscreteDynamicsWorld& world) {
@@ -186,7 +187,6 @@ DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
 }
 
 DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {
-    if (whole()) require_free(*world_);
     note_sections();
     become(course_.open(sections, placed_pieces()), ahead);
 }

@@ -57,13 +57,14 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
             pieces_[i] = maker_->make(*made[i]);
             if (pieces_[i].own != nullptr) MemberBook<Member>::all().enter(pieces_[i].body, this);
         }
-        let_pieces_pass();
     }
     make_joints(ahead);
     make_attachments();
+    let_pieces_pass();
 }
 
-/// Pieces that hang together do, those with a broken section between them meet.
+/// Pieces that hang together do, and what holds on to one of them: Bullet lets pass what a
+/// constraint itself joins. Those with a broken section between them meet.
 DUCTILE_INLINE void Member::let_pieces_pass() {
     passing_.clear();
     broken_ = 0;
@@ -71,7 +72,17 @@ DUCTILE_INLINE void Member::let_pieces_pass() {
         broken_ += i > 0 && course_.section(pieces_[i].run.first - 1).joint.broken;
         for (std::size_t j = i + 1; j < pieces_.size(); ++j) {
             if (course_.section(pieces_[j].run.first - 1).joint.broken) break;
-            if (pieces_[i].own != nullptr) passing_.add(*pieces_[i].body, *pieces_[j].body);
+            if (pieces_[i].own == nullptr) continue;
+            passing_.add(*pieces_[i].body, *pieces_[j].body);
+            for (const Attachment& held : attachments_) {
+                if (!held.constraint->isEnabled()) continue;
+                btRigidBody &a = held.constraint->getRigidBodyA(),
+                            &b = held.constraint->getRigidBodyB();
+                btRigidBody& other = &a == held.body ? b : a;
+                const std::size_t at = course_.piece_of(held.at.segment);
+                if (at == i) passing_.add(*pieces_[j].body, other);
+                if (at == j) passing_.add(*pieces_[i].body, other);
+            }
         }
     }
 }
@@ -128,7 +139,7 @@ DUCTILE_INLINE void Member::make_attachments() {
         attachment.told = btJointFeedback(); // was of another body
         attachment.constraint->setJointFeedback(attachment.feedback.get());
         if (attachment.off) attachment.constraint->setEnabled(false);
-        world_->addConstraint(attachment.constraint.get());
+        world_->addConstraint(attachment.constraint.get(), true);
     }
 }
 

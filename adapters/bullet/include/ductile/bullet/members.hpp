@@ -58,6 +58,8 @@ class Members {
     /// @throws as World::add.
     [[nodiscard]] std::vector<std::string> add(Member& member, std::function<void()> ends);
     void remove(Member& member);
+    /// @throws std::invalid_argument where others' constraints hold bodies of theirs.
+    void require_known() const;
     /// It enters and leaves the world by itself.
     void add(Divisible& structure);
     void remove(Divisible& structure);

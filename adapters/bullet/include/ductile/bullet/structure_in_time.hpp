@@ -18,7 +18,8 @@
 // fused beside yielded and broke.
 //
 // An elastic one opens where the elastic frame yields, and then swings as that does until it rests;
-// as one body it has the shape without load. Bodies of the user's are not joined to it.
+// as one body it has the shape without load. Bodies of the user's cannot be joined to it, and steps
+// are refused where they are.
 //
 // Not thread-safe. World and Bullet's world must outlive this.
 #pragma once

@@ -226,6 +226,7 @@ DUCTILE_INLINE void World::require_possible(double dt) {
         check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
     }
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
+    members_.require_known();
 }
 DUCTILE_INLINE void World::do_step(double dt) {
     if (!members_.empty()) {

@@ -121,6 +121,7 @@ class ClosingContactsFinder {
         double before; ///< v before the solve [m/s]
         double energy; ///< v²/(2 K) [J]
         bool is_new;   ///< the bodies had no contact when last remembered
+        bool closes;   ///< else it leaves already, and closed since
     };
     using Motion = std::pair<dBodyID, ContactBody>;
     using Pair = std::pair<dBodyID, dBodyID>;
@@ -135,7 +136,7 @@ class ClosingContactsFinder {
 
     std::vector<Motion> motions_;       ///< before the solve, sorted
     std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all, sorted
-    std::vector<Touch> touches_;        ///< that close
+    std::vector<Touch> touches_;        ///< that close, or did
     std::vector<Pair> pairs_, before_;  ///< of bodies with contacts, sorted
     std::vector<Mates> touching_;       ///< looked at, sorted
     std::vector<Push> pushing_, began_; ///< in the last part, and when it began

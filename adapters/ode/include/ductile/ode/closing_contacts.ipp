@@ -199,10 +199,11 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         pairs_.push_back(touching_.back().first);
         const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
         const ContactClosing it(named);
-        if (!it.closes()) continue;
+        const bool closes = it.closes();
+        if (!closes && !(is_new && double(named.contact.geom.depth) > closed_depth)) continue;
         const double before = it.speed_of(motion_before(a), motion_before(b));
         touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
-                            before, it.speed * it.speed / (2 * it.yields), is_new});
+                            before, it.speed * it.speed / (2 * it.yields), is_new, closes});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
@@ -266,14 +267,14 @@ DUCTILE_INLINE double ClosingContactsFinder::turn(double h) const {
 
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
     return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
-        return touch.gap < touch.depth / 2 && touch.energy > touching;
+        return touch.closes && touch.gap < touch.depth / 2 && touch.energy > touching;
     });
 }
 
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
     double next = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        if (touch.gap < touch.depth / 2 || !(touch.energy > apart)) continue;
+        if (!touch.closes || touch.gap < touch.depth / 2 || !(touch.energy > apart)) continue;
         next = std::min(next, touch.gap / touch.speed);
     }
     return next;
@@ -292,9 +293,9 @@ DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double hurried,
         const double a = hurried > 0 ? (touch.speed - touch.before) / hurried : 0;
         const double left = touch.speed * touch.speed - 2 * a * overlap; // its square as it closed
         double ago = 2 * overlap / (touch.speed + std::sqrt(std::max(left, 0.0)));
-        if (!(ago < past)) {
+        if (!touch.closes || !(ago < past)) {
             if (!touch.is_new) continue;
-            ago = hurried > 0 ? past / 2 : past; // it went another way
+            ago = past / 2; // it went another way
         }
         first = std::min(first, past - ago);
     }

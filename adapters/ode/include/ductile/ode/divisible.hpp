@@ -63,6 +63,8 @@ class Divisible {
     [[nodiscard]] virtual const void* key_of(int /*section*/) const { return this; }
     /// Whether contacts between two bodies of it are not to be.
     [[nodiscard]] virtual bool hangs_together(dBodyID a, dBodyID b) const = 0;
+    /// Whether a joint of the user's holds another body to what hangs together with one of it.
+    [[nodiscard]] virtual bool holds(dBodyID /*own*/, dBodyID /*other*/) const { return false; }
     /// Of sections that are closed [J]; that of a least travel, 0: of none.
     [[nodiscard]] virtual double closed_work() const = 0;
     [[nodiscard]] virtual double unmissed_work() const = 0;

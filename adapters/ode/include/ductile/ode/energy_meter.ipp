@@ -12,6 +12,34 @@
 
 namespace ductile::ode {
 
+namespace detail {
+
+/// A clamped member that is whole is kinematic too, and moves nothing.
+[[nodiscard]] DUCTILE_INLINE bool drives(dBodyID body) {
+    if (!DrivenPair::is_driven(body)) return false;
+    const Vector3<double> velocity = linear_velocity(body), spin = angular_velocity(body);
+    return dot(velocity, velocity) + dot(spin, spin) > 0;
+}
+/// May bring energy in by itself, as a motor does.
+[[nodiscard]] DUCTILE_INLINE bool drives(dJointID joint) {
+    switch (dJointGetType(joint)) {
+        case dJointTypeBall:
+        case dJointTypeFixed:
+            return false;
+        case dJointTypeHinge:
+            return dJointGetHingeParam(joint, dParamFMax) > 0;
+        case dJointTypeSlider:
+            return dJointGetSliderParam(joint, dParamFMax) > 0;
+        case dJointTypeUniversal:
+            return dJointGetUniversalParam(joint, dParamFMax) > 0 ||
+                   dJointGetUniversalParam(joint, dParamFMax2) > 0;
+        default:
+            return true;
+    }
+}
+
+} // namespace detail
+
 DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
     dVector3 gravity;
     dWorldGetGravity(world_, gravity);
@@ -67,8 +95,10 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
             found->second = feedback;
             continue;
         }
-        joints.push_back({id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
-                          to_core(feedback->f2), to_core(feedback->t2), nullptr, false});
+        joints.push_back(
+            {id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
+             to_core(feedback->f2), to_core(feedback->t2), nullptr,
+             detail::drives(id) || detail::drives(bodies.a) || detail::drives(bodies.b)});
     }
     for (const PlasticConstraint* constraint : plastic_) {
         const auto found = of_plastic.find(constraint->id());
@@ -106,7 +136,7 @@ DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
         const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
         contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed),
-                            DrivenPair::is_driven(a) || DrivenPair::is_driven(b)});
+                            detail::drives(a) || detail::drives(b)});
     }
 }
 

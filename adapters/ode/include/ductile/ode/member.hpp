@@ -136,6 +136,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     }
     [[nodiscard]] DUCTILE_INLINE int section_of(const PlasticConstraint& joint) const override;
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
+    [[nodiscard]] DUCTILE_INLINE bool holds(dBodyID own, dBodyID other) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
     [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
     DUCTILE_INLINE void require_possible() override;

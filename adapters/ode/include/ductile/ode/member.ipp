@@ -112,6 +112,15 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
     }
     return true;
 }
+/// While it is whole the user's collisions leave out what a joint holds to its body; so do then all
+/// pieces.
+DUCTILE_INLINE bool Member::holds(dBodyID own, dBodyID other) const {
+    return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
+        const AttachedBodies bodies = attached_bodies(hold.joint);
+        return hold.acts && (bodies.a == hold.body ? bodies.b : bodies.a) == other &&
+               hangs_together(own, hold.body);
+    });
+}
 
 // ---- its life
 

@@ -50,6 +50,8 @@ class Members {
     [[nodiscard]] const void* key_of(const PlasticConstraint& joint, int& section) const;
     /// Contacts between two bodies are not to be, as they are one member's.
     [[nodiscard]] bool hang_together(dBodyID a, dBodyID b) const;
+    /// Whether a joint of the user's holds one of them to a member that the other is of.
+    [[nodiscard]] bool hold(dBodyID a, dBodyID b) const;
     /// Of sections that are closed [J]; as PartMotion::closed_work.
     [[nodiscard]] double closed_work() const;
     [[nodiscard]] double unmissed_work() const;

@@ -63,6 +63,13 @@ DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
     return of_a != owners_.end() && of_b != owners_.end() && of_a->second == of_b->second &&
            members_[of_a->second].of->hangs_together(a, b);
 }
+DUCTILE_INLINE bool Members::hold(dBodyID a, dBodyID b) const {
+    const auto holds = [this](dBodyID own, dBodyID other) {
+        const auto of = owners_.find(own);
+        return of != owners_.end() && members_[of->second].of->holds(own, other);
+    };
+    return a != nullptr && b != nullptr && (holds(a, b) || holds(b, a));
+}
 DUCTILE_INLINE double Members::closed_work() const {
     double sum = 0;
     for (const Course& course : members_) sum += course.of->closed_work();

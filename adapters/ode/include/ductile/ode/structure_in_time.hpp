@@ -21,7 +21,8 @@
 // together or meet at a node.
 //
 // An elastic one opens where the elastic frame yields, and then swings as that does until it rests;
-// as one body it has the shape without load. Bodies of the user's are not joined to it.
+// as one body it has the shape without load. Bodies of the user's cannot be joined to it, and steps
+// are refused where they are.
 //
 // Not thread-safe. World, ODE's world and the space must outlive this.
 #pragma once
@@ -111,7 +112,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
     [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
-    void require_possible() override {}
+    DUCTILE_INLINE void require_possible() override;
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "ductile/ode/convert.hpp"
@@ -140,6 +141,24 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 }
 
 // ---- a step
+
+DUCTILE_INLINE void StructureInTime::require_possible() {
+    const auto is_own = [this](dJointID joint) {
+        return std::any_of(joints_.begin(), joints_.end(), [joint](const OpenJoint& open) {
+            return open.constraint->id() == joint;
+        });
+    };
+    for (dBodyID body : bodies_) {
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            const bool acts = dJointIsEnabled(joint) != 0;
+            if (!acts || dJointGetType(joint) == dJointTypeContact || is_own(joint)) continue;
+            throw std::invalid_argument(
+                "StructureInTime.bodies: no joint of the user's may hold them, as they come and "
+                "go: use Structure");
+        }
+    }
+}
 
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {

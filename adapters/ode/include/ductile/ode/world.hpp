@@ -117,9 +117,10 @@ class World final : public SteppedWorld {
     void remove(dBodyID body);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
     /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies
-    /// that a plastic joint holds together, until that breaks, or of a member that hang together
-    /// is disabled, as it would fight their rows; where `between_joined` that of a joint is not, as
-    /// where a gap between them may close. Of a motor the hinge is the user's, and so is this.
+    /// that a plastic joint holds together, until that breaks, or of a member that hang together,
+    /// or of one and what a joint of ODE's holds to it, is disabled, as it would fight their rows;
+    /// where `between_joined` that of a joint is not, as where a gap between them may close. Of a
+    /// motor the hinge is the user's, and so is this.
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
     void add_contact(dJointID joint, const dContact& contact, bool between_joined = false);

@@ -187,7 +187,8 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
             "was given, as each part of a step needs its own");
     }
     const dBodyID a = dJointGetBody(joint, 0), b = dJointGetBody(joint, 1);
-    if (members_.hang_together(a, b) || (!between_joined && are_joined(a, b))) {
+    if (members_.hang_together(a, b) ||
+        (!between_joined && (are_joined(a, b) || members_.hold(a, b)))) {
         dJointDisable(joint);
         return;
     }
