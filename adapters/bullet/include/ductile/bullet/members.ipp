@@ -389,3 +389,5 @@ DUCTILE_INLINE void Members::tell(const Tell& tell) {
 }
 
 } // namespace ductile::bullet
+
+#include "ductile/bullet/world_members.ipp" // IWYU pragma: keep
