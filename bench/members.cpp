@@ -43,6 +43,7 @@
 
 #include "cpu_time.hpp"
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/members.hpp"
 
 namespace {
 
@@ -54,8 +55,7 @@ constexpr int usual = btBroadphaseProxy::DefaultFilter, everything = btBroadphas
 
 /// Segments of P13a (`bar`), or of a box of S355, 100 x 100 x 4 mm.
 Member description(int segments, bool clamped, bool bar) {
-    const double weight = bar ? 2 : mass, reach = bar ? 1 : length,
-                 strength = bar ? 100 : 19641.44;
+    const double weight = bar ? 2 : mass, reach = bar ? 1 : length, strength = bar ? 100 : 19641.44;
     MemberParameters p;
     p.segments = lumped_segments(reach, weight, segments, {1e-4, 1e-4, 2e-4});
     if (clamped) p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
@@ -116,9 +116,8 @@ class Site {
                                  [](const auto& member) { return !member->whole(); }));
     }
     [[nodiscard]] int bent() const {
-        return int(std::count_if(members_.begin(), members_.end(), [](const auto& member) {
-            return member->absorbed_energy() > 0;
-        }));
+        return int(std::count_if(members_.begin(), members_.end(),
+                                 [](const auto& member) { return member->absorbed_energy() > 0; }));
     }
     [[nodiscard]] double absorbed() const {
         double sum = 0;
@@ -165,8 +164,8 @@ class Site {
         }
         btVector3 inertia(0, 0, 0);
         if (!clamped) box_->calculateLocalInertia(btScalar(mass), inertia);
-        btRigidBody& of =
-            body(clamped ? 0 : mass, inertia, foot(i) + btVector3(0, 0, btScalar(length / 2)), box_);
+        btRigidBody& of = body(clamped ? 0 : mass, inertia,
+                               foot(i) + btVector3(0, 0, btScalar(length / 2)), box_);
         // members are made once all bodies are, so that these lie together in memory as without
         if (settings_.method != "plain" && settings_.method != "world") posts_.push_back(&of);
     }
@@ -228,8 +227,8 @@ class Site {
             return std::make_unique<btPoint2PointConstraint>(to, *striker_, at, none);
         };
         if (settings_.method == "in-time" || settings_.method == "frames") {
-            members_.push_back(std::make_unique<bullet::Member>(
-                body(0, none, none, nullptr, false), of, btTransform::getIdentity()));
+            members_.push_back(std::make_unique<bullet::Member>(body(0, none, none, nullptr, false),
+                                                                of, btTransform::getIdentity()));
             members_.back()->attach(1, [tie](btRigidBody& piece, const btTransform& place) {
                 return tie(piece, place.getOrigin());
             });
@@ -250,7 +249,8 @@ class Site {
 
     void truck() {
         constexpr double kilograms = 24000;
-        auto* shape = keep(std::make_unique<btBoxShape>(btVector3(btScalar(0.1), 1, btScalar(0.1))));
+        auto* shape =
+            keep(std::make_unique<btBoxShape>(btVector3(btScalar(0.1), 1, btScalar(0.1))));
         btVector3 inertia;
         shape->calculateLocalInertia(btScalar(kilograms), inertia);
         striker_ = &body(kilograms, inertia, {-4, 0, btScalar(0.5)}, shape);
@@ -323,8 +323,8 @@ void intact(Table& table, const std::string& scene, bool quick) {
     const std::vector<std::string> methods{"plain", "world", "in-time", "ledger", "frames"};
     std::vector<std::unique_ptr<Site>> sites;
     for (const auto& method : methods) {
-        sites.push_back(std::make_unique<Site>(Settings{.scene = scene, .method = method,
-                                                        .posts = posts}));
+        sites.push_back(
+            std::make_unique<Site>(Settings{.scene = scene, .method = method, .posts = posts}));
     }
     std::vector<std::vector<double>> times(methods.size() + 1);
     for (int i = 0; i < 120; ++i) {
@@ -346,8 +346,8 @@ void intact(Table& table, const std::string& scene, bool quick) {
     for (int i = 0; i < 20; ++i) jointed.step(1.0 / 60);
     for (int i = 0; i < 20; ++i) times.back().push_back(timed_step(jointed, 1.0 / 60));
     const double median = bench::median(times.back());
-    table.add({scene, "jointed", "", few, median, median / few / (plain / posts), 0,
-               jointed.absorbed()});
+    table.add(
+        {scene, "jointed", "", few, median, median / few / (plain / posts), 0, jointed.absorbed()});
 }
 
 void struck(Table& table, bool quick) {
@@ -391,8 +391,8 @@ void truck(Table& table, bool quick) {
              {std::pair{"before", &before}, std::pair{"open", &open}, std::pair{"after", &after}}) {
             if (times->empty()) continue;
             const double median = bench::median(*times);
-            table.add({"truck", method, part, posts, median, median / beside, most,
-                       site.absorbed(), double(site.bent())});
+            table.add({"truck", method, part, posts, median, median / beside, most, site.absorbed(),
+                       double(site.bent())});
         }
     }
 }

@@ -13,9 +13,9 @@
 #include <ductile/bullet/held_contacts.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
-#include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/local_scope.ipp>
 #include <ductile/bullet/local_tick.ipp>
+#include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/member.ipp>
 #include <ductile/bullet/member_snapshot.ipp>
 #include <ductile/bullet/member_tick.ipp>
@@ -27,6 +27,7 @@
 #include <ductile/bullet/plastic_motor.ipp>
 #include <ductile/bullet/structure.ipp>
 #include <ductile/bullet/structure_in_time.ipp>
+#include <ductile/bullet/tick_account.ipp>
 #include <ductile/bullet/touching_islands.ipp>
 #include <ductile/bullet/world.ipp>
 #include <ductile/bullet/world_parts.ipp>

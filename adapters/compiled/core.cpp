@@ -22,6 +22,11 @@
 #include <ductile/world/energy_meter.hpp>
 #include <ductile/world/energy_meter.ipp>
 #include <ductile/world/island_joint.ipp>
+#include <ductile/world/kept_joint.ipp>
+#include <ductile/world/stepped_world.ipp>
+#include <ductile/world/structures.ipp>
+#include <ductile/world/supervisor.ipp>
+#include <ductile/world/waiting_joints.ipp>
 
 namespace ductile {
 

@@ -25,6 +25,8 @@
 
 #include "bullet_contacts.hpp"
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/energy_meter.hpp"
+#include "ductile/bullet/island_solver.hpp"
 #include "simulation.hpp"
 #include "specimen_joints.hpp"
 

@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/ode.hpp"
 #include "edge_contact.hpp"
 #include "simulation.hpp"

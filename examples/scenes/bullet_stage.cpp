@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/structure.hpp"
 #include "of_bullet.hpp"
 #include "stage.hpp"
 

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "ductile/ode/ode.hpp"
+#include "ductile/ode/structure.hpp"
 #include "ode_engine.hpp"
 #include "of_ode.hpp"
 #include "stage.hpp"

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ductile/bullet/bullet.hpp>
+#include <ductile/bullet/members.hpp>
 #include <ductile/material/named.hpp>
 #include <ductile/section/box.hpp>
 #include <fstream>

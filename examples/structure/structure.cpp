@@ -14,6 +14,7 @@
 
 #include <cstdio>
 #include <ductile/bullet/bullet.hpp>
+#include <ductile/bullet/structure.hpp>
 #include <ductile/material/named.hpp>
 #include <string>
 

@@ -565,7 +565,7 @@ TEST_CASE("Frames: a blow closes what touches, and nothing else", "[frame]") {
         {
             bullet::FrontHold front(engine);
             bullet::EnergyMeter meter(engine);
-            bullet::Members members(engine);
+            const auto members = std::make_unique<bullet::Divisibles>();
             bullet::WorldParts parts(
                 engine, front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
                 [](double) {});

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "adapters/bullet_world.hpp"
+#include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 
 using namespace ductile;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "adapters/bullet_world.hpp"
+#include "ductile/bullet/energy_meter.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

@@ -100,7 +100,7 @@ struct Looked {
     Site& site;
     bullet::FrontHold front{site.engine};
     bullet::EnergyMeter meter{site.engine};
-    bullet::Members members{site.engine};
+    std::unique_ptr<bullet::Divisibles> members = std::make_unique<bullet::Divisibles>();
     bullet::WorldParts parts{
         site.engine,  front, meter, members, [](const bullet::PlasticConstraint&) { return 0u; },
         [](double) {}};

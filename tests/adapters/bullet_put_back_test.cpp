@@ -11,9 +11,9 @@
 
 namespace {
 
+using ductile::bullet::Divisibles;
 using ductile::bullet::EnergyMeter;
 using ductile::bullet::FrontHold;
-using ductile::bullet::Members;
 using ductile::bullet::PlasticConstraint;
 using ductile::bullet::WorldParts;
 using pile::Options;
@@ -27,7 +27,7 @@ struct Parted {
     Pile pile;
     FrontHold front{pile.world};
     EnergyMeter meter{pile.world};
-    Members members{pile.world};
+    std::unique_ptr<Divisibles> members = std::make_unique<Divisibles>();
     WorldParts parts{
         pile.world,   front, meter, members, [](const PlasticConstraint&) { return 0u; },
         [](double) {}};

@@ -16,6 +16,8 @@
 
 #include "adapters/capability.hpp"
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/energy_meter.hpp"
+#include "ductile/bullet/front_solver.hpp"
 
 namespace ductile::test {
 

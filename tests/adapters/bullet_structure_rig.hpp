@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/structure.hpp"
+#include "ductile/bullet/structure_in_time.hpp"
 #include "ductile/joint/usual_joints.hpp"
 
 namespace ductile::test {

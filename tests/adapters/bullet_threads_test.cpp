@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/front_solver.hpp"
 
 using namespace ductile;
 

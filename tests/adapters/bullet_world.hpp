@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/front_solver.hpp"
 
 namespace ductile::test {
 

@@ -15,6 +15,8 @@
 #include "adapters/bullet_engine.hpp"
 #include "core/member/strips.hpp"
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/member_snapshot.hpp"
+#include "ductile/bullet/members.hpp"
 
 namespace ductile::test {
 

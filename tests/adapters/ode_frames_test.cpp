@@ -13,6 +13,7 @@
 
 #include "adapters/crushed_head.hpp"
 #include "adapters/ode_engine.hpp"
+#include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/ode.hpp"
 #include "support/throws.hpp"
 

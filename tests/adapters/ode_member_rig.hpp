@@ -13,6 +13,8 @@
 
 #include "adapters/ode_engine.hpp"
 #include "core/member/strips.hpp"
+#include "ductile/ode/member_snapshot.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace ductile::test::in_ode {

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
+#include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/ode.hpp"
+#include "ductile/ode/world_parts.hpp"
 
 namespace {
 
@@ -41,7 +43,7 @@ struct Pile {
     std::vector<ode::NamedContact> contacts;
     std::optional<ode::ContactMaker> maker;
     ode::EnergyMeter meter{engine.id};
-    ode::Members members; ///< none
+    std::unique_ptr<ode::Divisibles> members = std::make_unique<ode::Divisibles>();
     ode::IslandSolver islands;
     ode::WorldParts parts{{.world = engine.id,
                            .bodies = bodies,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adapters/capability.hpp"
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace ductile::test {

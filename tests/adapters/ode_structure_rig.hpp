@@ -15,6 +15,8 @@
 #include "adapters/ode_engine.hpp"
 #include "ductile/joint/usual_joints.hpp"
 #include "ductile/ode/ode.hpp"
+#include "ductile/ode/structure.hpp"
+#include "ductile/ode/structure_in_time.hpp"
 
 namespace ductile::test {
 

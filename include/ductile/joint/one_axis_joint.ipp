@@ -96,4 +96,37 @@ auto OneAxisJoint<Law, Criterion>::commit(const Reaction& reaction, Scalar dt,
     return step;
 }
 
+template <class Law, FractureCriterion Criterion>
+requires CyclicLaw<typename CyclicForm<Law>::type>
+auto OneAxisJoint<Law, Criterion>::snapped(const Taken& taken) const noexcept -> Scalar {
+    const Scalar above = cap(1), below = cap(-1);
+    const bool pushes = upper_ == above, pulls = lower_ == -below;
+    if (pushes && taken.at_upper) return above;
+    if (pulls && taken.at_lower) return -below;
+    if (rigid() || !ahead_) return 0;
+    // the force has reached it at the end of the part, or where the row turned round within
+    const Scalar u = taken.velocity;
+    const Scalar end = taken.position - state_.plastic_offset + spring_.damping * u;
+    const bool turned = start_ * u < 0;
+    const Scalar turn = turned ? elastic_ + start_ * start_ * taken.dt / (2 * (start_ - u)) : end;
+    const Scalar k = parameters_.stiffness;
+    if (pushes && -k * std::min(end, turn) >= above) return above;
+    if (pulls && k * std::max(end, turn) >= below) return -below;
+    return 0;
+}
+
+template <class Law, FractureCriterion Criterion>
+requires CyclicLaw<typename CyclicForm<Law>::type>
+void OneAxisJoint<Law, Criterion>::snap(Step<Scalar>& step, const Taken& taken,
+                                        Scalar force) noexcept {
+    const Scalar k = parameters_.stiffness;
+    const Scalar strained = rigid() ? Scalar(0) : force / k;
+    step.elastic = rigid() ? Scalar(0) : k * (strained * strained - elastic_ * elastic_) / 2;
+    step.release = std::max(taken.work - step.elastic, Scalar(0));
+    step.other_work = taken.work - step.elastic - step.release;
+    criterion_.update(state_.criterion,
+                      {Scalar(0), state_.plastic_travel, force, Scalar(0), taken.dt});
+    state_.broken = true;
+}
+
 } // namespace ductile

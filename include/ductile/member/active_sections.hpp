@@ -24,12 +24,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ductile/member/closing.hpp"
 #include "ductile/member/internal_forces.hpp"
 
 namespace ductile {
-
-/// When sections close: where one held for long enough, or all that hold.
-enum class Closing { after_step, before_blow };
 
 struct ActiveSections {
     double beyond = 1e-7; ///< of its strength, by which a section opens [-], >= 0

@@ -4,13 +4,11 @@
 // with the address of the other.
 #pragma once
 
-#include <algorithm>
 #include <functional>
-#include <utility>
 #include <vector>
 
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/structures.hpp"
-#include "ductile/world/waiting_joints.hpp"
 
 namespace ductile {
 
@@ -24,18 +22,10 @@ class KeptJoint : public StructureMember {
 
   protected:
     KeptJoint() = default;
-    ~KeptJoint() override {
-        came_into_world();
-        leave_keepers();
-    }
+    DUCTILE_INLINE ~KeptJoint() override;
     /// Until it comes into a world, Worlds that have one of the bodies may say that it is missing.
-    void wait_for_world(const void* a, const void* b) {
-        waits_ = true;
-        WaitingJoints::all().enter(this, {a, b});
-    }
-    void came_into_world() {
-        if (std::exchange(waits_, false)) WaitingJoints::all().leave(this);
-    }
+    void wait_for_world(const void* a, const void* b);
+    void came_into_world();
     /// For a destructor, while what its keepers read of the joint is there.
     void leave_keepers();
     /// The engine steps the joint now.
@@ -59,20 +49,10 @@ class JointKeeper {
 
   protected:
     JointKeeper() = default;
-    virtual ~JointKeeper() {
-        for (KeptJoint* joint : joints_) forget_me(*joint);
-    }
+    DUCTILE_INLINE virtual ~JointKeeper();
     /// `forget` is called where the joint ends before `let_go`.
-    void keep(KeptJoint& joint, std::function<void()> forget) {
-        joint.keepers_.push_back({this, std::move(forget)});
-        joints_.push_back(&joint);
-        structures_.add(joint);
-    }
-    void let_go(KeptJoint& joint) {
-        forget_me(joint);
-        std::erase(joints_, &joint);
-        structures_.remove(joint);
-    }
+    void keep(KeptJoint& joint, std::function<void()> forget);
+    void let_go(KeptJoint& joint);
     /// As Structures'.
     void set_rest_damping(double damping) noexcept { structures_.set_damping(damping); }
     /// Before a step, and after it or a part that stands.
@@ -84,24 +64,14 @@ class JointKeeper {
     /// The engine steps a joint now, whoever asked for it. May come from any thread of the engine.
     virtual void joint_stepped() {}
 
-    void forget_me(KeptJoint& joint) {
-        std::erase_if(joint.keepers_, [this](const auto& kept) { return kept.keeper == this; });
-    }
+    void forget_me(KeptJoint& joint);
 
     std::vector<KeptJoint*> joints_;
     Structures structures_;
 };
 
-inline void KeptJoint::leave_keepers() {
-    for (auto& [keeper, forget] : std::exchange(keepers_, {})) {
-        std::erase(keeper->joints_, this);
-        keeper->structures_.remove(*this);
-        forget();
-    }
-}
-
-inline void KeptJoint::tell_keepers_of_step() const {
-    for (const Kept& kept : keepers_) kept.keeper->joint_stepped();
-}
-
 } // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/world/kept_joint.ipp"
+#endif

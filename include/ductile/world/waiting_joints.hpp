@@ -7,8 +7,11 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <unordered_map>
+
+#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile {
 
@@ -17,33 +20,12 @@ class WaitingJoints {
   public:
     using Bodies = std::array<const void*, 2>; ///< addresses, never read
 
-    static WaitingJoints& all() {
-        static WaitingJoints waiting;
-        return waiting;
-    }
+    static WaitingJoints& all();
 
-    void enter(const void* joint, const Bodies& bodies) {
-        const std::lock_guard lock(mutex_);
-        bodies_[joint] = bodies;
-        count_ = bodies_.size();
-    }
-    void leave(const void* joint) {
-        if (count_ == 0) return;
-        const std::lock_guard lock(mutex_);
-        bodies_.erase(joint);
-        count_ = bodies_.size();
-    }
+    void enter(const void* joint, const Bodies& bodies);
+    void leave(const void* joint);
     /// Takes out all joints of which is_here(body) is true for a body: how many.
-    template <class IsHere>
-    std::size_t take(const IsHere& is_here) {
-        if (count_ == 0) return 0;
-        const std::lock_guard lock(mutex_);
-        const std::size_t taken = std::erase_if(bodies_, [&](const auto& entry) {
-            return is_here(entry.second[0]) || is_here(entry.second[1]);
-        });
-        count_ = bodies_.size();
-        return taken;
-    }
+    std::size_t take(const std::function<bool(const void*)>& is_here);
 
   private:
     std::mutex mutex_;
@@ -52,3 +34,7 @@ class WaitingJoints {
 };
 
 } // namespace ductile
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/world/waiting_joints.ipp"
+#endif

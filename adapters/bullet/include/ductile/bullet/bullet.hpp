@@ -1,41 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// The front door of the Bullet adapter. Link ductile::bullet (float) or ductile::bullet_float64.
+// The front door of the Bullet adapter: joints and the World that steps them. Members and
+// structures are other doors: members.hpp, structure.hpp, structure_in_time.hpp. Link
+// ductile::bullet (float) or ductile::bullet_float64.
 #pragma once
 
-#include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/draw.hpp"
-#include "ductile/bullet/driven_ways.hpp"
-#include "ductile/bullet/energy_meter.hpp"
-#include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/half_ahead.hpp"
-#include "ductile/bullet/island_rows.hpp"
-#include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/joint_constraint.hpp"
-#include "ductile/bullet/local_scope.hpp"
-#include "ductile/bullet/local_tick.hpp"
-#include "ductile/bullet/meeting_islands.hpp"
-#include "ductile/bullet/member.hpp"
-#include "ductile/bullet/member_snapshot.hpp"
-#include "ductile/bullet/member_tick.hpp"
-#include "ductile/bullet/members.hpp"
-#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/multibody_ball.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/multibody_energy.hpp"
 #include "ductile/bullet/multibody_hinge.hpp"
 #include "ductile/bullet/multibody_solver.hpp"
-#include "ductile/bullet/part_risk.hpp"
-#include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
 #include "ductile/bullet/plastic_slider.hpp"
-#include "ductile/bullet/structure.hpp"
-#include "ductile/bullet/structure_in_time.hpp"
-#include "ductile/bullet/touching_islands.hpp"
 #include "ductile/bullet/world.hpp"
-#include "ductile/bullet/world_parts.hpp"
-#include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/ductile.hpp"

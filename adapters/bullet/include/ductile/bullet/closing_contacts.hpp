@@ -39,6 +39,7 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -53,11 +54,12 @@ namespace ductile::bullet {
 /// A point this near is closed; half of it is the hair [m].
 inline constexpr double closed_gap = sizeof(btScalar) == sizeof(double) ? 1e-8 : 2e-6;
 
-class Members;
+class Divisibles;
 
 class ClosingContactsFinder {
   public:
-    explicit ClosingContactsFinder(Members& members) : members_(members) {}
+    explicit ClosingContactsFinder(const std::unique_ptr<Divisibles>& members)
+        : members_(members) {}
 
     /// From now on it looks at these alone, and at what is static beside them; null: at all again.
     void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
@@ -118,7 +120,7 @@ class ClosingContactsFinder {
     };
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
     [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);
-    Members& members_;
+    const std::unique_ptr<Divisibles>& members_;
     std::vector<const btRigidBody*> joined_;  ///< bodies of plastic joints, sorted
     std::vector<const btRigidBody*> falling_; ///< what nothing holds, and just begins to, sorted
     std::vector<int> islands_;                ///< sorted

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/falling_groups.hpp"
-#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/sharp_boxes.hpp"
 
@@ -164,7 +164,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     const Fastest fastest = find_fastest(world, btScalar(h));
     if (4 * fastest.speed * fastest.speed <= 2 * fastest.inverse_mass * least) return found;
     find_islands(world);
-    if (joined_.empty() && members_.empty()) return found;
+    if (joined_.empty() && members_->empty()) return found;
     list_pairs(world, btScalar(h), least, btScalar(fastest.speed));
     for (const Pair& pair : pairs_) {
         ClosingContacts of_pair;

@@ -39,13 +39,13 @@ DUCTILE_INLINE void ClosingContactsFinder::add_joint(const btTypedConstraint& co
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(const btRigidBody& body) const {
-    return std::binary_search(joined_.begin(), joined_.end(), &body) || members_.is_member(body) ||
+    return std::binary_search(joined_.begin(), joined_.end(), &body) || members_->is_member(body) ||
            (body.getIslandTag() >= 0 &&
             std::binary_search(islands_.begin(), islands_.end(), body.getIslandTag()));
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObject& object) const {
-    return detail::pushed(object) == nullptr && members_.is_member(object);
+    return detail::pushed(object) == nullptr && members_->is_member(object);
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,

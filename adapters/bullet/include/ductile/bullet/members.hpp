@@ -35,31 +35,25 @@
 #include <vector>
 
 #include "ductile/bullet/divisible.hpp"
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/member_tick.hpp"
 #include "ductile/bullet/touching_islands.hpp"
+#include "ductile/bullet/world.hpp"
 #include "ductile/vocabulary/linkage.hpp"
-#include "ductile/world/joint_event.hpp"
 
 namespace ductile::bullet {
 
-class Members {
+class Members final : public Divisibles {
   public:
-    /// A section opened or closed: whose reports tell of it, which, what happened.
-    using Tell = std::function<void(const void* key, int section, EventKind kind)>;
-
     explicit Members(btDiscreteDynamicsWorld& world) : world_(world) {}
-    ~Members() {
+    ~Members() override {
         for (Course& course : members_) course.of->leave();
     }
-    Members(const Members&) = delete;
-    Members& operator=(const Members&) = delete;
 
     /// What is to be said of it.
     /// @throws as World::add.
     [[nodiscard]] std::vector<std::string> add(Member& member, std::function<void()> ends);
     void remove(Member& member);
-    /// @throws std::invalid_argument where others' constraints hold bodies of theirs.
-    void require_known() const;
     /// It enters and leaves the world by itself.
     void add(Divisible& structure);
     void remove(Divisible& structure);
@@ -67,47 +61,35 @@ class Members {
     void rearranged(const Divisible& structure);
     /// Bodies whose islands are solved at once.
     [[nodiscard]] const DirectBodies& direct() const noexcept { return direct_; }
-    [[nodiscard]] bool empty() const noexcept { return members_.empty(); }
+    [[nodiscard]] bool empty() const noexcept override { return members_.empty(); }
     [[nodiscard]] bool has(const Member& member) const noexcept;
     [[nodiscard]] JointReport<double> report(const Member& member) const { return member.report(); }
-    /// How the forces of joints act in the coming ticks.
-    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
-    /// Under which a joint is reported, and of which section it is; null: no member's.
-    [[nodiscard]] const void* key_of(const PlasticConstraint& joint, int& section) const;
-    /// Of sections that are closed [J].
-    [[nodiscard]] double closed_work() const;
-    /// As PartMotion::closed_work.
-    [[nodiscard]] double unmissed_work() const;
-    [[nodiscard]] bool is_member(const btCollisionObject& object) const {
+
+    // ---- what the world's steps ask
+
+    DUCTILE_INLINE void require_known() const override;
+    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
+                                                    int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
+    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
+    [[nodiscard]] bool is_member(const btCollisionObject& object) const override {
         return owners_.contains(&object);
     }
-
-    /// Islands of what constraints hold to members, as the last tick had them, sorted; -1: of none.
-    [[nodiscard]] std::vector<int> held_islands() const;
-
-    /// Forces that were applied to members act in the coming tick, too.
-    void apply_forces();
-    /// They do not any more.
-    void drop_forces();
-
-    void before_solve();
-    [[nodiscard]] bool look(double dt);
-    /// Members among bodies that close, or that these touch, are solved at once; those that
-    /// constraints hold, too, where something was `thrown`. `noticed`: as Divisible's.
-    void begin_blow(std::span<const btRigidBody* const> closing, bool thrown, double noticed);
-    /// As Divisible's.
-    [[nodiscard]] bool switch_holds_off();
-    void see_coming();
-    [[nodiscard]] bool look_blow(double dt);
-    void open_found();
-    [[nodiscard]] bool close_held(Closing when = Closing::after_step);
-    /// What the tick that stands left in vibration of members that blows opened [J].
-    [[nodiscard]] double count_vibration();
-    /// What opened and closed since the last call.
-    void tell(const Tell& tell);
-    /// Whose reports may change without being touched, or not any more, since the last call.
-    using TellIdle = std::function<void(const void* key, bool idle)>;
-    void tell_idle(const TellIdle& tell);
+    [[nodiscard]] DUCTILE_INLINE std::vector<int> held_islands() const override;
+    DUCTILE_INLINE void apply_forces() override;
+    DUCTILE_INLINE void drop_forces() override;
+    DUCTILE_INLINE void before_solve() override;
+    [[nodiscard]] DUCTILE_INLINE bool look(double dt) override;
+    DUCTILE_INLINE void begin_blow(std::span<const btRigidBody* const> closing, bool thrown,
+                                   double noticed) override;
+    [[nodiscard]] DUCTILE_INLINE bool switch_holds_off() override;
+    DUCTILE_INLINE void see_coming() override;
+    [[nodiscard]] DUCTILE_INLINE bool look_blow(double dt) override;
+    DUCTILE_INLINE void open_found() override;
+    [[nodiscard]] DUCTILE_INLINE bool close_held(Closing when) override;
+    [[nodiscard]] DUCTILE_INLINE double count_vibration() override;
+    DUCTILE_INLINE void tell(const Tell& tell) override;
+    DUCTILE_INLINE void tell_idle(const TellIdle& tell) override;
 
   private:
     struct Course {
@@ -143,7 +125,6 @@ class Members {
     [[nodiscard]] bool is_decided(Course& course);
 
     btDiscreteDynamicsWorld& world_;
-    bool ahead_ = false; ///< bodies are half a step ahead where rows are solved
     std::vector<Course> members_;
     std::unordered_map<const btCollisionObject*, std::size_t> owners_;
     std::vector<std::size_t> watched_; ///< that may change without being touched

@@ -106,27 +106,6 @@ DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     }
 }
 
-/// What they carry would be read without these.
-DUCTILE_INLINE void Members::require_known() const {
-    for (int i = 0; !members_.empty() && i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (!constraint.isEnabled()) continue;
-        const PlasticConstraint* plastic = as_plastic(constraint);
-        for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
-            const auto owner = owners_.find(body);
-            if (owner == owners_.end()) continue;
-            const Course& course = members_[owner->second];
-            int section = 0;
-            if (plastic != nullptr && course.of->key_of(*plastic, section) != nullptr) continue;
-            if (course.member == nullptr) {
-                throw std::invalid_argument(
-                    "StructureInTime.bodies: no constraint of the user's may hold them, as they "
-                    "come and go: use Structure");
-            }
-            course.member->require_attached(constraint);
-        }
-    }
-}
 DUCTILE_INLINE bool Members::has(const Member& member) const noexcept {
     return std::any_of(members_.begin(), members_.end(),
                        [&](const Course& course) { return course.member == &member; });
@@ -411,3 +390,5 @@ DUCTILE_INLINE void Members::tell(const Tell& tell) {
 }
 
 } // namespace ductile::bullet
+
+#include "ductile/bullet/world_members.ipp" // IWYU pragma: keep

@@ -34,6 +34,7 @@
 #include <vector>
 
 #include "ductile/bullet/divisible.hpp"
+#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/world.hpp"

@@ -11,12 +11,10 @@
 
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <span>
-#include <unordered_map>
-#include <utility>
 #include <vector>
 
+#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/share_work.hpp"
 
 namespace ductile::bullet {
@@ -34,11 +32,7 @@ class TickAccount {
 class TickMember : public SharesWork {
   public:
     /// Of joints that were ticked without the rest of their world.
-    static void end_tick_of(std::span<TickMember* const> joints) {
-        for (TickMember* joint : joints) joint->end_tick();
-        share_work(joints, [joints] { return islands_of(joints); });
-        for (TickMember* joint : joints) joint->finish_tick();
-    }
+    static void end_tick_of(std::span<TickMember* const> joints);
     TickMember(const TickMember&) = delete;
     TickMember& operator=(const TickMember&) = delete;
 
@@ -46,46 +40,16 @@ class TickMember : public SharesWork {
     TickMember() = default;
     ~TickMember() { leave_account(); }
 
-    void join_account(const btDynamicsWorld& world) {
-        leave_account();
-        account_ = account_of(world);
-        account_->members_.push_back(this);
-    }
-    void leave_account() {
-        if (account_ != nullptr) std::erase(account_->members_, this);
-        account_.reset();
-    }
+    void join_account(const btDynamicsWorld& world);
+    void leave_account();
 
     /// From the joint's action.
-    void end_tick_of_world() {
-        if (std::exchange(ended_, false)) return;
-        const std::vector<TickMember*>& all = account_->members_;
-        for (TickMember* joint : all) {
-            joint->end_tick();
-            joint->ended_ = joint != this;
-        }
-        share_work(std::span<TickMember* const>(all), [&all] { return islands_of(all); });
-        for (TickMember* joint : all) joint->finish_tick();
-    }
+    void end_tick_of_world();
 
   private:
-    [[nodiscard]] static std::vector<std::size_t> islands_of(std::span<TickMember* const> joints) {
-        std::vector<std::size_t> islands;
-        for (const TickMember* joint : joints) islands.push_back(joint->island());
-        return islands;
-    }
+    [[nodiscard]] static std::vector<std::size_t> islands_of(std::span<TickMember* const> joints);
     /// Worlds may be in several threads.
-    [[nodiscard]] static std::shared_ptr<TickAccount> account_of(const btDynamicsWorld& world) {
-        static std::mutex mutex;
-        static std::unordered_map<const btDynamicsWorld*, std::weak_ptr<TickAccount>> accounts;
-        const std::lock_guard lock(mutex);
-        std::shared_ptr<TickAccount> account = accounts[&world].lock();
-        if (account != nullptr) return account;
-        std::erase_if(accounts, [](const auto& entry) { return entry.second.expired(); });
-        account = std::make_shared<TickAccount>();
-        accounts[&world] = account;
-        return account;
-    }
+    [[nodiscard]] static std::shared_ptr<TickAccount> account_of(const btDynamicsWorld& world);
     /// Books the open tick, with the bodies as they are.
     virtual void end_tick() = 0;
     /// Lets go where that broke the joint.
@@ -98,3 +62,7 @@ class TickMember : public SharesWork {
 };
 
 } // namespace ductile::bullet
+
+#ifndef DUCTILE_COMPILED
+#include "ductile/bullet/tick_account.ipp"
+#endif

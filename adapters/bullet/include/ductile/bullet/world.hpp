@@ -43,18 +43,22 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/bullet/energy_meter.hpp"
-#include "ductile/bullet/members.hpp"
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/multibody_constraint.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
-#include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/joint_report.hpp"
 #include "ductile/world/stepped_world.hpp"
 
 namespace ductile::bullet {
 
+class Divisible;
+class EnergyMeter;
 class FrontHold;
+class Member;
+class Members;
 class WorldParts;
+class WorldSnapshot;
 
 struct WorldParameters {
     bool ledger = true; ///< whether the energy account is kept; not with multibodies
@@ -89,7 +93,7 @@ class World final : public SteppedWorld {
     void add(PlasticConstraint& joint, std::string name = {});
     void add(MultiBodyPlasticConstraint& joint, std::string name = {});
     /// Looks after a member (member.hpp) until it ends or is removed. Its body is in Bullet's world
-    /// already.
+    /// already. What concerns members and structures needs members.hpp.
     /// @throws std::invalid_argument where it is in a world already, a constraint that it did not
     /// make holds its body, or this world is a btMultiBodyDynamicsWorld.
     void add(Member& member, std::string name = {});
@@ -100,7 +104,7 @@ class World final : public SteppedWorld {
     void add(Divisible& structure, const std::vector<DivisionReport>& reports);
     void remove(Divisible& structure, const std::vector<DivisionReport>& reports);
     /// Its bodies are others than they were, and not by a step.
-    void rearranged(const Divisible& structure) { members_.rearranged(structure); }
+    void rearranged(const Divisible& structure);
     /// A joint of it that is open swings until it rests, as those that were added do.
     void look_after_rest(PlasticConstraint& joint) {
         keep(joint, [] {});
@@ -113,7 +117,8 @@ class World final : public SteppedWorld {
     void forget(PlasticConstraint& joint);
     /// Of Bullet's world all plastic joints are told, not those alone that were added here.
     void tell_ahead();
-    void require_members() const;
+    /// From the first one on.
+    [[nodiscard]] Members& members();
     void step_with_members(double dt);
     template <class Change>
     void rearrange(const Change& change);
@@ -135,11 +140,11 @@ class World final : public SteppedWorld {
 
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<FrontHold> front_; ///< not in a world of multibodies
-    std::optional<EnergyMeter> meter_;
+    std::unique_ptr<EnergyMeter> meter_;
     bool tells_ledger_ = false;
-    Members members_;
+    std::unique_ptr<Divisibles> members_;
     std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
-    WorldSnapshot snapshot_;                         ///< of a step, while there are members
+    std::unique_ptr<WorldSnapshot> snapshot_;        ///< of a step, while there are members
     std::unique_ptr<WorldParts> parts_;              ///< where frames have a tolerance
     std::vector<const PlasticConstraint*> joints_;
     std::unordered_set<PlasticConstraint*> told_ahead_; ///< whose parts are this World's

@@ -6,10 +6,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/precision_check.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/bullet/world_parts.hpp"
+#include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -40,7 +42,9 @@ void look_after(Supervisor& supervisor, Joint& joint, std::string name, const Re
 } // namespace detail
 
 DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters parameters)
-    : SteppedWorld(std::move(parameters.warn)), world_(world), members_(world) {
+    : SteppedWorld(std::move(parameters.warn)),
+      world_(world),
+      members_(std::make_unique<Divisibles>()) {
     require_matching_precision();
     if (dynamic_cast<btMultiBodyDynamicsWorld*>(&world_) == nullptr) {
         front_ = std::make_unique<FrontHold>(world_);
@@ -49,7 +53,7 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     tells_ledger_ = parameters.ledger;
     const double tolerance =
         parameters.tolerance.value_or(can_put_back() ? FrameParameters{}.tolerance : 0.0);
-    if (parameters.ledger || tolerance != 0) meter_.emplace(world_);
+    if (parameters.ledger || tolerance != 0) meter_ = std::make_unique<EnergyMeter>(world_);
     if (tolerance != 0) start_frames(tolerance, parameters.budget);
 }
 
@@ -70,7 +74,7 @@ DUCTILE_INLINE void World::start_frames(double tolerance, int budget) {
         world_, *front_, *meter_, members_,
         [this](const PlasticConstraint& joint) {
             int section = 0;
-            const void* key = members_.key_of(joint, section);
+            const void* key = members_->key_of(joint, section);
             return supervisor().number(key != nullptr ? key : detail::address(joint));
         },
         [this](double h) {
@@ -87,7 +91,7 @@ DUCTILE_INLINE void World::start_frames(double tolerance, int budget) {
 DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
     tell_idle(true);
     tell_ahead();
-    members_.set_ahead(true);
+    members_->set_ahead(true);
     parts_->begin(length);
     return *parts_;
 }
@@ -96,7 +100,7 @@ DUCTILE_INLINE void World::end_frame() {
     if (parts_->is_local()) { // the joints that were not done again
         part_stands(0, [this](const void* joint) { return !parts_->has_joint(joint); });
     }
-    members_.drop_forces();
+    members_->drop_forces();
     tell_of_members();
 }
 
@@ -121,40 +125,10 @@ DUCTILE_INLINE void World::add(MultiBodyPlasticConstraint& joint, std::string na
     keep(joint, [this, &joint] { supervisor().remove(detail::address(joint)); });
 }
 
-DUCTILE_INLINE void World::require_members() const {
-    if (front_ == nullptr) {
-        throw std::invalid_argument(
-            "World.add.member: must not be added to a btMultiBodyDynamicsWorld");
-    }
-}
-DUCTILE_INLINE void World::add(Divisible& structure, const std::vector<DivisionReport>& reports) {
-    require_members();
-    front_->set_direct(&members_.direct());
-    members_.add(structure);
-    for (const DivisionReport& one : reports) supervisor().add(one.key, one.name, one.ask);
-}
-DUCTILE_INLINE void World::remove(Divisible& structure,
-                                  const std::vector<DivisionReport>& reports) {
-    members_.remove(structure);
-    for (const DivisionReport& one : reports) supervisor().remove(one.key);
-}
-DUCTILE_INLINE void World::add(Member& member, std::string name) {
-    require_members();
-    front_->set_direct(&members_.direct());
-    for (const auto& line : members_.add(member, [this, &member] { remove(member); })) {
-        supervisor().say(line);
-    }
-    supervisor().add(&member, std::move(name), [this, &member] { return members_.report(member); });
-}
-DUCTILE_INLINE void World::remove(Member& member) {
-    if (!members_.has(member)) return;
-    supervisor().remove(&member);
-    members_.remove(member);
-}
 /// One that is idle from now on still says what became of it in this step: `after` that.
 DUCTILE_INLINE void World::tell_idle(bool after) {
     if (!after) {
-        members_.tell_idle([this](const void* key, bool idle) {
+        members_->tell_idle([this](const void* key, bool idle) {
             if (!idle) supervisor().set_idle(key, false);
             idle_.emplace_back(key, idle);
         });
@@ -166,7 +140,7 @@ DUCTILE_INLINE void World::tell_idle(bool after) {
 }
 DUCTILE_INLINE void World::tell_of_members() {
     tell_idle(false);
-    members_.tell([this](const void* key, int section, EventKind kind) {
+    members_->tell([this](const void* key, int section, EventKind kind) {
         supervisor().tell_section(key, kind, section);
     });
 }
@@ -226,10 +200,10 @@ DUCTILE_INLINE void World::require_possible(double dt) {
         check::fail("World.step.dt", dt, "s", "longer than Bullet's shortest step");
     }
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
-    members_.require_known();
+    members_->require_known();
 }
 DUCTILE_INLINE void World::do_step(double dt) {
-    if (!members_.empty()) {
+    if (!members_->empty()) {
         step_with_members(dt);
         return;
     }
@@ -248,29 +222,30 @@ void World::rearrange(const Change& change) {
 
 /// The step, again with more sections open until none that is closed is beyond its strength.
 DUCTILE_INLINE void World::step_with_members(double dt) {
-    members_.set_ahead(false);
+    members_->set_ahead(false);
     tell_idle(true);
+    if (snapshot_ == nullptr) snapshot_ = std::make_unique<WorldSnapshot>();
     for (;;) {
-        snapshot_.take(world_, front_->usual());
+        snapshot_->take(world_, front_->usual());
         if (meter_) meter_->keep();
         if (meter_) meter_->before_step();
-        members_.apply_forces();
-        members_.before_solve();
+        members_->apply_forces();
+        members_->before_solve();
         world_.stepSimulation(btScalar(dt), 0);
-        if (!members_.look(double(btScalar(dt)))) break;
-        snapshot_.put_back(world_, front_->usual());
+        if (!members_->look(double(btScalar(dt)))) break;
+        snapshot_->put_back(world_, front_->usual());
         if (meter_) meter_->put_back();
         rearrange([this] {
-            members_.open_found();
+            members_->open_found();
             return true;
         });
     }
     if (meter_) meter_->after_step(double(btScalar(dt)));
-    const double vibration = members_.count_vibration();
+    const double vibration = members_->count_vibration();
     if (meter_) meter_->rings_down(vibration);
-    rearrange([this] { return members_.close_held(); });
+    rearrange([this] { return members_->close_held(Closing::after_step); });
     tell_of_members();
-    members_.drop_forces();
+    members_->drop_forces();
 }
 
 DUCTILE_INLINE bool World::has_body(const void* body) const {

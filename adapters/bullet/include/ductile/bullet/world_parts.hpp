@@ -33,6 +33,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -54,7 +55,7 @@
 namespace ductile::bullet {
 
 class FrontHold;
-class Members;
+class Divisibles;
 
 class WorldParts final : public PartEngine {
   public:
@@ -64,7 +65,8 @@ class WorldParts final : public PartEngine {
     using Accept = std::function<void(double)>;
 
     WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front, EnergyMeter& meter,
-               Members& members, Number number, Accept accept, bool keeps_ledger = true);
+               const std::unique_ptr<Divisibles>& members, Number number, Accept accept,
+               bool keeps_ledger = true);
     DUCTILE_INLINE ~WorldParts();
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
@@ -130,7 +132,7 @@ class WorldParts final : public PartEngine {
     btDiscreteDynamicsWorld& world_;
     FrontHold& front_;
     EnergyMeter& meter_;
-    Members& members_;
+    const std::unique_ptr<Divisibles>& members_;
     Number number_;
     Accept accept_;
     HalfAhead half_ahead_;

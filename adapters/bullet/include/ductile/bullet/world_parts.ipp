@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/world_parts.hpp"
 #include "ductile/frame/part_settings.hpp"
@@ -89,7 +89,8 @@ class WorldParts::Settings {
 };
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
-                                      EnergyMeter& meter, Members& members, Number number,
+                                      EnergyMeter& meter,
+                                      const std::unique_ptr<Divisibles>& members, Number number,
                                       Accept accept, bool keeps_ledger)
     : world_(world),
       front_(front),
@@ -151,7 +152,7 @@ DUCTILE_INLINE void WorldParts::widen() {
 DUCTILE_INLINE void WorldParts::find_risk() {
     suspects_.clear();
     int actions = 1; // half_ahead_'s, and one of each joint
-    bool all = !same_forces_ || !members_.empty() || !ways_.empty();
+    bool all = !same_forces_ || !members_->empty() || !ways_.empty();
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         btTypedConstraint& constraint = *world_.getConstraint(i);
         const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
@@ -200,7 +201,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     if (!std::exchange(forces_act_, false)) {
         forces_.apply([this](const btRigidBody& body) { return !local_ || scope_.has(body); });
     }
-    members_.apply_forces();
+    members_->apply_forces();
     const bool metered = keeps_ledger_ || at_risk_;
     if (metered) meter_.before_step();
     if (ahead) {
@@ -214,7 +215,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         time_ += h;
         if (metered) meter_.bodies_ahead();
     }
-    members_.before_solve();
+    members_->before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
@@ -238,12 +239,12 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const bool instant = h < shortest_part();
     if (instant) begin_blow();
     const auto look = [&] {
-        if (members_.empty()) return false;
+        if (members_->empty()) return false;
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
         motion_.closed = closing_.closed_early(world_, h, apart_);
         if (is_put_back(motion_.closed, h)) return false;
         const auto length = double(btScalar(h));
-        return instant ? members_.look_blow(length) : members_.look(length);
+        return instant ? members_->look_blow(length) : members_->look(length);
     };
     for (tick(h, true); look(); tick(h, true)) {
         do_again();
@@ -260,7 +261,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
             return body != nullptr && concerns(*static_cast<const btRigidBody*>(body));
         });
     }
-    if (members_.empty()) motion_.closed = closing_.closed_early(world_, h, apart_);
+    if (members_->empty()) motion_.closed = closing_.closed_early(world_, h, apart_);
     look_at_pushes(h);
     return motion_;
 }
@@ -290,9 +291,9 @@ DUCTILE_INLINE void WorldParts::look_at_pushes(double h) {
 DUCTILE_INLINE void WorldParts::accept(double h) {
     half_ = h / 2;
     held_.accept();
-    if (h > 0) meter_.rings_down(members_.count_vibration());
+    if (h > 0) meter_.rings_down(members_->count_vibration());
     accept_(h);
-    if (h > 0 && !members_.empty()) close_held(Closing::after_step);
+    if (h > 0 && !members_->empty()) close_held(Closing::after_step);
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
@@ -310,8 +311,8 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         return motion_;
     }
     motion_.rows.clear();
-    motion_.plastic_work = members_.closed_work();
-    motion_.closed_work = members_.unmissed_work();
+    motion_.plastic_work = members_->closed_work();
+    motion_.closed_work = members_->unmissed_work();
     first_row_.resize(std::size_t(world_.getNumConstraints()));
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         const std::size_t first = first_row_[std::size_t(i)] = motion_.rows.size();
@@ -319,7 +320,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         if (plastic == nullptr) continue;
         plastic->list_part_rows(number(i, *plastic), motion_.rows);
         int section = 0;
-        if (!members_.empty() && members_.key_of(*plastic, section) != nullptr) {
+        if (!members_->empty() && members_->key_of(*plastic, section) != nullptr) {
             for (std::size_t k = first; k < motion_.rows.size(); ++k) {
                 motion_.rows[k].section = section + 1;
             }

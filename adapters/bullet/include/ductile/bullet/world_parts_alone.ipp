@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
@@ -23,7 +23,7 @@ DUCTILE_INLINE void WorldParts::decide() {
     for (const btRigidBody* body : closing_.found_bodies()) suspects_.push_back(body);
     for (const btRigidBody* body : thrown_.bodies()) suspects_.push_back(body);
     at_risk_ = true;
-    if (!members_.empty() || !ways_.empty() || calls_others_ || islands_ == nullptr) return;
+    if (!members_->empty() || !ways_.empty() || calls_others_ || islands_ == nullptr) return;
     if (!is_little() || !LocalTick::is_possible(world_, front_.usual())) return;
     try_all();
 }
@@ -228,7 +228,7 @@ DUCTILE_INLINE void WorldParts::join(const std::vector<btRigidBody*>& met) {
 }
 
 DUCTILE_INLINE std::size_t WorldParts::number(int place, const PlasticConstraint& joint) {
-    if (!members_.empty()) return number_(joint); // their joints come and go
+    if (!members_->empty()) return number_(joint); // their joints come and go
     if (numbers_.size() <= std::size_t(place)) numbers_.resize(std::size_t(place) + 1);
     auto& [known, number] = numbers_[std::size_t(place)];
     if (known != &joint) {

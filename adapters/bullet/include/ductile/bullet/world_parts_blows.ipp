@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "ductile/bullet/members.hpp"
+#include "ductile/bullet/divisibles.hpp"
 #include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
@@ -16,17 +16,17 @@ namespace ductile::bullet {
 DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
     const double before = meter_.held().total();
-    members_.open_found();
+    members_->open_found();
     meter_.bodies_rearranged(before);
     save();
 }
 
 /// Members are as whole as they are without it.
 DUCTILE_INLINE void WorldParts::begin_blow() {
-    if (members_.empty()) return;
+    if (members_->empty()) return;
     close_held(Closing::before_blow);
     save();
-    members_.begin_blow(closing_.found_bodies(), !thrown_.bodies().empty(), touching_);
+    members_->begin_blow(closing_.found_bodies(), !thrown_.bodies().empty(), touching_);
     see_coming();
 }
 
@@ -34,9 +34,9 @@ DUCTILE_INLINE void WorldParts::find_thrown() {
     std::vector<int> held;
     std::optional<bool> any; // both found where there is somebody to ask for
     thrown_.find(world_, [&](const btRigidBody& body) {
-        if (members_.is_member(body)) return true;
+        if (members_->is_member(body)) return true;
         if (!any) {
-            held = members_.held_islands();
+            held = members_->held_islands();
             any = closing_.any_plastic(world_) || !held.empty();
         }
         if (!*any || body.isStaticOrKinematicObject()) return false;
@@ -48,28 +48,28 @@ DUCTILE_INLINE void WorldParts::find_thrown() {
 
 /// As bodies go that hang on members, were these not there.
 DUCTILE_INLINE void WorldParts::see_coming() {
-    const bool cut = members_.switch_holds_off();
+    const bool cut = members_->switch_holds_off();
     try {
         if (cut) tick(blow_length, false);
     } catch (...) { // a callback's
         put_back();
         throw;
     }
-    members_.see_coming();
+    members_->see_coming();
     if (cut) put_back(); // constraints are on again
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
     const double before = meter_.held().total();
-    if (!members_.close_held(when)) return;
+    if (!members_->close_held(when)) return;
     meter_.bodies_rearranged(before);
     closing_.forget_open();
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
-    if (members_.empty() && local_) save();
+    if (members_->empty() && local_) save();
     begin_blow();
-    for (tick(blow_length, false); members_.look_blow(blow_length); tick(blow_length, false)) {
+    for (tick(blow_length, false); members_->look_blow(blow_length); tick(blow_length, false)) {
         do_again();
     }
     while (local_ && join_touched()) tick(blow_length, false);

@@ -47,7 +47,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     member.put_joints_back(saved_);
     for (const Hold& hold : holds_) hold_again(hold, member);
     member.pressed_ = pressed_;
-    member.world_->members_.rearranged();
+    member.world_->members_->rearranged();
 }
 
 /// Its pieces are where they were, what it holds on to may be elsewhere.

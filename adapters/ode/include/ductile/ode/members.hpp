@@ -18,68 +18,54 @@
 #include <ode/ode.h>
 
 #include <deque>
-#include <functional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "ductile/ode/divisible.hpp"
+#include "ductile/ode/divisibles.hpp"
+#include "ductile/ode/member.hpp"
+#include "ductile/ode/world.hpp"
 #include "ductile/vocabulary/linkage.hpp"
-#include "ductile/world/joint_event.hpp"
 
 namespace ductile::ode {
 
-class Members {
+class Members final : public Divisibles {
   public:
-    /// A section opened or closed: whose reports tell of it, which, what happened.
-    using Tell = std::function<void(const void* key, int section, EventKind kind)>;
-
     void add(Divisible& member);
     void remove(Divisible& member);
-    [[nodiscard]] bool empty() const noexcept { return members_.empty(); }
     [[nodiscard]] bool has(const Divisible& member) const noexcept;
-    /// Bodies of one are others than they were, and not by a step.
-    void rearranged() { note_bodies(); }
-    /// All of them leave.
-    void leave();
-    /// All bodies that they are now.
-    [[nodiscard]] std::span<const dBodyID> bodies() const noexcept { return bodies_; }
-    void body_left(dBodyID body);
-    void body_came(dBodyID body);
-    /// Under which a joint is reported, and of which section it is; null: no member's.
-    [[nodiscard]] const void* key_of(const PlasticConstraint& joint, int& section) const;
-    /// Contacts between two bodies are not to be, as they are one member's.
-    [[nodiscard]] bool hang_together(dBodyID a, dBodyID b) const;
-    /// Whether a joint of the user's holds one of them to a member that the other is of.
-    [[nodiscard]] bool hold(dBodyID a, dBodyID b) const;
-    /// Of sections that are closed [J]; as PartMotion::closed_work.
-    [[nodiscard]] double closed_work() const;
-    [[nodiscard]] double unmissed_work() const;
-    /// @throws what a member does.
-    void require_possible() const;
 
-    void apply_forces() const;
-    void drop_forces() const;
-    /// @throws std::logic_error where a contact of a member is none of these.
-    void before_solve(std::span<const NamedContact> contacts);
-    /// Bodies that can move of contacts with members, after before_solve().
-    [[nodiscard]] std::vector<dBodyID> touched() const;
-    void after_solve() const;
-    [[nodiscard]] bool any_open() const;
-    [[nodiscard]] bool look(double dt) { return look(dt, false); }
-    /// As Divisible's.
-    void begin_blow(double noticed) const;
-    [[nodiscard]] bool switch_holds(bool on) const;
-    void see_coming() const;
-    [[nodiscard]] bool look_blow(double dt) { return look(dt, true); }
-    /// `ahead`: how the forces of joints act from now on. Contacts go to the bodies that have the
-    /// segments that they act on.
-    void open_found(bool ahead);
-    void close_held(Closing when, bool ahead);
-    /// What the step that stands left in vibration of members that blows opened [J].
-    [[nodiscard]] double count_vibration() const;
-    /// What opened and closed since the last call.
-    void tell(const Tell& tell);
+    // ---- what the World's steps ask
+
+    [[nodiscard]] bool empty() const noexcept override { return members_.empty(); }
+    void rearranged() override { note_bodies(); }
+    DUCTILE_INLINE void leave() override;
+    [[nodiscard]] std::span<const dBodyID> bodies() const noexcept override { return bodies_; }
+    DUCTILE_INLINE void body_left(dBodyID body) override;
+    DUCTILE_INLINE void body_came(dBodyID body) override;
+    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
+                                                    int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE bool hang_together(dBodyID a, dBodyID b) const override;
+    [[nodiscard]] DUCTILE_INLINE bool hold(dBodyID a, dBodyID b) const override;
+    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
+    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
+    DUCTILE_INLINE void require_possible() const override;
+    DUCTILE_INLINE void apply_forces() const override;
+    DUCTILE_INLINE void drop_forces() const override;
+    DUCTILE_INLINE void before_solve(std::span<const NamedContact> contacts) override;
+    [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> touched() const override;
+    DUCTILE_INLINE void after_solve() const override;
+    [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
+    [[nodiscard]] bool look(double dt) override { return look(dt, false); }
+    DUCTILE_INLINE void begin_blow(double noticed) const override;
+    [[nodiscard]] DUCTILE_INLINE bool switch_holds(bool on) const override;
+    DUCTILE_INLINE void see_coming() const override;
+    [[nodiscard]] bool look_blow(double dt) override { return look(dt, true); }
+    DUCTILE_INLINE void open_found(bool ahead) override;
+    DUCTILE_INLINE void close_held(Closing when, bool ahead) override;
+    [[nodiscard]] DUCTILE_INLINE double count_vibration() const override;
+    DUCTILE_INLINE void tell(const Tell& tell) override;
 
   private:
     struct Course {

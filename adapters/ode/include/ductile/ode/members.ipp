@@ -242,3 +242,5 @@ DUCTILE_INLINE void Members::tell(const Tell& tell) {
 }
 
 } // namespace ductile::ode
+
+#include "ductile/ode/world_members.ipp" // IWYU pragma: keep

@@ -37,6 +37,7 @@
 #include <vector>
 
 #include "ductile/ode/divisible.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/piece.hpp"
 #include "ductile/ode/plastic_joint.hpp"
 #include "ductile/ode/world.hpp"
@@ -88,7 +89,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     }
     DUCTILE_INLINE void become(const StructureCourse::Change& change, bool ahead) override;
     void rearranged() override {
-        if (!left_) world_.members_.rearranged();
+        if (!left_) world_.members_->rearranged();
     }
     DUCTILE_INLINE void wake() override;
     DUCTILE_INLINE void set_gravity(double factor) override;

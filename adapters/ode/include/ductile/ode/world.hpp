@@ -52,18 +52,22 @@
 #include <vector>
 
 #include "ductile/ode/contact_maker.hpp"
-#include "ductile/ode/energy_meter.hpp"
+#include "ductile/ode/divisibles.hpp"
 #include "ductile/ode/held_forces.hpp"
-#include "ductile/ode/island_solver.hpp"
-#include "ductile/ode/members.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
-#include "ductile/ode/world_parts.hpp"
-#include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/world/joint_report.hpp"
 #include "ductile/world/stepped_world.hpp"
 
 namespace ductile::ode {
+
+class Divisible;
+class EnergyMeter;
+class IslandSolver;
+class Members;
+class WorldParts;
+class WorldSnapshot;
 
 /// ODE's two solvers: a direct one, exact, and an iterative one.
 enum class Solver { direct, quick };
@@ -103,7 +107,8 @@ class World final : public SteppedWorld {
     void add(SteppedConstraint& constraint);
     void remove(SteppedConstraint& constraint);
 
-    /// Looks after a member until it ends or is removed; its body is added where it was not.
+    /// Looks after a member until it ends or is removed; its body is added where it was not. Needs
+    /// members.hpp.
     /// @throws std::invalid_argument where it is in a world already, its body is of another one, a
     /// joint that cannot go along holds that, or this World's solver is Solver::quick.
     void add(Divisible& member, std::string name = {});
@@ -138,9 +143,7 @@ class World final : public SteppedWorld {
     [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
     DUCTILE_INLINE void end_frame() override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
-    [[nodiscard]] const Ledger<double>* kept_ledger() const noexcept override {
-        return tells_ledger_ ? &meter_->ledger() : nullptr;
-    }
+    [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;
 
     friend class Member;
     friend class MemberSnapshot;
@@ -152,6 +155,8 @@ class World final : public SteppedWorld {
     /// Does what changes bodies of members, and tells the ledger.
     template <class Change>
     void rearrange(const Change& change);
+    /// From the first one on.
+    [[nodiscard]] Members& members();
     void tell_of_members();
     /// Of each plastic joint, by the first of those that hang together.
     [[nodiscard]] std::vector<std::size_t> islands() const;
@@ -171,15 +176,15 @@ class World final : public SteppedWorld {
 
     dWorldID world_;
     Solver solver_;
-    std::optional<EnergyMeter> meter_;
+    std::unique_ptr<EnergyMeter> meter_;
     bool tells_ledger_ = false;
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
     std::vector<NamedContact> contacts_; ///< of the coming step
-    IslandSolver islands_;
-    Members members_;
-    WorldSnapshot snapshot_; ///< of a step, while there are members
+    std::unique_ptr<IslandSolver> islands_;
+    std::unique_ptr<Divisibles> members_;
+    std::unique_ptr<WorldSnapshot> snapshot_; ///< of a step, while there are members
     HeldForces forces_;
     std::optional<ContactMaker> maker_;
     std::unique_ptr<WorldParts> parts_; ///< where frames have a tolerance

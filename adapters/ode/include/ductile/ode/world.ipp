@@ -12,8 +12,12 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "ductile/ode/energy_meter.hpp"
+#include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/ode/world_parts.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -41,12 +45,17 @@ namespace detail {
 } // namespace detail
 
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
-    : SteppedWorld(std::move(parameters.warn)), world_(world), solver_(parameters.solver) {
+    : SteppedWorld(std::move(parameters.warn)),
+      world_(world),
+      solver_(parameters.solver),
+      islands_(std::make_unique<IslandSolver>()),
+      members_(std::make_unique<Divisibles>()) {
     require_matching_precision();
     if (world == nullptr) throw std::invalid_argument("World.world = null: must be a world");
     set_rest_damping(check::non_negative("World.rest_damping", parameters.rest_damping, ""));
     tells_ledger_ = parameters.ledger;
-    if (parameters.ledger || parameters.tolerance != 0) meter_.emplace(world_);
+    if (parameters.ledger || parameters.tolerance != 0)
+        meter_ = std::make_unique<EnergyMeter>(world_);
     if (parameters.tolerance != 0) start_frames(parameters);
 }
 DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
@@ -66,7 +75,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         .number =
             [this](const PlasticConstraint& joint) {
                 int section = 0;
-                const void* key = members_.key_of(joint, section);
+                const void* key = members_->key_of(joint, section);
                 return supervisor().number(key != nullptr ? key : &joint);
             },
         .accept =
@@ -82,7 +91,7 @@ DUCTILE_INLINE World::World(dWorldID world, Solver solver)
 
 DUCTILE_INLINE World::~World() {
     parts_.reset();
-    members_.leave();
+    members_->leave();
 }
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
@@ -96,7 +105,7 @@ DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
 DUCTILE_INLINE void World::take_in(PlasticConstraint& joint) {
     constraints_.push_back(&joint);
     plastic_.push_back(&joint);
-    islands_.add(joint);
+    islands_->add(joint);
     joint.set_ahead(parts_ != nullptr);
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
@@ -110,31 +119,9 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(&joint);
     std::erase(constraints_, &joint);
     std::erase(plastic_, &joint);
-    islands_.remove(joint);
+    islands_->remove(joint);
     if (meter_) meter_->remove(joint);
 }
-DUCTILE_INLINE void World::add(Divisible& member, std::string name) {
-    if (solver_ == Solver::quick) {
-        throw std::invalid_argument(
-            "World.add.member: must not be added to a World of Solver::quick, as what its sweeps "
-            "leave unsolved would yield");
-    }
-    member.enter(*this);
-    for (dBodyID body : member.bodies()) {
-        if (std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end()) add(body);
-    }
-    members_.add(member);
-    for (const DivisionReport& one : member.reports(name)) {
-        supervisor().add(one.key, one.name, one.ask);
-    }
-}
-DUCTILE_INLINE void World::remove(Divisible& member) {
-    if (!members_.has(member)) return;
-    for (const DivisionReport& one : member.reports({})) supervisor().remove(one.key);
-    rearrange([&] { member.leave(); });
-    members_.remove(member);
-}
-
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
     if (parts_ != nullptr) {
         throw std::invalid_argument(
@@ -156,12 +143,12 @@ DUCTILE_INLINE void World::add(dBodyID body) {
     }
     bodies_.push_back(body);
     if (meter_) meter_->add(body);
-    members_.body_came(body);
+    members_->body_came(body);
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
     if (meter_) meter_->remove(body);
-    members_.body_left(body);
+    members_->body_left(body);
     forces_.forget(body);
     if (parts_ != nullptr) parts_->forget(body);
 }
@@ -187,8 +174,8 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
             "was given, as each part of a step needs its own");
     }
     const dBodyID a = dJointGetBody(joint, 0), b = dJointGetBody(joint, 1);
-    if (members_.hang_together(a, b) ||
-        (!between_joined && (are_joined(a, b) || members_.hold(a, b)))) {
+    if (members_->hang_together(a, b) ||
+        (!between_joined && (are_joined(a, b) || members_->hold(a, b)))) {
         dJointDisable(joint);
         return;
     }
@@ -203,7 +190,7 @@ DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
 
 DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
-    members_.require_possible();
+    members_->require_possible();
     if (parts_ != nullptr) require_all_bodies();
     require_finite();
 }
@@ -229,7 +216,7 @@ DUCTILE_INLINE void World::require_finite() {
 }
 DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) maker_->make(bodies_);
-    if (!members_.empty()) {
+    if (!members_->empty()) {
         step_with_members(dt);
         return;
     }
@@ -257,10 +244,11 @@ void World::rearrange(const Change& change) {
 /// The step, again with more sections open until none that is closed is beyond its strength.
 DUCTILE_INLINE void World::step_with_members(double dt) {
     forces_.hold(bodies_);
+    if (snapshot_ == nullptr) snapshot_ = std::make_unique<WorldSnapshot>();
     for (;;) {
-        snapshot_.take(bodies_, plastic_);
-        members_.before_solve(contacts_);
-        members_.apply_forces();
+        snapshot_->take(bodies_, plastic_);
+        members_->before_solve(contacts_);
+        members_->apply_forces();
         if (meter_) {
             meter_->keep();
             for (const NamedContact& named : contacts_) {
@@ -270,26 +258,26 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
         }
         solve(dt);
         book(dt);
-        if (!members_.look(dt)) break;
-        snapshot_.put_back();
+        if (!members_->look(dt)) break;
+        snapshot_->put_back();
         if (meter_) meter_->put_back();
-        rearrange([this] { members_.open_found(false); });
+        rearrange([this] { members_->open_found(false); });
         forces_.apply();
     }
     let_go_of_broken();
     if (meter_) meter_->after_step(dt);
-    if (members_.any_open()) {
-        const double vibration = members_.count_vibration();
+    if (members_->any_open()) {
+        const double vibration = members_->count_vibration();
         if (meter_) meter_->rings_down(vibration);
-        rearrange([this] { members_.close_held(Closing::after_step, false); });
+        rearrange([this] { members_->close_held(Closing::after_step, false); });
     }
     tell_of_members();
-    members_.drop_forces();
+    members_->drop_forces();
     contacts_.clear();
     if (maker_) maker_->clear();
 }
 DUCTILE_INLINE void World::tell_of_members() {
-    members_.tell([this](const void* key, int section, EventKind kind) {
+    members_->tell([this](const void* key, int section, EventKind kind) {
         supervisor().tell_section(key, kind, section);
     });
 }
@@ -298,15 +286,15 @@ DUCTILE_INLINE void World::solve(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
     // contacts of a member are often more than hold it, of which ODE's LCP loses some
     const bool frames = parts_ != nullptr;
-    islands_.before_step(contacts_, dt, !frames,
-                         frames ? members_.touched() : std::vector<dBodyID>{});
+    islands_->before_step(contacts_, dt, !frames,
+                          frames ? members_->touched() : std::vector<dBodyID>{});
     if (solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {
         dWorldQuickStep(world_, dReal(dt));
     }
-    islands_.after_step();
-    members_.after_solve();
+    islands_->after_step();
+    members_->after_solve();
 }
 DUCTILE_INLINE void World::book(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);
@@ -326,8 +314,12 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
 }
 DUCTILE_INLINE void World::end_frame() {
     parts_->end();
-    members_.drop_forces();
+    members_->drop_forces();
     tell_of_members();
+}
+
+DUCTILE_INLINE const Ledger<double>* World::kept_ledger() const noexcept {
+    return tells_ledger_ ? &meter_->ledger() : nullptr;
 }
 
 DUCTILE_INLINE bool World::has_body(const void* body) const {

@@ -22,6 +22,7 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -30,10 +31,10 @@
 #include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/divisibles.hpp"
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
-#include "ductile/ode/members.hpp"
 #include "ductile/ode/resting_islands.hpp"
 #include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
@@ -53,7 +54,7 @@ class WorldParts final : public PartEngine {
         std::vector<NamedContact>& contacts; ///< of the coming step
         std::optional<ContactMaker>& maker;
         EnergyMeter& meter;
-        Members& members;
+        const std::unique_ptr<Divisibles>& members;
         std::function<void(double)> solve; ///< ODE's step [s]
         std::function<void(double)> book;  ///< it is what the joints did [s]
         std::function<std::size_t(const PlasticConstraint&)> number;

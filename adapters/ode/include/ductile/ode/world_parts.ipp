@@ -229,7 +229,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     }
     go_as_at(time_ + half / 2); // the mean of the first half
     forces_.apply();
-    of_.members.apply_forces();
+    of_.members->apply_forces();
     of_.meter.before_step();
     half_ahead_.move(of_.bodies, half);
     drive_as_at(end);
@@ -241,7 +241,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
     if (blow) open_others();
-    of_.members.before_solve(of_.contacts);
+    of_.members->before_solve(of_.contacts);
     for (const NamedContact& named : of_.contacts) {
         of_.meter.add_contact(named.joint, named.contact.geom);
     }
@@ -275,7 +275,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const auto beyond = [&] {
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
         if (is_put_back(closed_ < h ? closed_ : 0, h)) return false;
-        return instant ? of_.members.look_blow(h) : of_.members.look(h);
+        return instant ? of_.members->look_blow(h) : of_.members->look(h);
     };
     for (tick(h, false); beyond(); tick(h, false)) do_again();
     tell();
@@ -303,34 +303,34 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
 
 /// Members are as whole as they are without it.
 DUCTILE_INLINE void WorldParts::begin_blow() {
-    if (of_.members.empty()) return;
-    if (of_.members.any_open()) close_held(Closing::before_blow);
+    if (of_.members->empty()) return;
+    if (of_.members->any_open()) close_held(Closing::before_blow);
     save();
-    of_.members.begin_blow(touching_);
+    of_.members->begin_blow(touching_);
     see_coming();
 }
 
 /// As bodies go that hang on members, were these not there.
 DUCTILE_INLINE void WorldParts::see_coming() {
     const struct Cut {
-        const Members& of;
+        const Divisibles& of;
         bool any;
-        explicit Cut(const Members& members) : of(members), any(of.switch_holds(false)) {}
+        explicit Cut(const Divisibles& members) : of(members), any(of.switch_holds(false)) {}
         ~Cut() { (void)of.switch_holds(true); }
-    } cut(of_.members);
+    } cut(*of_.members);
     if (cut.any) tick(blow_length, true);
-    of_.members.see_coming();
+    of_.members->see_coming();
     if (cut.any) put_back();
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
-    rearrange([this, when] { of_.members.close_held(when, true); });
+    rearrange([this, when] { of_.members->close_held(when, true); });
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     thrown_.strike();
     begin_blow();
-    for (tick(blow_length, true); of_.members.look_blow(blow_length); tick(blow_length, true)) {
+    for (tick(blow_length, true); of_.members->look_blow(blow_length); tick(blow_length, true)) {
         do_again();
     }
     motion_.closed = 0;
@@ -340,7 +340,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
 
 DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
-    rearrange([this] { of_.members.open_found(true); });
+    rearrange([this] { of_.members->open_found(true); });
     save();
 }
 
@@ -357,8 +357,8 @@ void WorldParts::rearrange(const Change& change) {
 
 DUCTILE_INLINE void WorldParts::accept(double h) try {
     seen_.clear();
-    const bool open = h > 0 && of_.members.any_open();
-    if (open) of_.meter.rings_down(of_.members.count_vibration());
+    const bool open = h > 0 && of_.members->any_open();
+    if (open) of_.meter.rings_down(of_.members->count_vibration());
     of_.accept(h);
     if (open) close_held(Closing::after_step);
 } catch (...) { // a listener's
@@ -368,13 +368,13 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
-    motion_.plastic_work = of_.members.closed_work();
-    motion_.closed_work = of_.members.unmissed_work();
+    motion_.plastic_work = of_.members->closed_work();
+    motion_.closed_work = of_.members->unmissed_work();
     for (const PlasticConstraint* joint : of_.joints) {
         const std::size_t first = motion_.rows.size();
         joint->list_part_rows(of_.number(*joint), motion_.rows);
         int section = 0;
-        if (of_.members.key_of(*joint, section) != nullptr) {
+        if (of_.members->key_of(*joint, section) != nullptr) {
             for (std::size_t k = first; k < motion_.rows.size(); ++k) {
                 motion_.rows[k].section = section + 1;
             }

@@ -48,7 +48,7 @@ template <class Entry>
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
     if (of_.maker) of_.maker->make(of_.bodies);
-    closing_.look(of_.contacts, of_.joints, of_.members.bodies());
+    closing_.look(of_.contacts, of_.joints, of_.members->bodies());
 } catch (...) {
     if (moved != nullptr) moved->put_poses_back();
     if (moved == &snapshot_) of_.meter.put_back();

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of world.hpp that concern members and structures, and which of its constraints members
+// bear. A part of members.ipp.
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/world.hpp"
+
+namespace ductile::bullet {
+
+DUCTILE_INLINE Members& World::members() {
+    if (front_ == nullptr) {
+        throw std::invalid_argument(
+            "World.add.member: must not be added to a btMultiBodyDynamicsWorld");
+    }
+    if (auto* const members = dynamic_cast<Members*>(members_.get())) return *members;
+    auto made = std::make_unique<Members>(world_);
+    made->set_ahead(members_->is_ahead());
+    front_->set_direct(&made->direct());
+    Members& members = *made;
+    members_ = std::move(made);
+    return members;
+}
+DUCTILE_INLINE void World::add(Divisible& structure, const std::vector<DivisionReport>& reports) {
+    members().add(structure);
+    for (const DivisionReport& one : reports) supervisor().add(one.key, one.name, one.ask);
+}
+DUCTILE_INLINE void World::remove(Divisible& structure,
+                                  const std::vector<DivisionReport>& reports) {
+    members().remove(structure);
+    for (const DivisionReport& one : reports) supervisor().remove(one.key);
+}
+DUCTILE_INLINE void World::rearranged(const Divisible& structure) {
+    members().rearranged(structure);
+}
+DUCTILE_INLINE void World::add(Member& member, std::string name) {
+    Members& all = members();
+    for (const auto& line : all.add(member, [this, &member] { remove(member); })) {
+        supervisor().say(line);
+    }
+    supervisor().add(&member, std::move(name), [&all, &member] { return all.report(member); });
+}
+DUCTILE_INLINE void World::remove(Member& member) {
+    auto* const members = dynamic_cast<Members*>(members_.get());
+    if (members == nullptr || !members->has(member)) return;
+    supervisor().remove(&member);
+    members->remove(member);
+}
+
+/// What they carry would be read without these.
+DUCTILE_INLINE void Members::require_known() const {
+    for (int i = 0; !members_.empty() && i < world_.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world_.getConstraint(i);
+        if (!constraint.isEnabled()) continue;
+        const PlasticConstraint* plastic = as_plastic(constraint);
+        for (const btRigidBody* body : {&constraint.getRigidBodyA(), &constraint.getRigidBodyB()}) {
+            const auto owner = owners_.find(body);
+            if (owner == owners_.end()) continue;
+            const Course& course = members_[owner->second];
+            int section = 0;
+            if (plastic != nullptr && course.of->key_of(*plastic, section) != nullptr) continue;
+            if (course.member == nullptr) {
+                throw std::invalid_argument(
+                    "StructureInTime.bodies: no constraint of the user's may hold them, as they "
+                    "come and go: use Structure");
+            }
+            course.member->require_attached(constraint);
+        }
+    }
+}
+
+} // namespace ductile::bullet
