@@ -38,8 +38,8 @@
 // Before a part: a contact that touches and closes gets a blow, at most three in one instant, and
 // so does what was thrown; a gap that would close within the part ends it. What cannot have to be
 // put back is not saved; where that proves wrong the part stands, and says so.
-// Budget: parts that were put back count. From half of it on what is allowed grows by
-// 10^(4 (used - 1/2)): a frame ends coarser and says so, as one last long part would be worse.
+// Budget: parts that were put back count. From three quarters of it on what is allowed grows by
+// 10^(8 (used - 3/4)): a frame ends coarser and says so, as one last long part would be worse.
 //
 // Source: half-step composition as Strang (1968); error per step of the difference of accelerations
 // as in Milne's device, Hairer, Norsett, Wanner, Solving ODEs I, section III.1. The rest is derived

@@ -201,7 +201,7 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     const Past& past = past_[row];
     const bool swings = past.row.swings && past.row.moves();
     return {past.acceleration,        before_, past.row.end, swings, past.driven,
-            past.fast || used() > 0.5};
+            past.fast || used() > detail::of_swings};
 }
 
 /// In the part before, at or near its strength.
@@ -297,7 +297,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
-    if (used() > 0.75) judged.allowed *= std::pow(10.0, 8 * (used() - 0.75));
+    if (used() > detail::coarse_from) {
+        judged.allowed *= std::pow(10.0, 8 * (used() - detail::coarse_from));
+    }
     return judged;
 }
 

@@ -12,13 +12,15 @@
 
 namespace ductile::detail {
 
-inline constexpr double part_share = 0.1;     ///< κ
-inline constexpr double contact_share = 0.3;  ///< of the work of contacts that counts as error
-inline constexpr double unmissed = 0.05;      ///< of PartRow::least: added to the scale
-inline constexpr double of_stored = 10;       ///< of what springs hold: the same
-inline constexpr double near_strength = 0.3;  ///< share of it from which a spring may come to flow
-inline constexpr double start_share = 1e-3;   ///< of a part, where nothing is known of its forces
-inline constexpr double many_starts = 0.1;    ///< of the budget: they are not first ones any more
+inline constexpr double part_share = 0.1;    ///< κ
+inline constexpr double contact_share = 0.3; ///< of the work of contacts that counts as error
+inline constexpr double unmissed = 0.05;     ///< of PartRow::least: added to the scale
+inline constexpr double of_stored = 10;      ///< of what springs hold: the same
+inline constexpr double near_strength = 0.3; ///< share of it from which a spring may come to flow
+inline constexpr double start_share = 1e-3;  ///< of a part, where nothing is known of its forces
+inline constexpr double many_starts = 0.1;   ///< of the budget: they are not first ones any more
+inline constexpr double of_swings = 0.5; ///< of the budget: what then still swings alone is let be
+inline constexpr double coarse_from = 0.75;   ///< used of the budget: what is allowed grows
 inline constexpr int most_tries = 12;         ///< of one part
 inline constexpr int tries_at_gaps = 6;       ///< the same, for gaps that closed in it unforeseen
 inline constexpr double hair = 1e-3;          ///< of the shortest part: one that ends at a gap

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,16 +39,16 @@ template <class Step>
 /// that the part began with, right for a flow that goes on as it is; one from rest is by a h²/8
 /// ahead of there in the middle, and at the end of the part has what its rows take for h/4. In
 /// between it is |u' - u|/(|u| + |u'|) of that.
-[[nodiscard]] inline double turned_flow(const AnyLink<double>& link) noexcept {
+[[nodiscard]] inline double turned_flow(const AnyLink<double>& link,
+                                        std::span<const PartRow> rows) noexcept {
     double start = 0, end = 0, turned = 0, change = 0;
-    for (const JointAxis axis : link.axes()) {
-        const auto i = Eigen::Index(index(axis));
-        const double strength = link.strength(axis);
-        const double u = link.start_velocities()[i], later = link.end_velocities()[i];
-        start += std::pow(strength * u, 2);
-        end += std::pow(strength * later, 2);
-        turned += std::pow(strength * link.turned_velocities()[i], 2);
-        change += std::pow(strength * (later - u), 2);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const PartRow& row = rows[k];
+        const double later = link.turned_velocities()[Eigen::Index(index(link.axes()[k]))];
+        start += std::pow(row.strength * row.start, 2);
+        end += std::pow(row.strength * row.end, 2);
+        turned += std::pow(row.strength * later, 2);
+        change += std::pow(row.strength * (row.end - row.start), 2);
     }
     const double both = std::sqrt(start) + std::sqrt(end);
     if (!(both > 0)) return 0;
@@ -63,8 +64,8 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     const bool spring = link.axes().size() == 1 && !link.all_rigid();
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
     double misfit = acts ? link.last().misfit : 0, freed = link.last().lost;
-    if (acts && link.totals().flowing && link.axes().size() > 1) misfit += turned_flow(link);
     double astray = 0; // by its break
+    const std::size_t first = rows.size();
     const bool snaps = acts && link.snaps();
     const bool alone = link.axes().size() == 1, flowed = link.last().plastic_work > 0;
     if (const double held = link.last().held; held > 0) {
@@ -106,6 +107,9 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.given = std::exchange(given, 0);
         // a spring that snaps never flows: what nobody misses is of what it holds then
         if (row.elastic && snaps) row.least = std::min(row.least, row.spring / row.strength);
+    }
+    if (acts && link.totals().flowing && !alone) {
+        rows[first].misfit += turned_flow(link, std::span(rows).subspan(first));
     }
 }
 

@@ -38,9 +38,7 @@ DUCTILE_INLINE void World::remove(Divisible& member) {
     auto* const members = dynamic_cast<Members*>(members_.get());
     if (members == nullptr || !members->has(member)) return;
     for (const DivisionReport& one : member.reports({})) supervisor().remove(one.key);
-    const double before = meter_ ? meter_->held().total() : 0;
-    member.leave();
-    if (meter_) meter_->bodies_rearranged(before);
+    rearrange([&] { member.leave(); });
     members->remove(member);
 }
 
