@@ -48,6 +48,7 @@
 #include "ductile/joint/coupled_row.hpp"
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
+#include "ductile/joint/mean_flow.hpp"
 #include "ductile/joint/off_normal_work.hpp"
 #include "ductile/joint/remaining_travel.hpp"
 #include "ductile/joint/step_end.hpp"
@@ -220,6 +221,10 @@ class CoupledJoint {
         will_flow_ = flows;
         const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
         const Scalar power = std::abs(numeric::dot(predicted, start_));
+        if constexpr (requires { surface_.semi_axes(); }) {
+            if (flows && ahead_)
+                passing_ = flow_at_start(surface_, predicted, start_, motion.mass, dt);
+        }
         const Scalar before = std::abs(numeric::dot(predicted, state_.start_velocity));
         const Scalar after = std::abs(numeric::dot(predicted, state_.velocity));
         const Scalar least = travel_ahead(power, before, after, state_.flowing, rate);
@@ -376,6 +381,7 @@ class CoupledJoint {
     Rows rows_{};
     Vector start_ = Vector::Zero(), elastic_ = Vector::Zero(); ///< u, q_e at the start
     Vector middle_ = Vector::Zero();                           ///< q_e where the rows are solved
+    Vector passing_ = Vector::Zero();                          ///< u where they flow by their mean
     Vector lower_ = Vector::Zero(), upper_ = Vector::Zero();   ///< bounds of the forces
     Vector implicit_ = Vector::Ones();                         ///< θ of the elastic rows
     Scalar grown_ = 1, tolerance_ = 0; ///< R/R(0) of this step; this close to a bound is at it

@@ -22,7 +22,7 @@ auto CoupledJoint<Surface, Law, Criterion>::meet_surface(Scalar dt, bool passes)
         if (will_flow_ && !ahead_) implicit_[i] = 1;
         if (!rigid(i) && !(implicit_[i] > 0) && !(damping(i) > 0)) return std::nullopt;
         rows_[std::size_t(i)] = row(i, dt);
-        if (passes_ && rigid(i)) rows_[std::size_t(i)].bias -= start_[i] - drift_[i];
+        if (passes_ && rigid(i)) rows_[std::size_t(i)].bias -= passing_[i] - drift_[i];
     }
     return rows_;
 }
@@ -43,7 +43,7 @@ template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar dt) noexcept
     -> Rows {
-    start_ = motion.velocity;
+    start_ = passing_ = motion.velocity;
     elastic_ = motion.position - state_.plastic_offset;
     ahead_ = motion.ahead;
     turning_ = motion.turning;

@@ -56,6 +56,14 @@ template <class Step>
     return more * std::sqrt(change) / both * link.last_length() / 4;
 }
 
+/// Of the strength of an axis that shares a surface, what counts [-]: at most three times what it
+/// has where the forces, grown in proportion, meet the surface. One far stronger than the axis that
+/// flows holds, and what is off of its travel does the work of the force that it has.
+[[nodiscard]] inline double along_forces(double own_share, double share) noexcept {
+    constexpr double most = 3;
+    return most * own_share < share ? most * own_share / share : 1;
+}
+
 /// Adds a row for each plastic axis; `joint`: its number; `acts`: the part was solved with it.
 inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool acts,
                           std::vector<PartRow>& rows) {
@@ -108,8 +116,13 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         // a spring that snaps never flows: what nobody misses is of what it holds then
         if (row.elastic && snaps) row.least = std::min(row.least, row.spring / row.strength);
     }
-    if (acts && link.totals().flowing && !alone) {
-        rows[first].misfit += turned_flow(link, std::span(rows).subspan(first));
+    if (!acts || alone) return;
+    const std::span of_joint = std::span(rows).subspan(first);
+    if (link.totals().flowing) rows[first].misfit += turned_flow(link, of_joint);
+    for (PartRow& row : of_joint) {
+        const double counts = along_forces(row.own_share, share);
+        row.strength *= counts;
+        row.spring *= counts * counts;
     }
 }
 
