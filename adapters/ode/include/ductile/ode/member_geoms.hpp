@@ -47,7 +47,6 @@ class MemberGeoms {
     void find_overhang(const JointFrame<double>& start_in_body);
     void make_boxes();
     void destroy_boxes();
-    static void place(dGeomID geom, dBodyID body, const JointFrame<double>& in_body);
 
     dBodyID user_;
     const ductile::Member& member_;

@@ -58,15 +58,9 @@ DUCTILE_INLINE void MemberGeoms::find_overhang(const JointFrame<double>& start_i
     over_ = MemberOverhang::of(member_, low, high);
 }
 
-DUCTILE_INLINE void MemberGeoms::place(dGeomID geom, dBodyID body,
-                                       const JointFrame<double>& in_body) {
-    if (dGeomGetBody(geom) != body) dGeomSetBody(geom, body); // forgets the offset
-    detail::set_offset(geom, in_body);
-}
-
 DUCTILE_INLINE void MemberGeoms::put_straight() {
     for (Geom& entry : users_) {
-        place(entry.geom, user_, entry.in_body);
+        detail::put_on(entry.geom, user_, entry.in_body);
         if (box_.is_there() && boxes_.back() != nullptr && entry.enabled) dGeomEnable(entry.geom);
     }
     destroy_boxes();
@@ -87,14 +81,14 @@ DUCTILE_INLINE void MemberGeoms::put(const MemberPiece& piece, dBodyID body,
             dGeomBoxSetLengths(of_it, dReal(2 * box_.half_width), dReal(2 * box_.half_height),
                                dReal(stretch.length));
             dGeomEnable(of_it);
-            place(of_it, body, placed(in_body, stretch.middle));
+            detail::put_on(of_it, body, placed(in_body, stretch.middle));
         }
         return;
     }
     for (const Geom& entry : users_) {
         if (!piece.run.holds(entry.segment)) continue;
-        place(entry.geom, body,
-              placed(placed(in_body, piece.segment(entry.segment)), entry.in_segment));
+        detail::put_on(entry.geom, body,
+                       placed(placed(in_body, piece.segment(entry.segment)), entry.in_segment));
     }
 }
 

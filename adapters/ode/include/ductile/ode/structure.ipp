@@ -56,10 +56,7 @@ DUCTILE_INLINE void Structure::make_body(const PlanBody& plan, dSpaceID space) {
     detail::put(part.body, plan.pose, {});
     dBodySetFiniteRotationMode(part.body, 1);
     part.box = detail::box_of(plan, space);
-    if (part.box != nullptr) {
-        dGeomSetBody(part.box, part.body);
-        detail::set_offset(part.box, plan.box);
-    }
+    if (part.box != nullptr) detail::put_on(part.box, part.body, plan.box);
     world_.add(part.body);
     parts_.push_back(part);
 }

@@ -64,8 +64,7 @@ DUCTILE_INLINE dBodyID StructureInTime::make_cluster(std::size_t c, dBodyID like
     for (std::size_t i = 0; i < cluster.bodies.size(); ++i) {
         const std::size_t b = cluster.bodies[i];
         if (boxes_[b] == nullptr) continue;
-        dGeomSetBody(boxes_[b], body); // forgets the offset
-        detail::set_offset(boxes_[b], placed(cluster.places[i], plan().bodies[b].box));
+        detail::put_on(boxes_[b], body, placed(cluster.places[i], plan().bodies[b].box));
     }
     world_.add(body);
     return body;
