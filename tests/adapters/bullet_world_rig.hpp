@@ -94,6 +94,14 @@ class WorldRig {
         b->getWorldTransform().setRotation(btQuaternion(btVector3(0, 0, 1), btScalar(angle)));
     }
 
+    /// At once, without a way there.
+    static void put(Body b, const V3& at) {
+        btTransform pose = b->getWorldTransform();
+        pose.setOrigin(bullet::to_bullet(at));
+        b->setCenterOfMassTransform(pose);
+        b->setInterpolationWorldTransform(pose); // else a prescribed body is driven there
+    }
+
     /// About z; null `b`: the static world.
     Hinge& hinge(Body a, Body b, const V3& anchor, Joint joint, const std::string& name) {
         btTransform frame;

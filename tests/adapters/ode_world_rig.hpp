@@ -97,6 +97,11 @@ class WorldRig {
         dBodySetAngularVel(b, 0, 0, dReal(spin));
     }
 
+    /// At once, without a way there.
+    static void put(Body b, const V3& at) {
+        dBodySetPosition(b, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+    }
+
     /// About z; null `b`: the static world.
     Hinge& hinge(Body a, Body b, const V3& anchor, Joint joint, const std::string& name) {
         hinges_.push_back(std::make_unique<Hinge>(

@@ -480,6 +480,26 @@ TEST_CASE("Frames: a base that is driven by hand goes its way in parts too", "[f
     }
 }
 
+TEST_CASE("Frames: a driven base and what hangs on it are put elsewhere together", "[frame]") {
+    constexpr double spin = 3, strength = 4;
+    const V3 elsewhere(1, 2, 3);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto base = rig.body(1, V3::Ones(), V3::Zero());
+        WorldRig::prescribe(base);
+        const auto body = rotor(rig, spin);
+        auto& hinge = rig.hinge(body, base, V3::Zero(), law(strength), "hinge");
+        rig.run(0.5, frame);
+        WorldRig::put(base, elsewhere);
+        WorldRig::put(body, elsewhere);
+        rig.run(3, frame);
+        CHECK(hinge.absorbed_energy() == Approx(spin * spin).epsilon(rough ? 1e-3 : 1e-6));
+        CHECK((WorldRig::position(body) - elsewhere).norm() < 1e-3);
+        CHECK(rig.world().run().believed());
+    }
+}
+
 TEST_CASE("Frames: axes that share a surface take what brings them to rest", "[frame]") {
     // 2 kg at (8, 5) m/s, which an elastic section meets at a corner of its surface: 89 J
     using Surface = Scaled<RectangleAxialBending<double>>;
