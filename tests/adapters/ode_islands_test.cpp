@@ -44,6 +44,7 @@ struct Slider {
         if (floor == Floor::body) {
             dBodySetGravityMode(ground, 0);
         } else {
+            world->remove(ground);
             dBodyDestroy(ground);
             ground = nullptr;
         }

@@ -162,7 +162,7 @@ TEST_CASE("a frame that is struck opens, absorbs what the jointed one does, and 
             CHECK(StructureRig::asleep(box));
             CHECK(scene.frame->utilisation() == Approx(used).epsilon(1e-3)); // bare: 0.9 of it
         } else {
-            CHECK(scene.most_bodies > 1);
+            CHECK(always.structure->absorbed_energy() > 0); // open and whole again in one frame
             CHECK(scene.frame->absorbed_energy() ==
                   Approx(always.structure->absorbed_energy()).epsilon(single ? 0.02 : 1e-3));
             CHECK(scene.frame->sag("beam 20") ==
