@@ -70,17 +70,15 @@ class WorldRig {
         return b;
     }
 
-    /// That touches other boxes.
+    /// That touches others.
     Body box(double mass, const V3& half, const V3& at) {
-        boxes_.push_back(std::make_unique<btBoxShape>(bullet::to_bullet(half)));
-        btVector3 inertia;
-        boxes_.back()->calculateLocalInertia(btScalar(mass), inertia);
-        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, boxes_.back().get(),
-                                                      inertia);
-        info.m_startWorldTransform.setOrigin(bullet::to_bullet(at));
-        bodies_.push_back(std::make_unique<btRigidBody>(info));
-        dynamics_.addRigidBody(bodies_.back().get());
-        return bodies_.back().get();
+        return shaped(mass, std::make_unique<btBoxShape>(bullet::to_bullet(half)), at);
+    }
+    /// The same, without friction.
+    Body ball(double mass, double radius, const V3& at) {
+        const Body b = shaped(mass, std::make_unique<btSphereShape>(btScalar(radius)), at);
+        b->setFriction(0);
+        return b;
     }
 
     /// Its motion is prescribed from now on.
@@ -216,6 +214,17 @@ class WorldRig {
     static V3 position(Body b) { return bullet::to_core(b->getCenterOfMassPosition()); }
 
   private:
+    Body shaped(double mass, std::unique_ptr<btConvexInternalShape> shape, const V3& at) {
+        btVector3 inertia;
+        shape->calculateLocalInertia(btScalar(mass), inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, shape.get(),
+                                                      inertia);
+        info.m_startWorldTransform.setOrigin(bullet::to_bullet(at));
+        shapes_.push_back(std::move(shape));
+        bodies_.push_back(std::make_unique<btRigidBody>(info));
+        dynamics_.addRigidBody(bodies_.back().get());
+        return bodies_.back().get();
+    }
     static btTransform local(Body body, const btTransform& frame) {
         return body->getCenterOfMassTransform().inverse() * frame;
     }
@@ -237,7 +246,7 @@ class WorldRig {
     btSequentialImpulseConstraintSolver solver_;
     btDiscreteDynamicsWorld dynamics_;
     btSphereShape shape_{1};
-    std::vector<std::unique_ptr<btBoxShape>> boxes_;
+    std::vector<std::unique_ptr<btConvexInternalShape>> shapes_;
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::vector<std::unique_ptr<btTypedConstraint>> own_;
     bullet::World world_;

@@ -70,24 +70,18 @@ class WorldRig {
         return b;
     }
 
-    /// That touches other boxes.
+    /// That touches others.
     Body box(double mass, const V3& half, const V3& at) {
-        if (!collides_) {
-            collides_ = true;
-            world_.on_contacts({.space = engine_.space, .group = engine_.contacts},
-                               [this] { dSpaceCollide(engine_.space, this, &WorldRig::touch); });
-        }
         dMass inertia;
-        dMassSetBoxTotal(&inertia, dReal(mass), dReal(2 * half.x()), dReal(2 * half.y()),
-                         dReal(2 * half.z()));
-        Body b = dBodyCreate(id_);
-        dBodySetMass(b, &inertia);
-        dBodySetPosition(b, dReal(at.x()), dReal(at.y()), dReal(at.z()));
-        dGeomSetBody(dCreateBox(engine_.space, dReal(2 * half.x()), dReal(2 * half.y()),
-                                dReal(2 * half.z())),
-                     b);
-        world_.add(b);
-        return b;
+        const auto side = [&half](int k) { return dReal(2 * half[k]); };
+        dMassSetBoxTotal(&inertia, dReal(mass), side(0), side(1), side(2));
+        return shaped(inertia, dCreateBox(engine_.space, side(0), side(1), side(2)), at);
+    }
+    /// The same, without friction.
+    Body ball(double mass, double radius, const V3& at) {
+        dMass inertia;
+        dMassSetSphereTotal(&inertia, dReal(mass), dReal(radius));
+        return shaped(inertia, dCreateSphere(engine_.space, dReal(radius)), at);
     }
 
     /// Its motion is prescribed from now on.
@@ -204,6 +198,19 @@ class WorldRig {
         dRandSetSeed(0); // the iterative solver shuffles its rows
         dWorldSetQuickStepNumIterations(id_, 10);
         dWorldSetCFM(id_, 1e-13); // ODE's 1e-10 lets 100 kN move by 1e-5 m/s
+    }
+    Body shaped(const dMass& inertia, dGeomID geom, const V3& at) {
+        if (!collides_) {
+            collides_ = true;
+            world_.on_contacts({.space = engine_.space, .group = engine_.contacts},
+                               [this] { dSpaceCollide(engine_.space, this, &WorldRig::touch); });
+        }
+        Body b = dBodyCreate(id_);
+        dBodySetMass(b, &inertia);
+        dBodySetPosition(b, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        dGeomSetBody(geom, b);
+        world_.add(b);
+        return b;
     }
     static void touch(void* data, dGeomID a, dGeomID b) {
         auto& rig = *static_cast<WorldRig*>(data);

@@ -182,3 +182,28 @@ TEST_CASE("Frames: a box that flies by the edge of a post strikes what it meets 
         CHECK(work(frame) == Approx(fine).epsilon(0.03));
     }
 }
+
+TEST_CASE("Frames: a ball that pushes a bar which turns with it gives it all of its energy",
+          "[frame]") {
+    // Without friction a contact takes energy of the blow alone: m v²/2 /(1 + m d²/I). The bar lies
+    // along x and turns about its end; where they touch runs round the ball, faster than both move.
+    // Taken as another contact each time it cost 6 J more, of 449 J, at any frame.
+    constexpr double mass = 60, radius = 2, at = 0.4, speed = 6, strength = 900, half = 0.05;
+    constexpr double bar_mass = 40, length = 1;
+    const double inertia = bar_mass * (length * length / 3 + half * half / 3);
+    const double energy = mass * speed * speed / 2;
+    const double blow = energy / (1 + mass * at * at / inertia);
+    for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(frame);
+        WorldRig rig(false, 0.01, 256);
+        const auto bar = rig.box(bar_mass, V3(length / 2, half, half), V3(length / 2, 0, 0));
+        const Joint law(Perfect<double>({.strength = strength}), TravelLimit<double>());
+        rig.hinge(bar, nullptr, V3::Zero(), law, "hinge");
+        const auto ball = rig.ball(mass, radius, V3(at, half + radius + 0.01, 0));
+        WorldRig::set_velocity(ball, V3(0, -speed, 0));
+        while (rig.world().time() < 0.3) rig.world().step(frame);
+        const double contact = rig.world().ledger().booked(Account::contact);
+        CHECK(contact == Approx(blow).margin(WorldRig::single ? 2 : 1));
+        CHECK(rig.world().run().believed());
+    }
+}

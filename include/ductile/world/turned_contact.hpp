@@ -12,9 +12,9 @@
 //   n, r   normal, on A, and arms of the contact: as it is (now), as it was seen last (then)
 //   t      time between the two; h/2 where it was seen at the start of the part        [s]
 //
-// Of no use where the contact is another one by now: it moved farther than its bodies, or its
-// normal turned faster than they do. It then does not count. h -> 0, no turning, a sphere that
-// rolls on what stands: w = 0.
+// Of no use where the contact is another one by now: its normal turned faster than its bodies do,
+// or it moved farther than they and that turn carry it round the larger of them. It then does not
+// count. h -> 0, no turning, a sphere that rolls on what stands: w = 0.
 #pragma once
 
 #include <algorithm>
@@ -48,9 +48,10 @@ struct ContactBody {
                                            double half) {
     constexpr double most = 1.5; // times what the bodies do
     const double speed = std::max(norm(a.at(now.arm_a)), norm(b.at(now.arm_b)));
-    const double turn = norm(a.spin) + norm(b.spin);
-    if (!(norm(difference(now.point, then.point)) <= most * speed * time) ||
-        !(norm(difference(now.normal, then.normal)) <= most * turn * time)) {
+    const double turn = norm(difference(now.normal, then.normal));
+    const double round = turn * std::max(norm(now.arm_a), norm(now.arm_b));
+    if (!(norm(difference(now.point, then.point)) <= most * speed * time + round) ||
+        !(turn <= most * (norm(a.spin) + norm(b.spin)) * time)) {
         return 0;
     }
     const auto closing = [&](const SeenContact& seen) {

@@ -56,8 +56,22 @@ TEST_CASE("Turned contact: a flat that turns under a point that slides on it", "
         return -dot(at.normal, difference(V(0, 0, 0), flat.at(at.arm_b)));
     };
     CHECK(w(seen(half), seen(0), {}, flat) == Approx(closing(half) - closing(0)));
-    CHECK(w(seen(half), seen(0), {}, flat) ==
-          Approx(-2 * along * turn).epsilon(1e-2)); // Coriolis
+    CHECK(w(seen(half), seen(0), {}, flat) == Approx(-2 * along * turn).epsilon(1e-2)); // Coriolis
+}
+
+TEST_CASE("Turned contact: a flat that turns runs round a ball that it meets", "[frame]") {
+    // a ball 2 m in radius, still; the flat turns below it about a place 0.1 m beside
+    constexpr double round = 2, aside = 0.1;
+    const ContactBody flat{.spin = {0, 0, spin}};
+    const auto seen = [&](double angle) {
+        const V arm(round * std::sin(angle), -round * std::cos(angle), 0), centre(-aside, round, 0);
+        const V normal(-std::sin(angle), std::cos(angle), 0);
+        return SeenContact{
+            .point = sum(centre, arm), .normal = normal, .arm_a = arm, .arm_b = sum(centre, arm)};
+    };
+    // the point is ω r h/2 farther, and no faster than ω 0.1 m
+    CHECK(w(seen(spin * half), seen(0), {}, flat) ==
+          Approx(spin * spin * round * half).epsilon(1e-2));
 }
 
 TEST_CASE("Turned contact: what does not turn, or is another contact, has none", "[frame]") {
