@@ -222,7 +222,8 @@ class AnyLink {
     /// were solved, their turning taken out, in the order of JointAxis [m/s | rad/s].
     [[nodiscard]] const Vector6<S>& start_velocities() const noexcept { return start_; }
     [[nodiscard]] const Vector6<S>& end_velocities() const noexcept { return end_; }
-    /// The same velocities at the end of it, of the rows as they are where the bodies are now.
+    /// The same velocities at the end of it, of the rows as they are where the bodies are now; told
+    /// of joints of several axes alone.
     [[nodiscard]] const Vector6<S>& turned_velocities() const noexcept { return turned_; }
     [[nodiscard]] S last_length() const noexcept { return length_; } ///< [s]
     /// What may be left of them where the joint holds, as parts of other lengths turn otherwise.

@@ -89,7 +89,7 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     certify_rigid_rows(a, velocity);
     unseen_turn_ = std::max(pose_.unseen_turn(a, b, ahead_ ? dt / 2 : dt), turned_too_far());
     pose_.look(a, b);
-    turned_ = end_ + pose_.twist(a, b) - velocity;
+    if (axes().size() > 1) turned_ = end_ + pose_.twist(a, b) - velocity;
     length_ = dt;
     if (!broken() && !(sound && pose_.finite())) {
         unseen_turn_ = 0;
