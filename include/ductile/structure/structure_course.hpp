@@ -11,12 +11,14 @@
 // and writes what open joints went through into `joint(i).state` and `.force` before.
 //
 // Which open. A joint without which its cluster falls in two alone; one of a closed frame with all
-// of that frame, as where it flows others have to, and the jointed solve says which. Those that
+// of that frame, as where it flows others have to, and the jointed solve says which; an elastic one
+// with all that hangs together, as those that stayed closed would be rigid. Those that
 // hold close again after `hold` steps, and what they carried is the proof that they may stay
 // closed (closed_forces.hpp).
 //
 // Blow. An elastic structure takes up the energy E that a rigid contact annihilates as strain
-// energy of the very profile of forces that the blow has, as a member does (member/blow.hpp).
+// energy of the very profile of forces that the blow has, as a member does (member/blow.hpp). One
+// that yields takes it as the jointed one: what is loaded opens.
 //
 // Elastic joints. A closed one carries what the frame's stiffness gives it (closed_forces.hpp), and
 // has that when it opens: from the first yield on the frame is the elastic-plastic one. It is one
@@ -123,6 +125,8 @@ class StructureCourse {
     /// cluster. Valid until the next call.
     const std::vector<int>& beyond(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double dt);
+    /// A blow begins: the next `struck` is its first.
+    void begin_blow() noexcept { yielded_by_ = 0; }
     /// The same of a blow in which contacts took `energy` [J].
     const std::vector<int>& struck(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double energy);
@@ -175,6 +179,8 @@ class StructureCourse {
     std::vector<Vector6<double>> trial_; ///< forces of this look
     std::vector<int> found_;
     double unmissed_work_ = 0, left_over_ = 0;
+    double yielded_by_ =
+        0; ///< share of its strength in a blow of one second, once this one yielded
     bool proof_is_old_ = true;
 };
 

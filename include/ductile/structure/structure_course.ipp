@@ -282,15 +282,17 @@ DUCTILE_INLINE void StructureCourse::gather(std::size_t c, const ClusterStep& st
 }
 
 DUCTILE_INLINE void StructureCourse::open_with(std::size_t which) {
-    if (!in_a_closed_frame(which)) {
+    const bool elastic = is_elastic(plan_.joints[which].joint);
+    if (!elastic && !in_a_closed_frame(which)) {
         found_.push_back(int(which));
         return;
     }
-    // the closed frame that it is in: what hangs together without the joints that alone hold
+    // what hangs together but by the ground; of a rigid one the closed frame that it is in, without
+    // the joints that alone hold
     const std::size_t cluster = cluster_of_[plan_.joints[which].a];
     std::vector<std::size_t> frame;
     for (const ClosedJoint& one : closed_forces_[cluster].joints()) {
-        if (in_a_closed_frame(one.joint)) frame.push_back(one.joint);
+        if (elastic || in_a_closed_frame(one.joint)) frame.push_back(one.joint);
     }
     std::vector<bool> reached(plan_.bodies.size() + 1, false);
     reached[plan_.joints[which].a] = true;
@@ -298,7 +300,7 @@ DUCTILE_INLINE void StructureCourse::open_with(std::size_t which) {
         more = false;
         for (const std::size_t j : frame) {
             const std::size_t a = plan_.joints[j].a, b = node_b(j);
-            if (reached[a] == reached[b]) continue;
+            if (b == plan_.bodies.size() || reached[a] == reached[b]) continue;
             reached[a] = reached[b] = more = true;
         }
     }
@@ -351,17 +353,19 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::struck(std::span<const C
             for (int i = 0; i < 6; ++i) stored += f[i] * f[i] / (2 * stiffness[i]);
         }
         std::size_t worst = ClosedForces::no_joint;
-        double most = 1;
+        double most = 0;
         for (const ClosedJoint& one : forces.joints()) {
             const double use = plan_.joints[one.joint].joint.surface().value(trial_[one.joint]);
-            if (!(use > 0)) continue;
-            const double peak = stored > 0 ? use * std::sqrt(energy / stored)
-                                           : std::numeric_limits<double>::infinity();
-            if (!(peak > most)) continue;
-            most = peak;
+            if (!(use > most)) continue;
+            most = use;
             worst = one.joint;
         }
-        if (worst != ClosedForces::no_joint) open_with(worst);
+        if (worst == ClosedForces::no_joint) continue;
+        constexpr double noticed = 0.01; // of what opened the first one
+        if (yielded_by_ > 0 ? most > noticed * yielded_by_ : most * most * energy > stored) {
+            if (!(yielded_by_ > 0)) yielded_by_ = most;
+            open_with(worst);
+        }
     }
     return found_;
 }
