@@ -126,7 +126,7 @@ class StructureCourse {
     const std::vector<int>& beyond(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double dt);
     /// A blow begins: the next `struck` is its first.
-    void begin_blow() noexcept { yielded_by_ = 0; }
+    void begin_blow() noexcept { yields_ = false; }
     /// The same of a blow in which contacts took `energy` [J].
     const std::vector<int>& struck(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double energy);
@@ -179,8 +179,7 @@ class StructureCourse {
     std::vector<Vector6<double>> trial_; ///< forces of this look
     std::vector<int> found_;
     double unmissed_work_ = 0, left_over_ = 0;
-    double yielded_by_ =
-        0; ///< share of its strength in a blow of one second, once this one yielded
+    bool yields_ = false; ///< this blow was seen to yield it
     bool proof_is_old_ = true;
 };
 

@@ -361,9 +361,10 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::struck(std::span<const C
             worst = one.joint;
         }
         if (worst == ClosedForces::no_joint) continue;
-        constexpr double noticed = 0.01; // of what opened the first one
-        if (yielded_by_ > 0 ? most > noticed * yielded_by_ : most * most * energy > stored) {
-            if (!(yielded_by_ > 0)) yielded_by_ = most;
+        // rigid joints flow under what they are loaded with, once any does
+        constexpr double noticed = 1e-4;
+        if (most * most * energy > (yields_ ? noticed : 1) * stored) {
+            yields_ = true;
             open_with(worst);
         }
     }
