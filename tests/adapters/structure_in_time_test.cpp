@@ -84,7 +84,8 @@ struct Gallows {
     StructureRig::Body hung;
     decltype(std::declval<StructureRig>().hang(*frame, "", 0, nullptr, OwnJoint::point)) joint;
 
-    Gallows(bool elastic, double gravity, double mass, OwnJoint kind)
+    Gallows(bool elastic, double gravity, double mass, OwnJoint kind,
+            const std::string& member = "post", double share = 1, double half = 0.05)
         : rig(gravity, {.tolerance = 0.01}) {
         const Material<double> steel(s355<double>());
         const ISection<double> ipe(
@@ -102,9 +103,8 @@ struct Gallows {
         } else {
             frame = rig.build(model);
         }
-        // beside the post: where it is jointed it would meet the arm
-        hung = rig.box(mass, {0.05, 0.05, 0.05}, frame->place(top));
-        joint = rig.hang(*frame, "post", 1, hung, kind);
+        hung = rig.box(mass, {half, half, half}, frame->place(member, share));
+        joint = rig.hang(*frame, member, share, hung, kind);
         rig.keep_awake();
     }
     ~Gallows() { rig.forget(); }
@@ -528,6 +528,20 @@ TEST_CASE("what is thrown again goes on where a frame was left, and a blow is bo
         scene.strike(2);
         scene.rig.run(0.2, step);
         CHECK(StructureRig::motion(scene.hung).velocity.x() == Approx(2));
+    }
+}
+
+TEST_CASE("what hangs on a frame and lies within it strikes no piece of it",
+          "[structure][member]") {
+    for (const double step : {1.0 / 30, 1.0 / 240}) {
+        Gallows<true> scene(false, 0, 300, OwnJoint::point, "arm", 0.95, 0.3); // within the post
+        StructureRig::set_velocity(scene.hung, {0, 0, -6});
+        scene.rig.run(0.3, step);
+        CAPTURE(step);
+        CHECK(scene.rig.world().run().believed());
+        CHECK(scene.rig.world().ledger().booked(Account::contact) == 0);
+        CHECK(scene.frame->absorbed_energy() > 3000);
+        CHECK(scene.frame->plastic_travel("arm", end) > 0); // the post was a piece of its own
     }
 }
 

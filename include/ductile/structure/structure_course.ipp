@@ -282,17 +282,17 @@ DUCTILE_INLINE void StructureCourse::gather(std::size_t c, const ClusterStep& st
 }
 
 DUCTILE_INLINE void StructureCourse::open_with(std::size_t which) {
-    const bool elastic = is_elastic(plan_.joints[which].joint);
-    if (!elastic && !in_a_closed_frame(which)) {
+    const bool alone = !in_a_closed_frame(which);
+    if (alone && !is_elastic(plan_.joints[which].joint)) {
         found_.push_back(int(which));
         return;
     }
-    // what hangs together but by the ground; of a rigid one the closed frame that it is in, without
-    // the joints that alone hold
+    // what hangs together but by the ground; around a closed frame without the joints that alone
+    // hold
     const std::size_t cluster = cluster_of_[plan_.joints[which].a];
     std::vector<std::size_t> frame;
     for (const ClosedJoint& one : closed_forces_[cluster].joints()) {
-        if (elastic || in_a_closed_frame(one.joint)) frame.push_back(one.joint);
+        if (alone || in_a_closed_frame(one.joint)) frame.push_back(one.joint);
     }
     std::vector<bool> reached(plan_.bodies.size() + 1, false);
     reached[plan_.joints[which].a] = true;

@@ -181,7 +181,7 @@ DUCTILE_INLINE void Member::require_possible() {
 
 /// Where a joint on a piece holds.
 DUCTILE_INLINE MemberPlace Member::place_of(dJointID joint, std::size_t piece) const {
-    const auto anchor = anchor_of(joint, "World.add.member");
+    const auto anchor = anchor_of(joint, pieces_[piece].body, "World.add.member");
     for (const auto& [told, at] : told_) {
         if (told == joint) return at;
     }

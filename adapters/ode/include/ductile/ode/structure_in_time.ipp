@@ -140,7 +140,7 @@ DUCTILE_INLINE void StructureInTime::attach(const Point& point, dJointID joint) 
 
 /// Of a joint that is new, on the body of a cluster.
 DUCTILE_INLINE StructureHold StructureInTime::hold_of(dJointID joint, std::size_t c) const {
-    const auto anchor = anchor_of(joint, "StructureInTime.attach.joint");
+    const auto anchor = anchor_of(joint, bodies_[c], "StructureInTime.attach.joint");
     for (const auto& [told, hold] : told_) {
         if (told != joint) continue;
         if (course_.has_body(hold.body) && course_.cluster_of(hold.body) == c) return hold;
@@ -160,7 +160,7 @@ DUCTILE_INLINE bool StructureInTime::is_there(const Hold& hold) const {
     const bool told = std::any_of(told_.begin(), told_.end(),
                                   [&](const auto& each) { return each.first == hold.joint; });
     if (told) return true;
-    const auto anchor = anchor_of(hold.joint, "StructureInTime.attach.joint");
+    const auto anchor = anchor_of(hold.joint, hold.body, "StructureInTime.attach.joint");
     return anchor && norm(difference(*anchor, point_of(hold.at))) < drift;
 }
 

@@ -34,10 +34,11 @@ class JointPlace {
     dReal angle_ = 0;
 };
 
-/// Where a joint holds on to the first of its bodies; nothing: a fixed one, it does not say.
+/// Where a joint holds on to one of its bodies; nothing: a fixed one, it does not say.
 /// @throws std::invalid_argument, beginning with `field`, of a joint that cannot go to another
 /// body.
-[[nodiscard]] std::optional<Vector3<double>> anchor_of(dJointID joint, const std::string& field);
+[[nodiscard]] std::optional<Vector3<double>> anchor_of(dJointID joint, dBodyID body,
+                                                       const std::string& field);
 
 struct UserJoint {
     dJointID joint;

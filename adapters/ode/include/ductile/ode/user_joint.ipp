@@ -66,14 +66,16 @@ DUCTILE_INLINE void JointPlace::attach(dJointID joint, dBodyID first, dBodyID se
     }
 }
 
-DUCTILE_INLINE std::optional<Vector3<double>> anchor_of(dJointID joint, const std::string& field) {
+DUCTILE_INLINE std::optional<Vector3<double>> anchor_of(dJointID joint, dBodyID body,
+                                                        const std::string& field) {
+    const bool first = dJointGetBody(joint, 0) == body;
     dVector3 anchor;
     switch (dJointGetType(joint)) {
         case dJointTypeBall:
-            dJointGetBallAnchor(joint, anchor);
+            (first ? dJointGetBallAnchor : dJointGetBallAnchor2)(joint, anchor);
             return to_core(anchor);
         case dJointTypeHinge:
-            dJointGetHingeAnchor(joint, anchor);
+            (first ? dJointGetHingeAnchor : dJointGetHingeAnchor2)(joint, anchor);
             return to_core(anchor);
         case dJointTypeFixed:
             return std::nullopt;
