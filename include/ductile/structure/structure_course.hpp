@@ -10,10 +10,9 @@
 //
 // and writes what open joints went through into `joint(i).state` and `.force` before.
 //
-// Which open. A joint without which its cluster falls in two: alone where it is rigid, with all that
-// hangs together where it is elastic, as what stayed closed would be rigid. One of a closed frame
-// with all of that frame, as where it flows others have to, and the jointed solve says which. Those
-// that hold close again after `hold` steps, and what they carried is the proof that they may stay
+// Which open. A joint without which its cluster falls in two alone; one of a closed frame with all
+// of that frame, as where it flows others have to, and the jointed solve says which. Those that
+// hold close again after `hold` steps, and what they carried is the proof that they may stay
 // closed (closed_forces.hpp).
 //
 // Blow. An elastic structure takes up the energy E that a rigid contact annihilates as strain

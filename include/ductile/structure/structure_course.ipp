@@ -282,17 +282,15 @@ DUCTILE_INLINE void StructureCourse::gather(std::size_t c, const ClusterStep& st
 }
 
 DUCTILE_INLINE void StructureCourse::open_with(std::size_t which) {
-    const bool alone = !in_a_closed_frame(which);
-    if (alone && !is_elastic(plan_.joints[which].joint)) {
+    if (!in_a_closed_frame(which)) {
         found_.push_back(int(which));
         return;
     }
-    // what hangs together but by the ground; around a closed frame without the joints that alone
-    // hold
+    // the closed frame that it is in: what hangs together without the joints that alone hold
     const std::size_t cluster = cluster_of_[plan_.joints[which].a];
     std::vector<std::size_t> frame;
     for (const ClosedJoint& one : closed_forces_[cluster].joints()) {
-        if (alone || in_a_closed_frame(one.joint)) frame.push_back(one.joint);
+        if (in_a_closed_frame(one.joint)) frame.push_back(one.joint);
     }
     std::vector<bool> reached(plan_.bodies.size() + 1, false);
     reached[plan_.joints[which].a] = true;
@@ -300,7 +298,7 @@ DUCTILE_INLINE void StructureCourse::open_with(std::size_t which) {
         more = false;
         for (const std::size_t j : frame) {
             const std::size_t a = plan_.joints[j].a, b = node_b(j);
-            if (b == plan_.bodies.size() || reached[a] == reached[b]) continue;
+            if (reached[a] == reached[b]) continue;
             reached[a] = reached[b] = more = true;
         }
     }
@@ -361,7 +359,7 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::struck(std::span<const C
             worst = one.joint;
         }
         if (worst == ClosedForces::no_joint) continue;
-        // rigid joints flow under what they are loaded with, once any does
+        // once any joint flows, so does what is loaded
         constexpr double noticed = 1e-4;
         if (most * most * energy > (yields_ ? noticed : 1) * stored) {
             yields_ = true;
