@@ -3,6 +3,7 @@
 // What of the adapter for Bullet is compiled once (DUCTILE_COMPILED), in either precision.
 #include <ductile/bullet/bullet.hpp>
 
+#include <ductile/bullet/attachment.ipp>
 #include <ductile/bullet/closing_contacts.ipp>
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/driven_body.ipp>

@@ -22,6 +22,7 @@
 #include <ductile/ode/resting_islands.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/structure_in_time.ipp>
+#include <ductile/ode/user_joint.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
 #include <ductile/ode/world_parts.ipp>

@@ -22,6 +22,9 @@ namespace ductile::test {
 
 namespace engine = ductile::bullet;
 
+/// Of the engine's: a ball, a hinge about y, a weld.
+enum class OwnJoint { point, hinge, weld };
+
 class StructureRig {
   public:
     using Body = btRigidBody*;
@@ -39,6 +42,7 @@ class StructureRig {
     }
     ~StructureRig() {
         joints_.clear();
+        for (const auto& joint : own_joints_) engine_.removeConstraint(joint.get());
         for (const Own& own : own_) engine_.removeRigidBody(own.body.get());
     }
     StructureRig(const StructureRig&) = delete;
@@ -77,6 +81,38 @@ class StructureRig {
                                     b->getCenterOfMassTransform().inverse() * frame, joint));
         world_->add(*joints_.back());
         return *joints_.back();
+    }
+    /// A body fixed to a member at `share` of its axis by a joint of the engine's; null: the
+    /// ground.
+    btTypedConstraint* const* hang(bullet::StructureInTime& frame, const std::string& member,
+                                   double share, Body body, OwnJoint kind) {
+        auto made = std::make_unique<btTypedConstraint*>(nullptr);
+        btTypedConstraint** const now = made.get();
+        hung_.push_back(std::move(made));
+        const btTransform at(btMatrix3x3::getIdentity(),
+                             bullet::to_bullet(frame.place(member, share)));
+        const btTransform in_body =
+            body == nullptr ? at : body->getCenterOfMassTransform().inverse() * at;
+        frame.attach(member, share, [=](btRigidBody& piece, const btTransform& place) {
+            auto joint = join(piece, place, body, in_body, kind);
+            *now = joint.get();
+            return joint;
+        });
+        return now;
+    }
+    btTypedConstraint* const* hang(bullet::Structure& frame, const std::string& member,
+                                   double share, Body body, OwnJoint kind) {
+        const btTransform at(btMatrix3x3::getIdentity(),
+                             bullet::to_bullet(frame.place(member, share)));
+        btRigidBody& piece = *frame.body(frame.plan().body(member));
+        own_joints_.push_back(join(piece, piece.getCenterOfMassTransform().inverse() * at, body,
+                                   body->getCenterOfMassTransform().inverse() * at, kind));
+        engine_.addConstraint(own_joints_.back().get(), true);
+        hung_.push_back(std::make_unique<btTypedConstraint*>(own_joints_.back().get()));
+        return hung_.back().get();
+    }
+    static void let_go(btTypedConstraint* const* joint, bool off = true) {
+        (*joint)->setEnabled(!off);
     }
     void set_gravity(const Vector3<double>& g) { engine_.setGravity(bullet::to_bullet(g)); }
     void set_friction(double coefficient) {
@@ -147,6 +183,22 @@ class StructureRig {
         std::unique_ptr<btBoxShape> shape;
         std::unique_ptr<btRigidBody> body;
     };
+    [[nodiscard]] static std::unique_ptr<btTypedConstraint> join(btRigidBody& a,
+                                                                 const btTransform& in_a, Body b,
+                                                                 const btTransform& in_b,
+                                                                 OwnJoint kind) {
+        btRigidBody& other = b == nullptr ? btTypedConstraint::getFixedBody() : *b;
+        if (kind == OwnJoint::point) {
+            return std::make_unique<btPoint2PointConstraint>(a, other, in_a.getOrigin(),
+                                                             in_b.getOrigin());
+        }
+        if (kind == OwnJoint::weld) {
+            return std::make_unique<btFixedConstraint>(a, other, in_a, in_b);
+        }
+        // Bullet's turns about z
+        const btTransform y(btQuaternion(btVector3(1, 0, 0), -SIMD_HALF_PI));
+        return std::make_unique<btHingeConstraint>(a, other, in_a * y, in_b * y);
+    }
     /// All that move.
     template <class Visit>
     void each(const Visit& visit) {
@@ -165,6 +217,8 @@ class StructureRig {
     std::vector<std::string> lines_;
     std::unique_ptr<bullet::World> world_;
     std::vector<std::unique_ptr<Joint>> joints_;
+    std::vector<std::unique_ptr<btTypedConstraint>> own_joints_;
+    std::vector<std::unique_ptr<btTypedConstraint*>> hung_; ///< as they are now
     std::size_t events_ = 0;
 };
 

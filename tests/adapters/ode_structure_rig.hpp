@@ -22,6 +22,9 @@ namespace ductile::test {
 
 namespace engine = ductile::ode;
 
+/// Of the engine's: a ball, a hinge about y, a weld.
+enum class OwnJoint { point, hinge, weld };
+
 class StructureRig {
   public:
     using Body = dBodyID;
@@ -88,6 +91,21 @@ class StructureRig {
         joints_.push_back(std::make_unique<Joint>(id_, a, b, Joint::Frame{.origin = at}, joint));
         world_->add(*joints_.back());
         return *joints_.back();
+    }
+    /// A body fixed to a member at `share` of its axis by a joint of the engine's; null: the
+    /// ground.
+    dJointID hang(ode::StructureInTime& frame, const std::string& member, double share, Body body,
+                  OwnJoint kind) const {
+        const dJointID joint = join(frame.body_of(member), body, frame.place(member, share), kind);
+        if (kind == OwnJoint::weld) frame.attach(member, share, joint); // others say it
+        return joint;
+    }
+    dJointID hang(ode::Structure& frame, const std::string& member, double share, Body body,
+                  OwnJoint kind) const {
+        return join(frame.body(frame.plan().body(member)), body, frame.place(member, share), kind);
+    }
+    static void let_go(dJointID joint, bool off = true) {
+        (off ? dJointDisable : dJointEnable)(joint);
     }
     void set_gravity(const Vector3<double>& g) {
         dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
@@ -157,6 +175,20 @@ class StructureRig {
     }
 
   private:
+    [[nodiscard]] dJointID join(Body a, Body b, const Vector3<double>& at, OwnJoint kind) const {
+        const auto x = dReal(at.x()), y = dReal(at.y()), z = dReal(at.z());
+        const dJointID joint = kind == OwnJoint::point   ? dJointCreateBall(id_, nullptr)
+                               : kind == OwnJoint::hinge ? dJointCreateHinge(id_, nullptr)
+                                                         : dJointCreateFixed(id_, nullptr);
+        dJointAttach(joint, a, b);
+        if (kind == OwnJoint::point) dJointSetBallAnchor(joint, x, y, z);
+        if (kind == OwnJoint::hinge) {
+            dJointSetHingeAnchor(joint, x, y, z);
+            dJointSetHingeAxis(joint, 0, 1, 0);
+        }
+        if (kind == OwnJoint::weld) dJointSetFixed(joint);
+        return joint;
+    }
     static void touch(void* rig, dGeomID a, dGeomID b) {
         static_cast<StructureRig*>(rig)->add_contacts(a, b);
     }

@@ -89,6 +89,17 @@ class BuiltStructure {
     [[nodiscard]] std::size_t present_joint(std::size_t index) const;
     [[nodiscard]] std::size_t present_body(std::size_t index) const;
 
+    /// A point that moves with a body.
+    struct Point {
+        PlanSeat seat;
+        Vector3<double> at; ///< when it was made, world [m]
+    };
+    /// @throws std::invalid_argument as place().
+    [[nodiscard]] Point point(NodeId node) const;
+    [[nodiscard]] Point point(std::string_view member, double share) const;
+    /// Where a body was when it was made.
+    [[nodiscard]] const JointFrame<double>& made_at(const PlanSeat& seat) const;
+
   private:
     // ---- the engine's
 
@@ -114,15 +125,7 @@ class BuiltStructure {
     /// `factor` of the gravity at which the structure was made.
     virtual void set_gravity(double factor) = 0;
 
-    /// A point that moves with a body.
-    struct Point {
-        PlanSeat seat;
-        Vector3<double> at; ///< when it was made, world [m]
-    };
-    [[nodiscard]] Point point(NodeId node) const;
-    [[nodiscard]] Point point(std::string_view member, double share) const;
     [[nodiscard]] Vector3<double> moved(const Point& point) const;
-    [[nodiscard]] const JointFrame<double>& made_at(const PlanSeat& seat) const;
     void cut_joint(std::size_t index);
     void apply(const Point& point, const Vector3<double>& force);
     void over_joints(const std::function<void(std::size_t)>& visit) const;

@@ -158,8 +158,8 @@ DUCTILE_INLINE void BuiltStructure::apply(std::string_view member, double share,
 
 DUCTILE_INLINE void BuiltStructure::cut_joint(std::size_t index) {
     if (!joint_there_[index]) return;
-    joint_there_[index] = false;
     drop_joint(index);
+    joint_there_[index] = false;
 }
 
 DUCTILE_INLINE void BuiltStructure::cut(std::string_view member, MemberEnd end) {

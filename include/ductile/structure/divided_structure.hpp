@@ -16,11 +16,22 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/member/member_course.hpp"
 #include "ductile/structure/built_structure.hpp"
+#include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
 #include "ductile/world/joint_report.hpp"
 
 namespace ductile {
+
+/// Where a joint of the user's holds on to a structure, and what it gave it when it was last
+/// solved: what sleeps carries on so. Plain value.
+struct StructureHold {
+    std::size_t body = 0;       ///< of the plan
+    JointFrame<double> in_body; ///< axes: the world's when the structure was made
+    /// On it, about where it holds, world axes [N], [N m].
+    Vector3<double> force{0, 0, 0}, moment{0, 0, 0};
+};
 
 /// `OpenJoint`: has the `joint` [index in the plan] and, by a pointer, the engine's plastic joint
 /// of six axes there, `constraint`.
@@ -160,6 +171,61 @@ class DividedStructure : public BuiltStructure {
         }
     }
 
+    // ---- what of the user's holds on to it
+
+    /// @throws std::invalid_argument where the point is the ground's.
+    [[nodiscard]] StructureHold hold_at(const Point& point) const {
+        if (point.seat.kind != PlanSeat::Kind::body) {
+            detail::refuse("StructureInTime.attach.node", detail::text(point.at) + " m",
+                           "a node of the structure that is not the ground");
+        }
+        const JointFrame<double>& made = made_at(point.seat);
+        return {point.seat.index,
+                {transposed_times(made.axes, difference(point.at, made.origin)),
+                 transposed_times(made.axes, Matrix3<double>(Matrix3<double>::Identity()))}};
+    }
+    /// On the body of a cluster whose shape is the nearest to a point [m].
+    [[nodiscard]] StructureHold hold_near(std::size_t cluster, const Vector3<double>& at) const {
+        StructureHold hold;
+        hold.body = course_.nearest(cluster, pose_of(cluster), at);
+        const JointFrame<double> body = frame_of({PlanSeat::Kind::body, hold.body});
+        hold.in_body.origin = transposed_times(body.axes, difference(at, body.origin));
+        return hold;
+    }
+    /// Where it holds now, world [m].
+    [[nodiscard]] Vector3<double> point_of(const StructureHold& hold) const {
+        return placed(pose_of(course_.cluster_of(hold.body)), place_of(hold)).origin;
+    }
+    /// In the frame of its cluster.
+    [[nodiscard]] JointFrame<double> place_of(const StructureHold& hold) const {
+        const Cluster& cluster = course_.clusters()[course_.cluster_of(hold.body)];
+        return placed(cluster.place(hold.body), hold.in_body);
+    }
+    /// `force`, `torque`: on the cluster's body, about its centre, where that was solved at `pose`.
+    void note(StructureHold& hold, const JointFrame<double>& pose, const Vector3<double>& force,
+              const Vector3<double>& torque) const {
+        const Vector3<double> arm = difference(placed(pose, place_of(hold)).origin, pose.origin);
+        hold.force = force;
+        hold.moment = difference(torque, cross(arm, force));
+    }
+    /// Those that hang together with one, itself among them, by open joints that did not break.
+    [[nodiscard]] std::vector<bool> hanging_on(std::size_t cluster) const {
+        std::vector<bool> reached(course_.clusters().size(), false);
+        reached[cluster] = true;
+        for (bool more = true; more;) {
+            more = false;
+            for (const OpenJoint& open : joints_) {
+                if (stands_on_ground(open.joint) || open.constraint->broken()) continue;
+                const PlanJoint& joint = plan().joints[open.joint];
+                const std::size_t a = course_.cluster_of(joint.a),
+                                  b = course_.cluster_of(joint.b.index);
+                if (reached[a] == reached[b]) continue;
+                reached[a] = reached[b] = more = true;
+            }
+        }
+        return reached;
+    }
+
     // ---- how a step went: steps_ has to have the poses of the clusters that move
 
     void begin_read() {
@@ -171,6 +237,22 @@ class DividedStructure : public BuiltStructure {
                   double dt) {
         loads_.push_back({body, steps_[course_.cluster_of(body)].pose.origin, scaled(dt, force),
                           scaled(dt, moment)});
+    }
+    void add_load(const StructureHold& hold, double dt) {
+        const JointFrame<double>& pose = steps_[course_.cluster_of(hold.body)].pose;
+        loads_.push_back({hold.body, placed(pose, place_of(hold)).origin, scaled(dt, hold.force),
+                          scaled(dt, hold.moment)});
+    }
+    /// A blow: joints of the user's that take no more than `noticed` [J] do not count, as their
+    /// bodies came with what a part left of their velocities.
+    void expect_blow(double noticed) noexcept {
+        noticed_ = noticed;
+        course_.begin_blow();
+    }
+    /// Joints to open after it was read: contacts took `energy` [J].
+    [[nodiscard]] const std::vector<int>& struck(double energy, const MemberStrike& by_joints) {
+        const double more = by_joints.energy > noticed_ ? by_joints.energy : 0.0;
+        return course_.struck(steps_, loads_, energy + more);
     }
     /// Those that were applied to it.
     void read_forces(double dt) {
@@ -189,6 +271,7 @@ class DividedStructure : public BuiltStructure {
     std::vector<Force> forces_;
     std::vector<ClusterStep> steps_; ///< of the last step, by cluster
     std::vector<BodyLoad> loads_;    ///< of it
+    double noticed_ = 0;             ///< [J]
 
   private:
     // ---- the engine's
@@ -200,14 +283,18 @@ class DividedStructure : public BuiltStructure {
     virtual void become(const StructureCourse::Change& change, bool ahead) = 0;
     /// It became others, and not by a step.
     virtual void rearranged() = 0;
+    /// It is to: joints of the user's may have come and gone.
+    virtual void find_holds() {}
+
+    [[nodiscard]] JointFrame<double> pose_of(std::size_t cluster) const {
+        return course_.clusters()[cluster].held ? JointFrame<double>{} : cluster_now(cluster).pose;
+    }
 
     // ---- what BuiltStructure asks
 
     [[nodiscard]] JointFrame<double> frame_of(const PlanSeat& seat) const override {
         const std::size_t c = course_.cluster_of(seat.index);
-        const Cluster& cluster = course_.clusters()[c];
-        return placed(cluster.held ? JointFrame<double>{} : cluster_now(c).pose,
-                      cluster.place(seat.index));
+        return placed(pose_of(c), course_.clusters()[c].place(seat.index));
     }
     [[nodiscard]] const PairQueries& queries(std::size_t joint) const override {
         return *open_joint(joint)->constraint;
@@ -231,11 +318,13 @@ class DividedStructure : public BuiltStructure {
         wake_cluster(course_.cluster_of(seat.index));
     }
     void drop_joint(std::size_t joint) override {
+        find_holds();
         note_joints();
         become(course_.remove_joint(joint, placed_clusters()), false);
         rearranged();
     }
     void drop_body(std::size_t body) override {
+        find_holds();
         note_joints();
         std::erase_if(forces_, [body](const Force& force) { return force.body == body; });
         become(course_.remove_body(body, placed_clusters()), false);

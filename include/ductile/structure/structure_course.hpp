@@ -16,7 +16,8 @@
 // closed (closed_forces.hpp).
 //
 // Blow. An elastic structure takes up the energy E that a rigid contact annihilates as strain
-// energy of the very profile of forces that the blow has, as a member does (member/blow.hpp).
+// energy of the very profile of forces that the blow has, as a member does (member/blow.hpp). One
+// that yields takes it as the jointed one: what is loaded opens.
 //
 // Elastic joints. A closed one carries what the frame's stiffness gives it (closed_forces.hpp), and
 // has that when it opens: from the first yield on the frame is the elastic-plastic one. It is one
@@ -123,6 +124,8 @@ class StructureCourse {
     /// cluster. Valid until the next call.
     const std::vector<int>& beyond(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double dt);
+    /// A blow begins: the next `struck` is its first.
+    void begin_blow() noexcept { yields_ = false; }
     /// The same of a blow in which contacts took `energy` [J].
     const std::vector<int>& struck(std::span<const ClusterStep> steps,
                                    std::span<const BodyLoad> loads, double energy);
@@ -175,6 +178,7 @@ class StructureCourse {
     std::vector<Vector6<double>> trial_; ///< forces of this look
     std::vector<int> found_;
     double unmissed_work_ = 0, left_over_ = 0;
+    bool yields_ = false; ///< this blow was seen to yield it
     bool proof_is_old_ = true;
 };
 

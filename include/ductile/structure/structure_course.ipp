@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 
@@ -351,17 +350,20 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::struck(std::span<const C
             for (int i = 0; i < 6; ++i) stored += f[i] * f[i] / (2 * stiffness[i]);
         }
         std::size_t worst = ClosedForces::no_joint;
-        double most = 1;
+        double most = 0;
         for (const ClosedJoint& one : forces.joints()) {
             const double use = plan_.joints[one.joint].joint.surface().value(trial_[one.joint]);
-            if (!(use > 0)) continue;
-            const double peak = stored > 0 ? use * std::sqrt(energy / stored)
-                                           : std::numeric_limits<double>::infinity();
-            if (!(peak > most)) continue;
-            most = peak;
+            if (!(use > most)) continue;
+            most = use;
             worst = one.joint;
         }
-        if (worst != ClosedForces::no_joint) open_with(worst);
+        if (worst == ClosedForces::no_joint) continue;
+        // once any joint flows, so does what is loaded
+        constexpr double noticed = 1e-4;
+        if (most * most * energy > (yields_ ? noticed : 1) * stored) {
+            yields_ = true;
+            open_with(worst);
+        }
     }
     return found_;
 }

@@ -13,6 +13,8 @@
 #include "ductile/member/active_sections.hpp"
 #include "ductile/world/joint_report.hpp"
 
+class btTypedConstraint;
+
 namespace ductile::bullet {
 
 class PlasticConstraint;
@@ -58,6 +60,12 @@ class Divisible {
     [[nodiscard]] virtual double unmissed_work() const = 0;
     /// @throws std::logic_error where it cannot be stepped.
     virtual void require_possible() const = 0;
+    /// @throws std::invalid_argument of a constraint of the user's on a body of it that it does not
+    /// know of.
+    virtual void require_attached(const btTypedConstraint& constraint) const = 0;
+    /// Constraints of the user's hold on to it, which it knows of.
+    [[nodiscard]] virtual bool is_held() const = 0;
+    virtual void list_holds(std::vector<const btTypedConstraint*>& list) const = 0;
     /// It is in the world no more.
     virtual void leave() = 0;
 
@@ -86,9 +94,9 @@ class Divisible {
     virtual void begin_blow(double noticed) = 0;
     /// Constraints that hold on to it what can move are off, so that the bodies go as they would
     /// without it; false: there are none.
-    virtual bool switch_holds_off() { return false; }
+    virtual bool switch_holds_off() = 0;
     /// So they go, until the next blow.
-    virtual void see_coming() {}
+    virtual void see_coming() = 0;
     virtual void find_struck(std::vector<int>& sections) = 0;
     virtual void open(std::span<const int> sections, bool ahead,
                       std::vector<DivisionChange>& told) = 0;

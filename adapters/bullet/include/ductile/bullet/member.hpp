@@ -33,6 +33,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/attachment.hpp"
 #include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
@@ -54,8 +55,7 @@ class Member : public DividedMember<OpenSection> {
   public:
     /// Makes a constraint between a body of the member and whatever it holds; `place`: in that
     /// body, axes of the member.
-    using Maker =
-        std::function<std::unique_ptr<btTypedConstraint>(btRigidBody&, const btTransform& place)>;
+    using Maker = bullet::Attachment::Maker;
 
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is kinematic, is static and the member not
@@ -89,15 +89,8 @@ class Member : public DividedMember<OpenSection> {
     friend class Members;
     friend class MemberSnapshot;
     friend class MemberTick;
-    struct Attachment {
+    struct Attachment : bullet::Attachment {
         MemberPlace at;
-        Maker maker;
-        std::unique_ptr<btTypedConstraint> constraint;
-        std::unique_ptr<btJointFeedback> feedback;
-        btJointFeedback told = btJointFeedback(); ///< when it was last solved
-        const btRigidBody* body = nullptr;        ///< of the constraint
-        bool off = false; ///< it broke, or hands switched it off, before its bodies were others
-        std::array<ContactBody, 2> before{}; ///< a blow, of its bodies
     };
     [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
     [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
@@ -112,7 +105,6 @@ class Member : public DividedMember<OpenSection> {
     void become(const std::vector<PlacedPiece>& pieces, bool ahead);
     void make_joints(bool ahead);
     void make_attachments();
-    void drop_attachment(Attachment& attachment);
     void let_pieces_pass();
     /// Sections that broke since pieces were last told whom they meet.
     void note_broken();

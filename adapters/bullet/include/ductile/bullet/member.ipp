@@ -79,7 +79,7 @@ DUCTILE_INLINE void Member::attach(double place, Maker maker) {
         throw std::logic_error("Member.attach: must be called before the member is in a World");
     }
     const MemberPlace at = description().on_axis("Member.attach.place", place);
-    attachments_.push_back({at, std::move(maker), nullptr, std::make_unique<btJointFeedback>()});
+    attachments_.push_back({{.maker = std::move(maker)}, at});
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
@@ -155,7 +155,7 @@ DUCTILE_INLINE void Member::leave() {
     std::vector<int> all;
     for (const OpenSection& open : joints_) all.push_back(open.section);
     if (!whole()) close(all, false);
-    for (Attachment& attachment : attachments_) drop_attachment(attachment);
+    for (Attachment& attachment : attachments_) attachment.drop(*world_);
     world_ = nullptr;
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -40,7 +39,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     });
     for (Attachment& attachment : attachments_) {
         if (pieces_[course_.piece_of(attachment.at.segment)].body != attachment.body) {
-            drop_attachment(attachment);
+            attachment.drop(*world_);
         }
     }
     for (PieceBody& piece : old) {
@@ -75,13 +74,10 @@ DUCTILE_INLINE void Member::let_pieces_pass() {
             if (pieces_[i].own == nullptr) continue;
             passing_.add(*pieces_[i].body, *pieces_[j].body);
             for (const Attachment& held : attachments_) {
-                if (!held.constraint->isEnabled()) continue;
-                btRigidBody &a = held.constraint->getRigidBodyA(),
-                            &b = held.constraint->getRigidBodyB();
-                btRigidBody& other = &a == held.body ? b : a;
+                if (!held.acts()) continue;
                 const std::size_t at = course_.piece_of(held.at.segment);
-                if (at == i) passing_.add(*pieces_[j].body, other);
-                if (at == j) passing_.add(*pieces_[i].body, other);
+                if (at == i) passing_.add(*pieces_[j].body, held.other());
+                if (at == j) passing_.add(*pieces_[i].body, held.other());
             }
         }
     }
@@ -131,24 +127,8 @@ DUCTILE_INLINE void Member::make_attachments() {
         } else if (pieces_[piece].own == nullptr) {
             place = placed(held_, place);
         }
-        attachment.body = pieces_[piece].body;
-        attachment.constraint = attachment.maker(*pieces_[piece].body, to_bullet(place));
-        if (attachment.constraint == nullptr) {
-            throw std::invalid_argument("Member.attach.maker: must make a constraint");
-        }
-        attachment.told = btJointFeedback(); // was of another body
-        attachment.constraint->setJointFeedback(attachment.feedback.get());
-        if (attachment.off) attachment.constraint->setEnabled(false);
-        world_->addConstraint(attachment.constraint.get(), true);
+        attachment.make("Member.attach", *world_, *pieces_[piece].body, to_bullet(place));
     }
-}
-
-DUCTILE_INLINE void Member::drop_attachment(Attachment& attachment) {
-    if (attachment.constraint == nullptr) return;
-    attachment.off = !attachment.constraint->isEnabled();
-    world_->removeConstraint(attachment.constraint.get());
-    attachment.constraint.reset();
-    attachment.body = nullptr;
 }
 
 } // namespace ductile::bullet

@@ -35,7 +35,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
         if (piece.held) continue;
         placed_piece.motion = {to_core(bodies_[i].velocity), to_core(bodies_[i].spin)};
     }
-    for (Member::Attachment& attachment : member.attachments_) member.drop_attachment(attachment);
+    for (Member::Attachment& attachment : member.attachments_) attachment.drop(*member.world_);
     for (PieceBody& piece : member.pieces_) piece.run = {no_section, no_section};
     member.become(pieces, {});
     for (std::size_t i = 0; i < bodies_.size(); ++i) {

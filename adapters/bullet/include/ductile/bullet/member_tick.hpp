@@ -35,6 +35,9 @@ class MemberTick final : public Divisible {
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
     [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     DUCTILE_INLINE void require_possible() const override;
+    DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
+    [[nodiscard]] DUCTILE_INLINE bool is_held() const override;
+    DUCTILE_INLINE void list_holds(std::vector<const btTypedConstraint*>& list) const override;
     DUCTILE_INLINE void leave() override;
 
     DUCTILE_INLINE void apply_forces() override;

@@ -52,23 +52,22 @@ DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::vector<int>& section
     sections = member_.course_.beyond(steps_, loads_, dt);
 }
 DUCTILE_INLINE void MemberTick::begin_blow(double noticed) { member_.course_.begin_blow(noticed); }
+DUCTILE_INLINE void MemberTick::require_attached(const btTypedConstraint& constraint) const {
+    member_.require_attached(constraint);
+}
+DUCTILE_INLINE bool MemberTick::is_held() const { return !member_.attachments_.empty(); }
+DUCTILE_INLINE void MemberTick::list_holds(std::vector<const btTypedConstraint*>& list) const {
+    for (const Member::Attachment& held : member_.attachments_) {
+        list.push_back(held.constraint.get());
+    }
+}
 DUCTILE_INLINE bool MemberTick::switch_holds_off() {
     bool any = false;
-    for (const Member::Attachment& attachment : member_.attachments_) {
-        btTypedConstraint& constraint = *attachment.constraint;
-        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
-        const btRigidBody& other = &a == attachment.body ? b : a;
-        if (!constraint.isEnabled() || other.isStaticOrKinematicObject()) continue;
-        any = true;
-        constraint.setEnabled(false);
-    }
+    for (const Member::Attachment& held : member_.attachments_) any = held.switch_off() || any;
     return any;
 }
 DUCTILE_INLINE void MemberTick::see_coming() {
-    for (Member::Attachment& attachment : member_.attachments_) {
-        attachment.before = {contact_body(attachment.constraint->getRigidBodyA()),
-                             contact_body(attachment.constraint->getRigidBodyB())};
-    }
+    for (Member::Attachment& held : member_.attachments_) held.see_coming();
 }
 DUCTILE_INLINE void MemberTick::find_struck(std::vector<int>& sections) {
     const int section = member_.course_.struck(steps_, loads_, strike_, by_joints_);
@@ -246,35 +245,17 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
 
 /// What constraints took that hold it, as a blow.
 DUCTILE_INLINE void MemberTick::read_attachments(double dt) {
-    for (const Member::Attachment& attachment : member_.attachments_) {
-        const btTypedConstraint& constraint = *attachment.constraint;
-        if (!constraint.isEnabled()) continue;
-        const btJointFeedback& told = attachment.told;
-        const btTransform segment = member_.pose(attachment.at.segment);
-        const btVector3 place = segment * to_bullet(attachment.at.in_segment);
-        const auto side = [&](const btRigidBody& body, const ContactBody& before,
-                              const btVector3& force, const btVector3& torque) -> JointSide {
-            return {.before = before,
-                    .after = contact_body(body),
-                    .arm = to_core(place - body.getCenterOfMassPosition()),
-                    .impulse = scaled(dt, to_core(force)),
-                    .moment = scaled(dt, to_core(torque))};
-        };
-        const JointSide a = side(constraint.getRigidBodyA(), attachment.before[0],
-                                 told.m_appliedForceBodyA, told.m_appliedTorqueBodyA),
-                        b = side(constraint.getRigidBodyB(), attachment.before[1],
-                                 told.m_appliedForceBodyB, told.m_appliedTorqueBodyB);
-        const bool first = &constraint.getRigidBodyA() == attachment.body;
-        by_joints_.add(first ? a : b, first ? b : a, attachment.at.segment);
+    for (const Member::Attachment& held : member_.attachments_) {
+        if (!held.acts()) continue;
+        const btVector3 place = member_.pose(held.at.segment) * to_bullet(held.at.in_segment);
+        by_joints_.add(held.side(true, place, dt), held.side(false, place, dt), held.at.segment);
     }
 }
 
 /// It holds on to what cannot move, and does not break.
 DUCTILE_INLINE bool MemberTick::is_support(const Member::Attachment& attachment) {
-    const btTypedConstraint& constraint = *attachment.constraint;
-    const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
-    return (&a == attachment.body ? b : a).isStaticOrKinematicObject() &&
-           constraint.getBreakingImpulseThreshold() >= SIMD_INFINITY;
+    return attachment.other().isStaticOrKinematicObject() &&
+           attachment.constraint->getBreakingImpulseThreshold() >= SIMD_INFINITY;
 }
 DUCTILE_INLINE std::vector<std::string> MemberTick::remarks() const {
     std::vector<std::string> lines;
@@ -317,12 +298,9 @@ DUCTILE_INLINE std::array<bool, 3> MemberTick::borne_by(btTypedConstraint& const
 /// Of attachments and of its own joints.
 DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
     Member& member = member_;
-    const auto add = [&](const btTypedConstraint& constraint, const btJointFeedback& told,
-                         std::size_t piece, int segment) {
+    const auto add = [&](const btVector3& force, const btVector3& torque, std::size_t piece,
+                         int segment) {
         const btRigidBody* body = member.pieces_[piece].body;
-        const bool of_a = &constraint.getRigidBodyA() == body;
-        const btVector3 force = of_a ? told.m_appliedForceBodyA : told.m_appliedForceBodyB;
-        const btVector3 torque = of_a ? told.m_appliedTorqueBodyA : told.m_appliedTorqueBodyB;
         sum_ +=
             dt * (double(force.length()) + double(torque.length()) / member.description().length());
         if (!lists) return;
@@ -332,17 +310,11 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
         loads_.push_back(
             {segment, pose.origin, scaled(dt, to_core(force)), scaled(dt, to_core(torque))});
     };
-    const auto moves = [](const btRigidBody& body) {
-        return body.isActive() && !body.isStaticOrKinematicObject();
-    };
     for (Member::Attachment& attachment : member.attachments_) {
-        const btTypedConstraint& constraint = *attachment.constraint;
-        if (!constraint.isEnabled()) continue;
-        const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
-        // what sleeps carries on as when it was solved; between what cannot move nothing is
-        if (moves(a) || moves(b)) attachment.told = *attachment.feedback;
+        if (!attachment.acts()) continue;
+        (void)attachment.see();
         const int segment = attachment.at.segment;
-        add(constraint, attachment.told, member.course_.piece_of(segment), segment);
+        add(attachment.force(), attachment.torque(), member.course_.piece_of(segment), segment);
         if (!lists || !is_support(attachment)) continue;
         loads_.back().support = &attachment;
         loads_.back().held_at = attachment.at.in_segment;
@@ -351,10 +323,11 @@ DUCTILE_INLINE void MemberTick::read_constraints(double dt, bool lists) {
     for (const OpenSection& open : member.joints_) {
         if (!open.hinge->isEnabled()) continue;
         const std::size_t lower = member.course_.piece_of(open.section);
+        const btJointFeedback& told = *open.feedback; // its first body is the upper piece
         if (member.pieces_[lower].own != nullptr) {
-            add(*open.hinge, *open.feedback, lower, open.section);
+            add(told.m_appliedForceBodyB, told.m_appliedTorqueBodyB, lower, open.section);
         }
-        add(*open.hinge, *open.feedback, lower + 1, open.section + 1);
+        add(told.m_appliedForceBodyA, told.m_appliedTorqueBodyA, lower + 1, open.section + 1);
     }
 }
 

@@ -93,7 +93,6 @@ class Members final : public Divisibles {
 
   private:
     struct Course {
-        [[nodiscard]] DUCTILE_INLINE bool is_held() const;
         Divisible* of;
         const Member* member;              ///< null: a structure
         std::unique_ptr<Divisible> tick{}; ///< of a member; a program without any compiles none

@@ -133,17 +133,13 @@ DUCTILE_INLINE double Members::unmissed_work() const {
     return least;
 }
 
-DUCTILE_INLINE bool Members::Course::is_held() const {
-    return member != nullptr && !member->attachments_.empty();
-}
 DUCTILE_INLINE std::vector<int> Members::held_islands() const {
+    std::vector<const btTypedConstraint*> holds;
+    for (const Course& course : members_) course.of->list_holds(holds);
     std::vector<int> islands;
-    for (const Course& course : members_) {
-        if (!course.is_held()) continue;
-        for (const Member::Attachment& held : course.member->attachments_) {
-            islands.push_back(held.constraint->getRigidBodyA().getIslandTag());
-            islands.push_back(held.constraint->getRigidBodyB().getIslandTag());
-        }
+    for (const btTypedConstraint* hold : holds) {
+        islands.push_back(hold->getRigidBodyA().getIslandTag());
+        islands.push_back(hold->getRigidBodyB().getIslandTag());
     }
     std::sort(islands.begin(), islands.end());
     return islands;
@@ -292,7 +288,8 @@ DUCTILE_INLINE bool Members::look(double dt) {
         }
         course->of->read(dt, before_, gravity);
         course->of->find_beyond(dt, course->found);
-        if (course->found.empty() && !vain && (course->direct > 0 || !course->is_held())) continue;
+        if (course->found.empty() && !vain && (course->direct > 0 || !course->of->is_held()))
+            continue;
         any = true;
         if (!is_decided(*course)) course->found.clear();
     }
@@ -312,7 +309,7 @@ DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> clos
                                         double noticed) {
     for (Course& course : members_) {
         course.of->begin_blow(noticed);
-        if (thrown && course.is_held()) (void)is_decided(course);
+        if (thrown && course.of->is_held()) (void)is_decided(course);
     }
     const auto solve_at_once = [this](const btCollisionObject& object) {
         if (Course* course = course_of(object)) (void)is_decided(*course);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "ductile/bullet/contact_load.hpp"
@@ -36,6 +37,7 @@ DUCTILE_INLINE StructureInTime::StructureInTime(World& world, const StructureMod
 DUCTILE_INLINE StructureInTime::~StructureInTime() {
     if (!left_) world_.remove(*this, reports_);
     joints_.clear();
+    for (Hold& hold : holds_) hold.drop(world_.engine());
     for (const PieceBody& piece : pieces_) world_.engine().removeRigidBody(piece.body);
 }
 
@@ -110,10 +112,16 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
             pieces_.push_back(make_cluster(c, like));
         }
     }
+    for (Hold& hold : holds_) { // before their bodies do
+        if (!course_.has_body(hold.at.body) || hold.body != &body_of(hold.at)) {
+            hold.drop(world_.engine());
+        }
+    }
+    std::erase_if(holds_, [this](const Hold& hold) { return !course_.has_body(hold.at.body); });
     for (PieceBody& piece : old) {
         if (piece.own != nullptr) world_.engine().removeRigidBody(piece.body);
     }
-    let_neighbours_pass();
+    for (Hold& hold : holds_) make(hold);
     make_joints(
         [this](std::size_t j, std::size_t a, const JointFrame<double>& in_a,
                std::optional<std::size_t> b, const JointFrame<double>& in_b) {
@@ -130,15 +138,81 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
             if (ahead) open.constraint->begin_part();
             world_.look_after_rest(*open.constraint);
         });
+    let_pass();
 }
 
-DUCTILE_INLINE void StructureInTime::let_neighbours_pass() {
+DUCTILE_INLINE void StructureInTime::let_pass() {
+    passing_.clear();
+    broken_ = broken_joints();
     for (const auto& [a, b] : plan().neighbours) {
         if (!has_body(a) || !has_body(b)) continue;
         btRigidBody &one = *pieces_[course_.cluster_of(a)].body,
                     &other = *pieces_[course_.cluster_of(b)].body;
         if (&one != &other) passing_.add(one, other);
     }
+    for (const Hold& hold : holds_) {
+        if (!hold.acts()) continue;
+        const std::vector<bool> hangs = hanging_on(course_.cluster_of(hold.at.body));
+        for (std::size_t c = 0; c < pieces_.size(); ++c) {
+            // what it holds itself Bullet lets pass
+            if (hangs[c] && pieces_[c].body != hold.body) {
+                passing_.add(*pieces_[c].body, hold.other());
+            }
+        }
+    }
+}
+DUCTILE_INLINE std::size_t StructureInTime::broken_joints() const {
+    return std::size_t(std::count_if(joints_.begin(), joints_.end(), [](const OpenJoint& open) {
+        return open.constraint->broken();
+    }));
+}
+
+// ---- what holds on to it
+
+DUCTILE_INLINE void StructureInTime::make(Hold& hold) {
+    const btRigidBody& body = body_of(hold.at);
+    hold.make("StructureInTime.attach", world_.engine(), body_of(hold.at),
+              to_bullet(place_of(hold.at)));
+    if (std::none_of(pieces_.begin(), pieces_.end(), [&](const PieceBody& piece) {
+            return piece.body == &hold.other() && piece.body != &body;
+        })) {
+        return;
+    }
+    hold.drop(world_.engine());
+    throw std::invalid_argument(
+        "StructureInTime.attach.maker: must hold another body, not two of the structure's");
+}
+DUCTILE_INLINE void StructureInTime::attach(const Point& point, Maker maker) {
+    const StructureHold at = hold_at(point);
+    Hold hold{{.maker = std::move(maker)}, at};
+    make(hold);
+    holds_.push_back(std::move(hold));
+    proved_.reset();
+    let_pass();
+}
+DUCTILE_INLINE void StructureInTime::require_attached(const btTypedConstraint& constraint) const {
+    if (std::any_of(holds_.begin(), holds_.end(),
+                    [&](const Hold& hold) { return hold.constraint.get() == &constraint; })) {
+        return;
+    }
+    throw std::invalid_argument(
+        "StructureInTime.bodies: no constraint of the user's may hold them but by "
+        "StructureInTime::attach, as they come and go");
+}
+DUCTILE_INLINE void StructureInTime::list_holds(std::vector<const btTypedConstraint*>& list) const {
+    for (const Hold& hold : holds_) list.push_back(hold.constraint.get());
+}
+DUCTILE_INLINE bool StructureInTime::switch_holds_off() {
+    bool any = false;
+    for (const Hold& hold : holds_) any = hold.switch_off() || any;
+    return any;
+}
+DUCTILE_INLINE void StructureInTime::see_coming() {
+    for (Hold& hold : holds_) hold.see_coming();
+}
+DUCTILE_INLINE std::size_t StructureInTime::acting_holds() const {
+    return std::size_t(
+        std::count_if(holds_.begin(), holds_.end(), [](const Hold& hold) { return hold.acts(); }));
 }
 
 DUCTILE_INLINE void StructureInTime::wake() {
@@ -165,14 +239,18 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
 
 /// Nothing acts on it but what it carried before.
 DUCTILE_INLINE bool StructureInTime::rests() const {
-    return forces_.empty() && std::all_of(touches_.begin(), touches_.end(),
-                                          [](const ContactTouch& touch) { return touch.asleep; });
+    return forces_.empty() &&
+           std::all_of(touches_.begin(), touches_.end(),
+                       [](const ContactTouch& touch) { return touch.asleep; }) &&
+           std::none_of(holds_.begin(), holds_.end(),
+                        [](const Hold& hold) { return hold.is_solved(); });
 }
 
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(double /*dt*/,
                                                    std::span<const BodyBefore> /*before*/,
                                                    const btVector3& gravity) const {
-    if (!proved_ || *proved_ != gravity || !rests() || proved_touches_ != touches_.size()) {
+    if (!proved_ || *proved_ != gravity || !rests() ||
+        proved_touches_ != touches_.size() + acting_holds()) {
         return true;
     }
     return std::any_of(pieces_.begin(), pieces_.end(), [](const PieceBody& piece) {
@@ -202,12 +280,23 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
                                           const btVector3& gravity) {
     begin_read();
     struck_ = 0;
+    by_joints_ = {};
     for (std::size_t c = 0; c < pieces_.size(); ++c) {
         if (course_.clusters()[c].held) continue;
         const int place = pieces_[c].body->getWorldArrayIndex();
         steps_[c].pose = to_core(before[std::size_t(place)].pose);
     }
     for (const ContactTouch& touch : touches_) read_contact(touch, before);
+    for (Hold& hold : holds_) {
+        if (!hold.acts()) continue;
+        if (hold.see()) {
+            note(hold.at, steps_[course_.cluster_of(hold.at.body)].pose, to_core(hold.force()),
+                 to_core(hold.torque()));
+        }
+        add_load(hold.at, dt);
+        const btVector3 place = to_bullet(point_of(hold.at));
+        by_joints_.add(hold.side(true, place, dt), hold.side(false, place, dt), 0);
+    }
     const auto add = [&](std::size_t body, const btVector3& force, const btVector3& torque) {
         add_load(body, to_core(force), to_core(torque), dt);
     };
@@ -237,7 +326,7 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<const BodyBefore>
         step.dt = went.dt;
     }
     proved_.reset();
-    proved_touches_ = touches_.size();
+    proved_touches_ = touches_.size() + acting_holds();
     if (rests() && joints_.empty()) proved_ = gravity;
 }
 
@@ -246,7 +335,7 @@ DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::vector<int>& se
     if (!sections.empty()) proved_.reset();
 }
 DUCTILE_INLINE void StructureInTime::find_struck(std::vector<int>& sections) {
-    sections = course_.struck(steps_, loads_, struck_);
+    sections = struck(struck_, by_joints_);
     proved_.reset();
 }
 
@@ -263,6 +352,7 @@ DUCTILE_INLINE bool StructureInTime::close_held(Closing when, bool ahead,
                                                 std::vector<DivisionChange>& told) {
     if (course_.whole() || when == Closing::before_blow) return false;
     note_joints();
+    if (broken_ != broken_joints()) let_pass();
     const std::vector<int> held = course_.held();
     if (held.empty()) return false;
     become(course_.close(held, placed_clusters()), ahead);

@@ -64,12 +64,7 @@ DUCTILE_INLINE void Members::require_known() const {
             const Course& course = members_[owner->second];
             int section = 0;
             if (plastic != nullptr && course.of->key_of(*plastic, section) != nullptr) continue;
-            if (course.member == nullptr) {
-                throw std::invalid_argument(
-                    "StructureInTime.bodies: no constraint of the user's may hold them, as they "
-                    "come and go: use Structure");
-            }
-            course.member->require_attached(constraint);
+            course.of->require_attached(constraint);
         }
     }
 }

@@ -29,7 +29,6 @@
 
 #include <ode/ode.h>
 
-#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -40,6 +39,7 @@
 #include "ductile/ode/member_geoms.hpp"
 #include "ductile/ode/piece.hpp"
 #include "ductile/ode/plastic_hinge.hpp"
+#include "ductile/ode/user_joint.hpp"
 #include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -51,21 +51,6 @@ using ductile::MemberBox;
 struct OpenSection {
     int section;
     std::unique_ptr<PlasticHinge<UsualAxisJoint>> hinge;
-};
-
-/// Where in the world a joint of the user's holds: a ball, a hinge or a fixed one. Plain value.
-class JointPlace {
-  public:
-    explicit JointPlace(dJointID joint);
-    /// It holds there then, bodies being where they were, but for `changed`, one of the two.
-    void attach(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) const;
-
-  private:
-    void attach_ball(dJointID joint, dBodyID first, dBodyID second) const;
-    void attach_hinge(dJointID joint, dBodyID first, dBodyID second, dBodyID changed) const;
-
-    std::array<dReal, 3> on_first_{}, on_second_{}, axis_{};
-    dReal angle_ = 0;
 };
 
 /// By what a joint holds a member.
@@ -112,16 +97,9 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
         MemberRun run{};
         bool own = false; ///< else the user's
     };
-    /// A joint of the user's on a body of the member.
-    struct Hold {
-        dJointID joint;
-        dBodyID body;
+    struct Hold : UserJoint {
         MemberPlace at;
-        bool acts;         ///< it is enabled
-        HeldBy support{};  ///< by what
-        Wrench wrench{};   ///< when it was last solved; the ledger may have lent its feedback
-        Wrench on_other{}; ///< the same, on what is on its other side
-        std::array<ContactBody, 2> before{}; ///< a blow: of its body, of the other
+        HeldBy support{}; ///< by what
     };
     // ---- what the World asks
 
@@ -177,7 +155,6 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
     void read_steps(double dt);
-    [[nodiscard]] JointSide side_of(const Hold& hold, bool member, double dt) const;
     void add_load(const Wrench& wrench, int segment, double dt);
 
     dBodyID user_;

@@ -116,9 +116,7 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
 /// pieces.
 DUCTILE_INLINE bool Member::holds(dBodyID own, dBodyID other) const {
     return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
-        const AttachedBodies bodies = attached_bodies(hold.joint);
-        return hold.acts && (bodies.a == hold.body ? bodies.b : bodies.a) == other &&
-               hangs_together(own, hold.body);
+        return hold.acts && hold.other() == other && hangs_together(own, hold.body);
     });
 }
 
@@ -148,8 +146,7 @@ DUCTILE_INLINE void Member::enter(World& world) {
     world_ = &world;
     for (const Hold& hold : holds_) {
         if (dJointGetType(hold.joint) != dJointTypeFixed) continue;
-        const AttachedBodies bodies = attached_bodies(hold.joint);
-        if (!detail::support_by(bodies.a == hold.body ? bodies.b : bodies.a).holds) continue;
+        if (!detail::support_by(hold.other()).holds) continue;
         const std::string said = said_of_fixed(description(), hold.at);
         if (!said.empty()) world.supervisor().say(said);
     }
@@ -184,27 +181,20 @@ DUCTILE_INLINE void Member::require_possible() {
 
 /// Where a joint on a piece holds.
 DUCTILE_INLINE MemberPlace Member::place_of(dJointID joint, std::size_t piece) const {
-    const dJointType type = dJointGetType(joint);
-    if (type != dJointTypeBall && type != dJointTypeHinge && type != dJointTypeFixed) {
-        throw std::invalid_argument(
-            "World.add.member: joints of its body must be balls, hinges or fixed: others, also "
-            "plastic ones, cannot go to another body as they are");
-    }
+    const auto anchor = anchor_of(joint, pieces_[piece].body, "World.add.member");
     for (const auto& [told, at] : told_) {
         if (told == joint) return at;
     }
-    if (type == dJointTypeFixed) {
+    if (!anchor) {
         throw std::invalid_argument(
             "World.add.member: a fixed joint of its body must be told where it holds: "
             "Member::attach");
     }
-    dVector3 anchor;
-    (type == dJointTypeBall ? dJointGetBallAnchor : dJointGetHingeAnchor)(joint, anchor);
     const MemberPiece& of = course_.pieces()[piece];
     const JointFrame<double> frame = frame_of(piece);
-    const int segment = nearest_segment(description(), of, frame, to_core(anchor));
+    const int segment = nearest_segment(description(), of, frame, *anchor);
     const JointFrame<double> at = placed(frame, of.segment(segment));
-    return {segment, transposed_times(at.axes, difference(to_core(anchor), at.origin))};
+    return {segment, transposed_times(at.axes, difference(*anchor, at.origin))};
 }
 DUCTILE_INLINE void Member::find_holds() {
     const std::vector<Hold> before = std::exchange(holds_, {});
@@ -217,7 +207,7 @@ DUCTILE_INLINE void Member::find_holds() {
                             [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
             Hold& hold = holds_.emplace_back(
-                Hold{joint, body, place_of(joint, i), dJointIsEnabled(joint) != 0});
+                Hold{{joint, body, dJointIsEnabled(joint) != 0}, place_of(joint, i)});
             for (const Hold& was : before) {
                 if (was.joint == joint && was.body == body) hold.wrench = was.wrench;
             }

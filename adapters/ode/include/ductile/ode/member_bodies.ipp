@@ -5,83 +5,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/convert.hpp"
-#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
-
-DUCTILE_INLINE JointPlace::JointPlace(dJointID joint) {
-    const auto get = [joint](auto* of, std::array<dReal, 3>& result) {
-        dVector3 found;
-        of(joint, found);
-        std::copy_n(found, 3, result.begin());
-    };
-    if (dJointGetType(joint) == dJointTypeBall) {
-        get(dJointGetBallAnchor, on_first_);
-        get(dJointGetBallAnchor2, on_second_);
-    } else if (dJointGetType(joint) == dJointTypeHinge) {
-        get(dJointGetHingeAnchor, on_first_);
-        get(dJointGetHingeAxis, axis_);
-        angle_ = dJointGetHingeAngle(joint);
-    }
-}
-/// Anchors stay where they are, each on its own body.
-DUCTILE_INLINE void JointPlace::attach_ball(dJointID joint, dBodyID first, dBodyID second) const {
-    dJointAttach(joint, first, second);
-    const bool reversed = attached_bodies(joint).reversed;
-    const auto &a = reversed ? on_second_ : on_first_, &b = reversed ? on_first_ : on_second_;
-    dJointSetBallAnchor(joint, a[0], a[1], a[2]);
-    const dBodyID other = attached_bodies(joint).b;
-    dVector3 in_other{b[0], b[1], b[2], 0};
-    if (other != nullptr) dBodyGetPosRelPoint(other, b[0], b[1], b[2], in_other);
-    dJointSetBallAnchor2(joint, in_other[0], in_other[1], in_other[2]);
-}
-/// Its angle goes on: ODE begins to count where the axis is set, so that is done where the angle is
-/// zero (its dJointSetHingeAxisOffset is right for bodies that are turned alike alone).
-DUCTILE_INLINE void JointPlace::attach_hinge(dJointID joint, dBodyID first, dBodyID second,
-                                             dBodyID changed) const {
-    dJointAttach(joint, first, second);
-    dJointSetHingeAnchor(joint, on_first_[0], on_first_[1], on_first_[2]);
-    const BodySnapshot pose(changed);
-    dMatrix3 back, turned;
-    dRFromAxisAndAngle(back, axis_[0], axis_[1], axis_[2], changed == first ? -angle_ : angle_);
-    dMultiply0_333(turned, back, dBodyGetRotation(changed));
-    dBodySetRotation(changed, turned);
-    dJointSetHingeAxis(joint, axis_[0], axis_[1], axis_[2]);
-    pose.put_pose_back(changed);
-}
-DUCTILE_INLINE void JointPlace::attach(dJointID joint, dBodyID first, dBodyID second,
-                                       dBodyID changed) const {
-    switch (dJointGetType(joint)) {
-        case dJointTypeBall:
-            return attach_ball(joint, first, second);
-        case dJointTypeHinge:
-            return attach_hinge(joint, first, second, changed);
-        default:
-            dJointAttach(joint, first, second);
-            dJointSetFixed(joint);
-    }
-}
-
-namespace detail {
-
-/// A joint of the user's that `from` has goes to `to`.
-DUCTILE_INLINE void hand_over(dJointID joint, dBodyID from, dBodyID to) {
-    if (from == to) return;
-    std::array<dBodyID, 2> bodies{dJointGetBody(joint, 0), dJointGetBody(joint, 1)};
-    std::replace(bodies.begin(), bodies.end(), from, to);
-    JointPlace(joint).attach(joint, bodies[0], bodies[1], to);
-}
-
-} // namespace detail
 
 /// The frame of a piece in its body.
 DUCTILE_INLINE JointFrame<double> Member::in_body(std::size_t piece) const {
@@ -127,8 +59,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     }
     put_geoms();
     for (Hold& hold : holds_) {
-        const dBodyID from = std::exchange(hold.body, body_of(hold.at.segment));
-        detail::hand_over(hold.joint, from, hold.body);
+        hold.go_to(body_of(hold.at.segment));
         wake(hold.joint);
     }
     // joints end before their bodies

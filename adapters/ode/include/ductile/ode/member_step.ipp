@@ -31,32 +31,17 @@ DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
 }
 DUCTILE_INLINE bool Member::switch_holds(bool on) {
     bool any = false;
-    for (const Hold& hold : holds_) {
-        const AttachedBodies bodies = attached_bodies(hold.joint);
-        if (!hold.acts || !can_move(bodies.a == hold.body ? bodies.b : bodies.a)) continue;
-        any = true;
-        (on ? dJointEnable : dJointDisable)(hold.joint);
-    }
+    for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
     return any;
 }
 DUCTILE_INLINE void Member::see_coming() {
-    for (Hold& hold : holds_) {
-        const AttachedBodies bodies = attached_bodies(hold.joint);
-        const dBodyID other = bodies.a == hold.body ? bodies.b : bodies.a;
-        hold.before = {contact_body(hold.body), contact_body(other)};
-    }
+    for (Hold& hold : holds_) hold.see_coming();
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
     for (Hold& hold : holds_) {
-        if (!hold.acts) continue;
-        const AttachedBodies bodies = attached_bodies(hold.joint);
-        const bool of_a = bodies.a == hold.body;
-        hold.support = detail::support_by(of_a ? bodies.b : bodies.a);
-        // what sleeps carries on as when it was solved; between what cannot move nothing is
-        if (!detail::is_solved(bodies.a) && !detail::is_solved(bodies.b)) continue;
-        hold.wrench = wrench_of(*dJointGetFeedback(hold.joint), of_a);
-        hold.on_other = wrench_of(*dJointGetFeedback(hold.joint), !of_a);
+        if (hold.acts) hold.support = detail::support_by(hold.other());
+        (void)hold.see();
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
         before_[i].see(pieces_[i].body);
@@ -197,21 +182,6 @@ DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
     sections = course_.beyond(steps_, loads_, dt);
 }
 
-/// Of a joint that holds it, in a blow of `dt` [s]: of the member, or of what is on the other side.
-DUCTILE_INLINE JointSide Member::side_of(const Hold& hold, bool member, double dt) const {
-    const AttachedBodies bodies = attached_bodies(hold.joint);
-    const dBodyID body = (bodies.a == hold.body) == member ? bodies.a : bodies.b;
-    if (body == nullptr || !(detail::is_solved(bodies.a) || detail::is_solved(bodies.b))) return {};
-    const JointFrame<double> segment = pose(hold.at.segment);
-    const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
-    const Wrench& wrench = member ? hold.wrench : hold.on_other;
-    return {.before = hold.before[member ? 0 : 1],
-            .after = contact_body(body),
-            .arm = difference(place, to_core(dBodyGetPosition(body))),
-            .impulse = scaled(dt, wrench.force),
-            .moment = scaled(dt, wrench.torque)};
-}
-
 DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
     if (touches.empty() && holds_.empty()) return;
@@ -224,7 +194,9 @@ DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
     }
     for (const Hold& hold : holds_) {
         if (!hold.acts) continue;
-        by_joints.add(side_of(hold, true, dt), side_of(hold, false, dt), hold.at.segment);
+        const JointFrame<double> segment = pose(hold.at.segment);
+        const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
+        by_joints.add(hold.side(true, place, dt), hold.side(false, place, dt), hold.at.segment);
     }
     const int section = course_.struck(steps_, loads_, strike, by_joints);
     if (section != no_section) sections.push_back(section);

@@ -21,25 +21,33 @@
 // together or meet at a node.
 //
 // An elastic one opens where the elastic frame yields, and then swings as that does until it rests;
-// as one body it has the shape without load. Bodies of the user's cannot be joined to it, and steps
-// are refused where they are.
+// as one body it has the shape without load.
+//
+// What holds on to it. The user's joints go to the body that has the member where they hold,
+// anchors, axes and angle as they are: balls and hinges by their anchor, which finds the nearest
+// member, or by `attach`, what has no anchor by `attach` alone; joints of other kinds are refused.
+// Give them to `bodies()` or `body_of` when they are made. What they hold and what of the structure
+// hangs together with it do not collide. A joint on a member that is removed holds nothing more.
 //
 // Not thread-safe. World, ODE's world and the space must outlive this.
 #pragma once
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "ductile/ode/divisible.hpp"
 #include "ductile/ode/members.hpp"
 #include "ductile/ode/piece.hpp"
 #include "ductile/ode/plastic_joint.hpp"
+#include "ductile/ode/user_joint.hpp"
 #include "ductile/ode/world.hpp"
 #include "ductile/structure/divided_structure.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -68,15 +76,37 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     /// The one that has a body of a member, by its number from the start.
     /// @throws std::invalid_argument as StructurePlan::body, and where it was removed.
     [[nodiscard]] dBodyID body_of(std::string_view member, std::size_t piece = 0) const;
+    /// A joint of a body of it holds at a node, or at `share` of a member's axis, of the structure
+    /// as it was made. To be called between steps.
+    /// @throws std::invalid_argument as place(), and where the node is the ground's or the joint
+    /// null.
+    void attach(NodeId node, dJointID joint) { attach(point(node), joint); }
+    void attach(std::string_view member, double share, dJointID joint) {
+        attach(point(member, share), joint);
+    }
 
   private:
+    struct Hold : UserJoint {
+        StructureHold at;
+    };
     using Joint = PlasticJoint<SectionJoint<double>>;
 
     [[nodiscard]] dBodyID make_cluster(std::size_t cluster, dBodyID like);
     void end_body(dBodyID body);
+    void attach(const Point& point, dJointID joint);
+    [[nodiscard]] StructureHold hold_of(dJointID joint, std::size_t cluster) const;
+    [[nodiscard]] bool is_there(const Hold& hold) const;
+    void hand_over();
+    [[nodiscard]] std::size_t cluster_on(dBodyID body) const {
+        return std::size_t(std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
+    }
     [[nodiscard]] bool held(std::size_t cluster) const { return course_.clusters()[cluster].held; }
     [[nodiscard]] Vector3<double> gravity() const;
     [[nodiscard]] bool rests(std::span<const Touch> touches) const;
+    [[nodiscard]] std::size_t acting_holds() const {
+        return std::size_t(std::count_if(holds_.begin(), holds_.end(),
+                                         [](const Hold& hold) { return hold.acts; }));
+    }
     [[nodiscard]] bool may_be_beyond(std::span<const Touch> touches) const;
     void read(double dt, std::span<Touch> touches);
 
@@ -91,6 +121,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     void rearranged() override {
         if (!left_) world_.members_->rearranged();
     }
+    DUCTILE_INLINE void find_holds() override;
     DUCTILE_INLINE void wake() override;
     DUCTILE_INLINE void set_gravity(double factor) override;
 
@@ -111,16 +142,19 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
         return DividedStructure::key_of(std::size_t(section));
     }
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
+    [[nodiscard]] DUCTILE_INLINE bool holds(dBodyID own, dBodyID other) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
     [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
-    DUCTILE_INLINE void require_possible() override;
+    void require_possible() override { find_holds(); }
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    void begin_blow(double /*noticed*/) override {}
+    void begin_blow(double noticed) override { expect_blow(noticed); }
+    DUCTILE_INLINE bool switch_holds(bool on) override;
+    DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
     DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
@@ -137,7 +171,9 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     std::vector<dBodyID> bodies_;      ///< by cluster
     std::vector<PieceCourse> courses_; ///< of a step
     PressedTouches pressed_;           ///< of those that are held
-    std::size_t proved_touches_ = 0;
+    std::vector<Hold> holds_;
+    std::vector<std::pair<dJointID, StructureHold>> told_; ///< which places joints hold
+    std::size_t proved_touches_ = 0;                       ///< with joints that held
     std::optional<Vector3<double>>
         proved_; ///< gravity at which it is proved that it stays as it is
 };

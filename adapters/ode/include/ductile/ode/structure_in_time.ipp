@@ -90,6 +90,7 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
         dGeomDestroy(boxes_[b]);
         boxes_[b] = nullptr;
     }
+    hand_over();
     for (dBodyID body : old) {
         if (body != nullptr) end_body(body);
     }
@@ -124,6 +125,100 @@ DUCTILE_INLINE bool StructureInTime::hangs_together(dBodyID a, dBodyID b) const 
     });
 }
 
+// ---- what holds on to it
+
+DUCTILE_INLINE void StructureInTime::attach(const Point& point, dJointID joint) {
+    const StructureHold hold = hold_at(point);
+    if (joint == nullptr) {
+        throw std::invalid_argument("StructureInTime.attach.joint = null: must be a joint");
+    }
+    std::erase_if(told_, [joint](const auto& told) { return told.first == joint; });
+    std::erase_if(holds_, [joint](const Hold& known) { return known.joint == joint; });
+    told_.emplace_back(joint, hold);
+}
+
+/// Of a joint that is new, on the body of a cluster.
+DUCTILE_INLINE StructureHold StructureInTime::hold_of(dJointID joint, std::size_t c) const {
+    const auto anchor = anchor_of(joint, bodies_[c], "StructureInTime.attach.joint");
+    for (const auto& [told, hold] : told_) {
+        if (told != joint) continue;
+        if (course_.has_body(hold.body) && course_.cluster_of(hold.body) == c) return hold;
+        throw std::invalid_argument(
+            "StructureInTime.attach.joint: must be on the body that has the place where it holds");
+    }
+    if (!anchor) {
+        throw std::invalid_argument(
+            "StructureInTime.attach.joint: a fixed joint of its body must be told where it holds");
+    }
+    return hold_near(c, *anchor);
+}
+
+/// It holds where it did.
+DUCTILE_INLINE bool StructureInTime::is_there(const Hold& hold) const {
+    constexpr double drift = 1e-3; // more than of a joint that is solved [m]
+    const bool told = std::any_of(told_.begin(), told_.end(),
+                                  [&](const auto& each) { return each.first == hold.joint; });
+    if (told) return true;
+    const auto anchor = anchor_of(hold.joint, hold.body, "StructureInTime.attach.joint");
+    return anchor && norm(difference(*anchor, point_of(hold.at))) < drift;
+}
+
+DUCTILE_INLINE void StructureInTime::find_holds() {
+    std::vector<Hold> found;
+    for (std::size_t c = 0; c < bodies_.size(); ++c) {
+        for (int i = 0, count = dBodyGetNumJoints(bodies_[c]); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(bodies_[c], i);
+            const bool own = std::any_of(
+                joints_.begin(), joints_.end(),
+                [joint](const OpenJoint& open) { return open.constraint->id() == joint; });
+            if (own || dJointGetType(joint) == dJointTypeContact) continue;
+            const bool acts = dJointIsEnabled(joint) != 0;
+            const auto known = std::find_if(holds_.begin(), holds_.end(), [&](const Hold& hold) {
+                return hold.joint == joint && hold.body == bodies_[c] && is_there(hold);
+            });
+            found.push_back(known != holds_.end()
+                                ? *known
+                                : Hold{{joint, bodies_[c], acts}, hold_of(joint, c)});
+            found.back().acts = acts;
+            if (cluster_on(found.back().other()) == bodies_.size()) continue;
+            throw std::invalid_argument(
+                "StructureInTime.attach.joint: must hold another body, not two of the structure's");
+        }
+    }
+    holds_ = std::move(found);
+}
+
+/// To the bodies that there are now.
+DUCTILE_INLINE void StructureInTime::hand_over() {
+    std::erase_if(holds_, [this](const Hold& hold) {
+        if (course_.has_body(hold.at.body)) return false;
+        dJointAttach(hold.joint, nullptr, nullptr);
+        return true;
+    });
+    for (Hold& hold : holds_) {
+        hold.go_to(bodies_[course_.cluster_of(hold.at.body)]);
+        ode::wake(hold.joint);
+    }
+}
+
+/// While it is whole the user's collisions leave out what a joint holds to its body; so do then all
+/// bodies that hang together with it.
+DUCTILE_INLINE bool StructureInTime::holds(dBodyID own, dBodyID other) const {
+    return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
+        return hold.acts && hold.other() == other &&
+               hanging_on(course_.cluster_of(hold.at.body))[cluster_on(own)];
+    });
+}
+
+DUCTILE_INLINE bool StructureInTime::switch_holds(bool on) {
+    bool any = false;
+    for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
+    return any;
+}
+DUCTILE_INLINE void StructureInTime::see_coming() {
+    for (Hold& hold : holds_) hold.see_coming();
+}
+
 DUCTILE_INLINE void StructureInTime::wake() {
     proved_.reset();
     for (std::size_t c = 0; c < bodies_.size(); ++c) wake_cluster(c);
@@ -141,24 +236,6 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 
 // ---- a step
 
-DUCTILE_INLINE void StructureInTime::require_possible() {
-    const auto is_own = [this](dJointID joint) {
-        return std::any_of(joints_.begin(), joints_.end(), [joint](const OpenJoint& open) {
-            return open.constraint->id() == joint;
-        });
-    };
-    for (dBodyID body : bodies_) {
-        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
-            const dJointID joint = dBodyGetJoint(body, i);
-            const bool acts = dJointIsEnabled(joint) != 0;
-            if (!acts || dJointGetType(joint) == dJointTypeContact || is_own(joint)) continue;
-            throw std::invalid_argument(
-                "StructureInTime.bodies: no joint of the user's may hold them, as they come and "
-                "go: use Structure");
-        }
-    }
-}
-
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
         const Vector3<double> arm = difference(at, to_core(dBodyGetPosition(bodies_[c])));
@@ -166,7 +243,8 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
     });
 }
 
-DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& /*joints*/) {
+DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& joints) {
+    for (const Hold& hold : holds_) joints.push_back(hold.joint);
     courses_.clear();
     for (dBodyID body : bodies_) courses_.emplace_back(body);
 }
@@ -175,16 +253,26 @@ DUCTILE_INLINE void StructureInTime::after_solve() {
         if (held(c)) dBodyDisable(bodies_[c]); // ODE wakes what was touched
         courses_[c].see(bodies_[c]);
     }
+    for (Hold& hold : holds_) {
+        if (!hold.see()) continue;
+        note(hold.at, courses_[cluster_on(hold.body)].pose, hold.wrench.force, hold.wrench.torque);
+    }
 }
 
 /// Nothing acts on it but what it carried before.
 DUCTILE_INLINE bool StructureInTime::rests(std::span<const Touch> touches) const {
-    return forces_.empty() && std::none_of(touches.begin(), touches.end(), [](const Touch& touch) {
-               return detail::is_solved(touch.bodies.a) || detail::is_solved(touch.bodies.b);
-           });
+    return forces_.empty() &&
+           std::none_of(touches.begin(), touches.end(),
+                        [](const Touch& touch) {
+                            return detail::is_solved(touch.bodies.a) ||
+                                   detail::is_solved(touch.bodies.b);
+                        }) &&
+           std::none_of(holds_.begin(), holds_.end(),
+                        [](const Hold& hold) { return hold.acts && hold.is_solved(); });
 }
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(std::span<const Touch> touches) const {
-    if (!proved_ || *proved_ != gravity() || !rests(touches) || proved_touches_ != touches.size()) {
+    if (!proved_ || *proved_ != gravity() || !rests(touches) ||
+        proved_touches_ != touches.size() + acting_holds()) {
         return true;
     }
     return std::any_of(courses_.begin(), courses_.end(),
@@ -211,8 +299,7 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<Touch> touches) {
     }
     const auto push = [&](dBodyID body, const Vector3<double>& point,
                           const Vector3<double>& force) {
-        const auto c =
-            std::size_t(std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
+        const std::size_t c = cluster_on(body);
         const std::size_t on = course_.nearest(c, steps_[c].pose, point);
         loads_.push_back({on, point, scaled(dt, force), Vector3<double>::Zero()});
         return int(on);
@@ -223,6 +310,9 @@ DUCTILE_INLINE void StructureInTime::read(double dt, std::span<Touch> touches) {
     }
     for (const PressedTouches::Pressed& asleep : pressed_.asleep()) {
         push(asleep.on, asleep.point, asleep.force);
+    }
+    for (const Hold& hold : holds_) {
+        if (hold.acts) add_load(hold.at, dt);
     }
     for (const OpenJoint& open : joints_) {
         if (!open.constraint->is_awake_member()) continue;
@@ -255,7 +345,7 @@ DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> tou
     if (!may_be_beyond(touches)) return;
     read(dt, touches);
     proved_.reset();
-    proved_touches_ = touches.size();
+    proved_touches_ = touches.size() + acting_holds();
     sections = course_.beyond(steps_, loads_, dt);
     if (sections.empty() && rests(touches) && joints_.empty()) proved_ = gravity();
 }
@@ -263,14 +353,20 @@ DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> tou
 DUCTILE_INLINE void StructureInTime::find_struck(double dt, std::span<Touch> touches,
                                                  std::vector<int>& sections) {
     proved_.reset();
-    if (touches.empty()) return;
+    if (touches.empty() && holds_.empty()) return;
     read(dt, touches);
     double energy = 0; // that contacts took
     for (const Touch& touch : touches) {
         const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
         energy += pressed * (touch.closing + touch.closing_speed()) / 2;
     }
-    sections = course_.struck(steps_, loads_, energy);
+    MemberStrike by_joints;
+    for (const Hold& hold : holds_) {
+        if (!hold.acts) continue;
+        const Vector3<double> place = point_of(hold.at);
+        by_joints.add(hold.side(true, place, dt), hold.side(false, place, dt), 0);
+    }
+    sections = struck(energy, by_joints);
 }
 
 DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ahead) {
