@@ -45,10 +45,6 @@ Result run(const Scenario& scenario, const std::string& solver = solvers.front()
     return drive<Scene>(scenario, method, solver);
 }
 
-/// Axes that share a surface misplace 1 to 2 % at a tolerance of 1 % in ODE, and a third of that at
-/// 0.1 %.
-double tolerance_of(Method method) { return method == Method::elastic_plastic_2 ? 1e-3 : 0.01; }
-
 Scenario in_frames(double frame) {
     Scenario s;
     s.frame = frame;
@@ -189,7 +185,6 @@ TEST_CASE("twice the yield stress takes twice the energy", "[charpy]") {
 TEST_CASE("an elastic-plastic joint flows for the turn that its spring leaves", "[charpy]") {
     const Method method = GENERATE(from_range(elastic_methods));
     Scenario scenario = in_frames(GENERATE(from_range(frames)));
-    scenario.tolerance = tolerance_of(method);
     const Reference expected = reference(scenario, method);
     INFO(to_string(method) << ", frame " << scenario.frame);
     // M_p²/2k = 64²/(2 · 200e9 · 10 · 8³/12 mm⁴/27.5 mm)
@@ -212,7 +207,6 @@ TEST_CASE("a softer steel stores more and flows less", "[charpy]") {
     const double modulus = GENERATE(40e9, 70e9, 100e9, 150e9);
     INFO(to_string(method) << ", E = " << modulus << " Pa");
     Scenario scenario;
-    scenario.tolerance = tolerance_of(method);
     scenario.youngs_modulus = modulus;
     const Reference expected = reference(scenario, method);
     CHECK(expected.plastic_work == Approx(122.01607 - 200e9 / modulus * 1.32).epsilon(1e-7));
@@ -234,7 +228,6 @@ TEST_CASE("elastic-plastic work does not scatter over the seed's five steps", "[
 TEST_CASE("an elastic-plastic joint breaks at its rotation too", "[charpy]") {
     const Method method = GENERATE(from_range(elastic_methods));
     Scenario scenario;
-    if (method == Method::elastic_plastic_2) scenario.tolerance = 2.5e-4;
     scenario.max_plastic_rotation = 1.5;
     const Result r = run(scenario, solvers.front(), method);
     INFO(to_string(method));
