@@ -222,7 +222,7 @@ class CoupledJoint {
         const Scalar rate = flows ? dt / (first_strength_ * now.by) : Scalar(0);
         const Scalar power = std::abs(numeric::dot(predicted, start_));
         if constexpr (requires { surface_.semi_axes(); }) {
-            if (flows && ahead_)
+            if (flows && ahead_ && !parameters_.stiffness.allFinite()) // of rigid rows alone
                 passing_ = flow_at_start(surface_, predicted, start_, motion.mass, dt);
         }
         const Scalar before = std::abs(numeric::dot(predicted, state_.start_velocity));
