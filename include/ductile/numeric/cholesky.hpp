@@ -6,8 +6,8 @@
 //   A = L D Lᵀ,   A x = b  ⇔  L y = b, D z = y, Lᵀ x = z;   the factor of A = C Cᵀ is C = L √D
 //
 // Why not Eigen's: for matrices this small its blocked kernels are compiled and never run, which
-// was a good part of the time that a program with a joint took to compile. Sums of products, row by
-// column, suit a compiler that knows N: it keeps them in registers.
+// was a good part of the time that a program with a joint took to compile. Columns as a whole, in
+// loops that are written out, suit a compiler that knows N: two rows a register, no counting.
 //
 // A matrix of fewer rows than N is filled up with those of 1, and solved as fast as one of N.
 //
@@ -19,10 +19,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <limits>
 
 namespace ductile::numeric {
@@ -38,22 +36,24 @@ class Cholesky {
     Cholesky() = default;
     explicit Cholesky(const Matrix& a) noexcept : succeeded_(true), regular_(true) {
         constexpr S epsilon = std::numeric_limits<S>::epsilon();
-        for (int j = 0; j < N; ++j) {
-            std::array<S, std::size_t(N)> scaled{}; // row j of L D
-            S pivot = a(j, j);
+#pragma GCC unroll 6
+        for (int j = 0; j < N; ++j) { // column j of L D, and of L
+            Vector column;
+#pragma GCC unroll 6
+            for (int i = j; i < N; ++i) column[i] = a(i, j);
+#pragma GCC unroll 6
             for (int k = 0; k < j; ++k) {
-                scaled[std::size_t(k)] = l_(j, k) * d_[k];
-                pivot -= l_(j, k) * scaled[std::size_t(k)];
+                const S share = l_(j, k) * d_[k];
+#pragma GCC unroll 6
+                for (int i = j; i < N; ++i) column[i] -= l_(i, k) * share;
             }
+            const S pivot = column[j];
             succeeded_ = succeeded_ && pivot > 0;
             regular_ = regular_ && pivot * pivot > epsilon * a(j, j) * a(j, j);
             d_[j] = pivot;
             inverse_d_[j] = 1 / pivot;
-            for (int i = j + 1; i < N; ++i) {
-                S left = a(i, j);
-                for (int k = 0; k < j; ++k) left -= l_(i, k) * scaled[std::size_t(k)];
-                l_(i, j) = left * inverse_d_[j];
-            }
+#pragma GCC unroll 6
+            for (int i = j + 1; i < N; ++i) l_(i, j) = column[i] * inverse_d_[j];
         }
     }
 
@@ -66,11 +66,15 @@ class Cholesky {
     /// x with A x = b.
     [[nodiscard]] Vector solve(const Vector& b) const noexcept {
         Vector x = b;
-        for (int i = 0; i < N; ++i) {
-            for (int k = 0; k < i; ++k) x[i] -= l_(i, k) * x[k];
+#pragma GCC unroll 6
+        for (int j = 0; j < N; ++j) {
+#pragma GCC unroll 6
+            for (int i = j + 1; i < N; ++i) x[i] -= l_(i, j) * x[j];
         }
         for (int i = 0; i < N; ++i) x[i] *= inverse_d_[i];
+#pragma GCC unroll 6
         for (int i = N - 1; i >= 0; --i) {
+#pragma GCC unroll 6
             for (int k = i + 1; k < N; ++k) x[i] -= l_(k, i) * x[k];
         }
         return x;
