@@ -55,13 +55,22 @@ inline constexpr double contact_softness = 1e-6;
 
 /// A body that moves. Plain value.
 struct IslandBody {
-    Matrix6<double> mass = Matrix6<double>::Identity();     ///< M
-    Matrix6<double> inverse_mass = Matrix6<double>::Zero(); ///< 0 for a locked axis, where M is 1
-    Vector6<double> velocity = Vector6<double>::Zero();     ///< v, the answer
+    Vector3<double> inverse_mass = Vector3<double>::Zero(); ///< of each axis, 0: locked [1/kg]
+    /// Symmetric, a row and column of zeros: locked [1/(kg m²)].
+    Matrix3<double> inverse_inertia = Matrix3<double>::Zero();
+    Vector6<double> velocity = Vector6<double>::Zero(); ///< v, the answer
 };
 
-/// `inverse_mass`: of each axis, 0: locked [1/kg]; `inverse_inertia`: world axes, symmetric, a row
-/// and column of zeros: locked [1/(kg m²)].
+/// M, 1 for a locked axis.
+[[nodiscard]] Matrix6<double> mass(const IslandBody& body) noexcept;
+/// M⁻¹ on an impulse: the velocities that it gives.
+[[nodiscard]] inline Vector6<double> moved(const IslandBody& body,
+                                           const Vector6<double>& impulse) noexcept {
+    return twist_of(Vector3<double>(linear(impulse).cwiseProduct(body.inverse_mass)),
+                    times(body.inverse_inertia, angular(impulse)));
+}
+
+/// Symmetric whatever round-off is in `inverse_inertia`, and locked about axes of next to none.
 [[nodiscard]] IslandBody island_body(const Vector3<double>& inverse_mass,
                                      const Matrix3<double>& inverse_inertia) noexcept;
 

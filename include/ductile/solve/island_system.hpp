@@ -123,6 +123,7 @@ class IslandSystem {
     std::vector<Run> runs_;
     std::vector<numeric::BlockLdlt::Edge> edges_, pattern_;
     numeric::BlockLdlt factors_;
+    std::vector<Matrix6<double>> masses_; ///< M
     std::vector<Vector6<double>> change_; ///< dv
     double scale_ = 0, noise_ = 0;
     int factorisations_ = 0;

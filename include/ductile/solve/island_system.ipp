@@ -15,8 +15,9 @@ namespace detail {
 
 /// A row's entries on an axis that a body has locked are of no effect.
 DUCTILE_INLINE void lock(Vector6<double>& on, const IslandBody& body) noexcept {
-    for (int i = 0; i < 6; ++i) {
-        if (body.inverse_mass(i, i) == 0) on[i] = 0;
+    for (int i = 0; i < 3; ++i) {
+        if (body.inverse_mass[i] == 0) on[i] = 0;
+        if (body.inverse_inertia(i, i) == 0) on[3 + i] = 0;
     }
 }
 
@@ -29,6 +30,8 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
     rows_.resize(island.rows.size());
     blocks_.resize(island.blocks.size());
     change_.resize(island.bodies.size());
+    masses_.clear();
+    for (const IslandBody& body : island.bodies) masses_.push_back(mass(body));
     find_runs();
     find_pattern();
     block_of_.assign(island.rows.size(), -1);
@@ -157,7 +160,7 @@ DUCTILE_INLINE void IslandSystem::update_velocities() noexcept {
     }
     for (IslandBody& body : bodies) {
         const Vector6<double> impulse = body.velocity;
-        body.velocity.noalias() = body.inverse_mass * impulse;
+        body.velocity = moved(body, impulse);
     }
 }
 
@@ -219,7 +222,7 @@ DUCTILE_INLINE bool IslandSystem::factor() noexcept {
     ++factorisations_;
     factors_.clear();
     for (std::size_t i = 0; i < island_->bodies.size(); ++i) {
-        factors_.diagonal(int(i)) = island_->bodies[i].mass;
+        factors_.diagonal(int(i)) = masses_[i];
     }
     for (Run& run : runs_) run.ranks = false;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {

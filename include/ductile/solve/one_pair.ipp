@@ -21,94 +21,75 @@ class OnePair {
   private:
     static constexpr int most = 6;
 
-    void add(const IslandBody& body, Vector6<double> IslandRow::*on, double (*moved)[most]);
+    void add(const IslandBody& body, Vector6<double> IslandRow::*on, Matrix6<double>& moved);
     [[nodiscard]] bool factor_and_solve() noexcept;
-    /// b - A x of a row; `size`: of what is added up for it.
-    [[nodiscard]] double left(int i, double& size) const noexcept;
+    /// A_ij x_j
+    [[nodiscard]] double part(int i, int j) const noexcept {
+        return (j <= i ? a_(i, j) : a_(j, i)) * x_[j];
+    }
+    /// b - A x of a row.
+    [[nodiscard]] double left(int i) const noexcept {
+        double result = rows_[i].target;
+        for (int j = 0; j < most; ++j) result -= part(i, j);
+        return result;
+    }
     [[nodiscard]] Side where(int i) const noexcept;
     [[nodiscard]] bool solve_bounded(IslandReport& report) noexcept;
     [[nodiscard]] bool solve_ellipsoid(IslandBlock& block, IslandReport& report) noexcept;
 
-    Island* island_ = nullptr;
-    double a_[most][most];                             ///< A, lower triangle by rows
-    double f_[most][most];                             ///< its factors
-    double x_[most];                                   ///< impulses
-    double moved_a_[most][most], moved_b_[most][most]; ///< M⁻¹ Jᵀ: of row i on a body
+    IslandRow* rows_ = nullptr;
+    Matrix6<double> a_;                 ///< A, its lower triangle
+    Vector6<double> x_;                 ///< impulses
+    Matrix6<double> moved_a_, moved_b_; ///< M⁻¹ Jᵀ: of row i on a body
     Side side_[most];
 };
 
 /// M⁻¹ on_k of each row, and its share of A.
 inline void OnePair::add(const IslandBody& body, Vector6<double> IslandRow::*on,
-                         double (*moved)[most]) {
-    const Matrix6<double>& m = body.inverse_mass;
+                         Matrix6<double>& moved) {
     for (int i = 0; i < most; ++i) {
-        const Vector6<double>& v = island_->rows[std::size_t(i)].*on;
-        for (int k = 0; k < 3; ++k) {
-            moved[i][k] = m(k, k) * v[k];
-            moved[i][3 + k] = m(3 + k, 3) * v[3] + m(3 + k, 4) * v[4] + m(3 + k, 5) * v[5];
+        const Vector6<double> velocity = solve::moved(body, rows_[i].*on);
+        for (int k = 0; k < 6; ++k) moved(i, k) = velocity[k];
+    }
+#pragma GCC unroll 6
+    for (int j = 0; j < most; ++j) {
+        const Vector6<double>& force = rows_[j].*on;
+        Vector6<double> effect;
+#pragma GCC unroll 6
+        for (int i = j; i < most; ++i) effect[i] = moved(i, 0) * force[0];
+#pragma GCC unroll 6
+        for (int k = 1; k < 6; ++k) {
+#pragma GCC unroll 6
+            for (int i = j; i < most; ++i) effect[i] += moved(i, k) * force[k];
         }
-        for (int j = 0; j <= i; ++j) {
-            const Vector6<double>& u = island_->rows[std::size_t(j)].*on;
-            double sum = 0;
-            for (int k = 0; k < 6; ++k) sum += moved[i][k] * u[k];
-            a_[i][j] += sum;
-        }
+#pragma GCC unroll 6
+        for (int i = j; i < most; ++i) a_(i, j) += effect[i];
     }
 }
 
 /// x of the free rows with those that are held as they are; false where a pivot is not positive.
 inline bool OnePair::factor_and_solve() noexcept {
-    double z[most];
-    for (int i = 0; i < most; ++i) {
-        z[i] = island_->rows[std::size_t(i)].target;
-        for (int j = 0; j <= i; ++j) f_[i][j] = a_[i][j];
-    }
+    Matrix6<double> of_free = a_;
+    Vector6<double> right;
+    for (int i = 0; i < most; ++i) right[i] = rows_[i].target;
     for (int i = 0; i < most; ++i) {
         if (side_[i] == Side::free) continue;
-        for (int j = 0; j < i; ++j) {
-            z[j] -= a_[i][j] * x_[i];
-            f_[i][j] = 0;
+        for (int j = 0; j < most; ++j) {
+            right[j] -= (i <= j ? a_(j, i) : a_(i, j)) * x_[i];
+            of_free(std::max(i, j), std::min(i, j)) = 0;
         }
-        for (int j = i + 1; j < most; ++j) {
-            z[j] -= a_[j][i] * x_[i];
-            f_[j][i] = 0;
-        }
-        f_[i][i] = 1;
+        of_free(i, i) = 1;
     }
-    bool positive = true;
-    for (int j = 0; j < most; ++j) {
-        positive = positive && f_[j][j] > 0;
-        const double inverse = 1 / f_[j][j];
-        double l[most];
-        for (int i = j + 1; i < most; ++i) l[i] = f_[i][j] * inverse;
-        for (int i = j + 1; i < most; ++i) {
-            for (int k = j + 1; k <= i; ++k) f_[i][k] -= l[i] * f_[k][j];
-        }
-        for (int i = j + 1; i < most; ++i) f_[i][j] = l[i];
-        if (side_[j] != Side::free) z[j] = x_[j];
-        for (int i = j + 1; i < most; ++i) z[i] -= l[i] * z[j];
-        z[j] = side_[j] == Side::free ? z[j] * inverse : x_[j];
+    for (int i = 0; i < most; ++i) {
+        if (side_[i] != Side::free) right[i] = x_[i];
     }
-    for (int j = most - 1; j >= 0; --j) {
-        for (int i = j + 1; i < most; ++i) z[j] -= f_[i][j] * z[i];
-        x_[j] = z[j];
-    }
-    return positive;
-}
-
-inline double OnePair::left(int i, double& size) const noexcept {
-    double result = island_->rows[std::size_t(i)].target;
-    size = std::abs(result);
-    for (int j = 0; j < most; ++j) {
-        const double part = (j <= i ? a_[i][j] : a_[j][i]) * x_[j];
-        result -= part;
-        size += std::abs(part);
-    }
-    return result;
+    const numeric::Cholesky<double, most> factors(of_free);
+    x_ = factors.solve(right);
+    return factors.succeeded();
 }
 
 inline Side OnePair::where(int i) const noexcept {
-    const IslandRow& row = island_->rows[std::size_t(i)];
+    const IslandRow& row = rows_[i];
     if (!(row.lower < row.upper)) return Side::lower;
     constexpr double round_off = 1e-13;
     if (side_[i] == Side::free) {
@@ -117,15 +98,16 @@ inline Side OnePair::where(int i) const noexcept {
                : x_[i] > row.upper + slack ? Side::upper
                                            : Side::free;
     }
-    double size = 0;
-    const double off = left(i, size), pulls = side_[i] == Side::lower ? off : -off;
+    double size = std::abs(row.target);
+    for (int j = 0; j < most; ++j) size += std::abs(part(i, j));
+    const double off = left(i), pulls = side_[i] == Side::lower ? off : -off;
     return pulls > round_off * size ? Side::free : side_[i];
 }
 
 inline bool OnePair::solve_bounded(IslandReport& report) noexcept {
     constexpr int rounds = 40, together = 6;
     for (int i = 0; i < most; ++i) {
-        const IslandRow& row = island_->rows[std::size_t(i)];
+        const IslandRow& row = rows_[i];
         side_[i] = row.lower < row.upper ? row.side : Side::lower;
         x_[i] = side_[i] == Side::lower ? row.lower : side_[i] == Side::upper ? row.upper : 0;
     }
@@ -138,15 +120,13 @@ inline bool OnePair::solve_bounded(IslandReport& report) noexcept {
             if (side == side_[i]) continue;
             ++wrong;
             side_[i] = side;
-            const IslandRow& row = island_->rows[std::size_t(i)];
+            const IslandRow& row = rows_[i];
             if (side != Side::free) x_[i] = side == Side::lower ? row.lower : row.upper;
         }
         if (wrong > 0) continue;
         for (int i = 0; i < most; ++i) {
-            double size = 0;
-            if (side_[i] == Side::free) {
-                report.residual = std::max(report.residual, std::abs(left(i, size)));
-            }
+            if (side_[i] != Side::free) continue;
+            report.residual = std::max(report.residual, std::abs(left(i)));
         }
         return true;
     }
@@ -162,9 +142,9 @@ inline bool OnePair::solve_ellipsoid(IslandBlock& block, IslandReport& report) n
     for (int i = 0; i < most; ++i) {
         const int k = i - block.first;
         const bool shares = k >= 0 && k < block.count;
-        const IslandRow& row = island_->rows[std::size_t(i)];
+        const IslandRow& row = rows_[i];
         if (!shares && (std::isfinite(row.lower) || std::isfinite(row.upper))) return false;
-        unit[i] = shares ? block.size[std::size_t(k)] : 1 / std::sqrt(a_[i][i]);
+        unit[i] = shares ? block.size[std::size_t(k)] : 1 / std::sqrt(a_(i, i));
         if (!(unit[i] > 0)) return false;
         shared[i] = shares ? 1 : 0;
         asked[i] = unit[i] * row.target;
@@ -172,7 +152,7 @@ inline bool OnePair::solve_ellipsoid(IslandBlock& block, IslandReport& report) n
     }
     Matrix6<double> scaled;
     for (int i = 0; i < most; ++i) {
-        for (int j = 0; j <= i; ++j) scaled(i, j) = unit[i] * a_[i][j] * unit[j];
+        for (int j = 0; j <= i; ++j) scaled(i, j) = unit[i] * a_(i, j) * unit[j];
     }
     double multiplier = 0, gauge = 0;
     Vector6<double> share;
@@ -195,9 +175,8 @@ inline bool OnePair::solve_ellipsoid(IslandBlock& block, IslandReport& report) n
         x_[i] = unit[i] * share[i] / (outside && shared[i] > 0 ? gauge : 1);
     }
     for (int i = 0; i < most; ++i) {
-        double size = 0;
         const double flow = multiplier * shared[i] * x_[i] / (unit[i] * unit[i]);
-        report.residual = std::max(report.residual, std::abs(left(i, size) - flow));
+        report.residual = std::max(report.residual, std::abs(left(i) - flow));
     }
     if (!(report.residual <= allowed * report.scale)) return false;
     block.state = outside ? BlockState::surface : BlockState::inside;
@@ -213,16 +192,16 @@ inline bool OnePair::solve(Island& island, IslandReport& report) noexcept {
         if (row.a != a || row.b != b) return false;
     }
     if (!island.blocks.empty() && island.blocks[0].kind != BlockKind::ellipsoid) return false;
-    island_ = &island;
-    for (auto& row : a_) std::fill(std::begin(row), std::end(row), 0.0);
+    rows_ = island.rows.data();
+    a_.setZero();
     if (a >= 0) add(island.bodies[std::size_t(a)], &IslandRow::on_a, moved_a_);
     if (b >= 0) add(island.bodies[std::size_t(b)], &IslandRow::on_b, moved_b_);
     double finite = 0, fastest = 0;
     for (int i = 0; i < most; ++i) {
         const IslandRow& row = island.rows[std::size_t(i)];
-        if (!(a_[i][i] > 0)) return false; // a locked axis: the general way leaves it alone
-        a_[i][i] += row.compliance;
-        finite += 0 * (a_[i][i] + row.target);
+        if (!(a_(i, i) > 0)) return false; // a locked axis: the general way leaves it alone
+        a_(i, i) += row.compliance;
+        finite += 0 * (a_(i, i) + row.target);
         fastest = std::max(fastest, std::abs(row.target));
     }
     if (!(finite == 0)) return false;
@@ -234,11 +213,10 @@ inline bool OnePair::solve(Island& island, IslandReport& report) noexcept {
         island.rows[std::size_t(i)].impulse = x_[i];
         island.rows[std::size_t(i)].side = side_[i];
     }
-    const auto move = [&](int body, const double(*moved)[most]) {
+    const auto move = [&](int body, const Matrix6<double>& moved) {
         Vector6<double>& velocity = island.bodies[std::size_t(body)].velocity;
-        velocity.setZero();
-        for (int i = 0; i < most; ++i) {
-            for (int k = 0; k < 6; ++k) velocity[k] += moved[i][k] * x_[i];
+        for (int k = 0; k < 6; ++k) {
+            for (int i = 0; i < most; ++i) velocity[k] += moved(i, k) * x_[i];
         }
     };
     for (IslandBody& body : island.bodies) body.velocity.setZero();

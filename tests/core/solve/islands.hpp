@@ -278,7 +278,7 @@ inline Eigen::MatrixXd system_matrix(const Island& island) {
         const Vector6<double> zero = Vector6<double>::Zero();
         const Vector6<double>& left = p.a == body ? p.on_a : p.b == body ? p.on_b : zero;
         const Vector6<double>& right = q.a == body ? q.on_a : q.b == body ? q.on_b : zero;
-        return left.dot(island.bodies[std::size_t(body)].inverse_mass * right);
+        return left.dot(moved(island.bodies[std::size_t(body)], right));
     };
     for (Eigen::Index i = 0; i < n; ++i) {
         for (Eigen::Index j = 0; j < n; ++j) {
