@@ -28,12 +28,14 @@ struct IslandSeat {
     Vector3<double> spin = Vector3<double>::Zero();
 };
 
-/// Adds a row of a force along `along` at `arm_a`, `arm_b` from the centres of mass and a moment
-/// about `about`, on A, and the opposite on B; `target`: velocity of A relative to B [m/s | rad/s].
+/// Adds a row of a force along `along` at `arm_a`, `arm_b` from the centres of mass on A, and the
+/// opposite on B; `target`: velocity of A relative to B [m/s].
 solve::IslandRow& add_row(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                           const Vector3<double>& arm_a, const Vector3<double>& arm_b,
-                          const Vector3<double>& along, const Vector3<double>& about,
-                          double target);
+                          const Vector3<double>& along, double target);
+/// The same of a moment about `about` [rad/s].
+solve::IslandRow& add_moment_row(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                 const Vector3<double>& about, double target);
 
 /// Adds the six rows of the link's last `prepare`, in the order of JointAxis, and the surface that
 /// they share; `dt`: for which their forces act [s]. Returns the first.

@@ -98,16 +98,28 @@ DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>
 DUCTILE_INLINE solve::IslandRow& add_row(solve::Island& island, const IslandSeat& a,
                                          const IslandSeat& b, const Vector3<double>& arm_a,
                                          const Vector3<double>& arm_b, const Vector3<double>& along,
-                                         const Vector3<double>& about, double target) {
+                                         double target) {
+    const Vector3<double> about_a = cross(arm_a, along), about_b = cross(arm_b, along);
     solve::IslandRow& row = island.rows.emplace_back();
-    const Vector6<double> on_a = twist_of(along, sum(cross(arm_a, along), about));
-    const Vector6<double> on_b = twist_of(along, sum(cross(arm_b, along), about));
     row.a = a.number;
     row.b = b.number;
-    row.on_a = on_a;
-    row.on_b = -on_b;
-    row.target = target - dot(linear(on_a), a.velocity) - dot(angular(on_a), a.spin) +
-                 dot(linear(on_b), b.velocity) + dot(angular(on_b), b.spin);
+    row.on_a = twist_of(along, about_a);
+    row.on_b = -twist_of(along, about_b);
+    row.target = target - dot(along, a.velocity) - dot(about_a, a.spin) + dot(along, b.velocity) +
+                 dot(about_b, b.spin);
+    return row;
+}
+
+DUCTILE_INLINE solve::IslandRow& add_moment_row(solve::Island& island, const IslandSeat& a,
+                                                const IslandSeat& b, const Vector3<double>& about,
+                                                double target) {
+    const Vector3<double> none = Vector3<double>::Zero();
+    solve::IslandRow& row = island.rows.emplace_back();
+    row.a = a.number;
+    row.b = b.number;
+    row.on_a = twist_of(none, about);
+    row.on_b = -row.on_a;
+    row.target = target - dot(about, a.spin) + dot(about, b.spin);
     return row;
 }
 
@@ -115,7 +127,6 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
                             const IslandSeat& b, double dt) {
     const int first = int(island.rows.size());
     const LinkPose<double>& pose = link.pose();
-    const Vector3<double> none = Vector3<double>::Zero();
     const detail::RowOrder order = detail::row_order(link);
     for (const JointAxis axis : order.axes) {
         const auto i = Eigen::Index(index(axis));
@@ -123,9 +134,8 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
         const Matrix3<double>& directions = turns(axis) ? pose.moment_axes() : pose.axes();
         const Vector3<double> direction = column(directions, int(i % 3));
         solve::IslandRow& row =
-            turns(axis)
-                ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), none, direction, limits.bias)
-                : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, none, limits.bias);
+            turns(axis) ? add_moment_row(island, a, b, direction, limits.bias)
+                        : add_row(island, a, b, pose.arm_a(), pose.arm_b(), direction, limits.bias);
         detail::rule(row, limits, dt);
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
@@ -154,9 +164,8 @@ DUCTILE_INLINE void add_given_rows(solve::Island& island, const IslandSeat& a, c
     for (int i = 0; i < 6; ++i) {
         Vector3<double> unit = none;
         unit[i % 3] = 1;
-        solve::IslandRow& row =
-            i < 3 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), unit, none, 0)
-                  : add_row(island, a, b, none, none, none, unit, 0);
+        solve::IslandRow& row = i < 3 ? add_row(island, a, b, pose.arm_a(), pose.arm_b(), unit, 0)
+                                      : add_moment_row(island, a, b, unit, 0);
         row.lower = row.upper = (i < 3 ? impulse.linear : impulse.angular)[i % 3];
         row.side = solve::Side::lower;
     }

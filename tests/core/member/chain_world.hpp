@@ -206,7 +206,7 @@ inline void ChainWorld::solve(double dt) {
             along[i] = 1;
             const double off = at[i] - striker_.position[i];
             add_row(island_, {number, striker_.velocity, none}, seat(body), none,
-                    difference(at, body.pose.origin), along, none, 0.2 * off / dt);
+                    difference(at, body.pose.origin), along, 0.2 * off / dt);
         }
     }
     if (!is_zero(push_)) {
@@ -217,7 +217,7 @@ inline void ChainWorld::solve(double dt) {
             along[i] = 1;
             solve::IslandRow& row = add_row(
                 island_, seat(body), {},
-                difference(end_of(member_.segments() - 1), body.pose.origin), none, along, none, 0);
+                difference(end_of(member_.segments() - 1), body.pose.origin), none, along, 0);
             row.lower = row.upper = push_[i];
             row.side = solve::Side::lower;
         }

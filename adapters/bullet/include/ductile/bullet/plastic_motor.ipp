@@ -75,9 +75,8 @@ DUCTILE_INLINE void MotorConstraint::open_rows(solve::Island& island, const Isla
     row_ = no_row;
     if (world_ == nullptr || !hinge_.isEnabled() || joint_.broken()) return;
     prepare();
-    const Vector3<double> none = Vector3<double>::Zero();
     row_ = int(island.rows.size());
-    solve::IslandRow& row = add_row(island, a, b, none, none, none, axis_, limits_.bias);
+    solve::IslandRow& row = add_moment_row(island, a, b, axis_, limits_.bias);
     row.compliance = limits_.compliance;
     row.lower = limits_.lower * dt_;
     row.upper = limits_.upper * dt_;

@@ -49,8 +49,7 @@ DUCTILE_INLINE std::array<Vector3<double>, 2> friction_directions(const dContact
 DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat& a,
                                          const IslandSeat& b, const Vector3<double>& along,
                                          double target, double cfm, double dt) {
-    solve::IslandRow& row =
-        ductile::add_row(island, a, b, arm_a_, arm_b_, along, Vector3<double>::Zero(), target);
+    solve::IslandRow& row = ductile::add_row(island, a, b, arm_a_, arm_b_, along, target);
     row.impulse = dot(begins_, along) * dt;
     row.compliance = cfm / dt;
     row.softness = softness_ * solve::own_effect(island, row);
