@@ -113,6 +113,8 @@ class EnergyMeter {
     /// The bodies were moved half a step ahead since before_step (frame/README.md): rows are solved
     /// where they are now.
     void bodies_ahead();
+    /// After it: a gyroscopic impulse that is given beside the engine's own [N m s].
+    void add_gyroscopic(const void* body, const Vector3<double>& impulse);
     /// Books the step of `dt` [s] that was opened by `before_step`.
     void after_step(double dt);
     /// Between two steps bodies of members were split or made one, or what `account` says happened
@@ -175,6 +177,7 @@ class EnergyMeter {
         double ahead = 0;                        ///< booked by bodies_ahead [J]
         Vector3<double> velocity_after{0, 0, 0}; ///< after the solve, before a break's release
         Vector3<double> spin_after{0, 0, 0};
+        Vector3<double> gyroscopic{0, 0, 0}; ///< beside the engine's own [N m s]
         bool asleep_after = false;
     };
     /// A plastic joint's totals at the start of the step [J].

@@ -116,6 +116,10 @@ DUCTILE_INLINE void EnergyMeter::bodies_ahead() {
     }
 }
 
+DUCTILE_INLINE void EnergyMeter::add_gyroscopic(const void* body, const Vector3<double>& impulse) {
+    if (Course* course = course_of(body)) course->gyroscopic = impulse;
+}
+
 DUCTILE_INLINE void EnergyMeter::after_step(double dt) {
     const HeldEnergy<double> now = held();
     for (const MeteredBody& body : bodies_) {
@@ -277,7 +281,8 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
     const double potential = dot(now.weight, moved) - dt * dot(now.weight, velocities) / 2;
     const Vector3<double>& w = course.spin_after;
     const double turning = (dot(w, times(start.inertia, w)) - dot(w, times(now.inertia, w))) / 2;
-    const double gyroscopic = -dot(gyroscopic_impulse(start, dt), spins) / 2;
+    const double gyroscopic =
+        -dot(sum(gyroscopic_impulse(start, dt), course.gyroscopic), spins) / 2;
     add(Account::integration, course.damped + potential + turning + gyroscopic);
 }
 

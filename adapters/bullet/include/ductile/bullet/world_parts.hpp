@@ -95,6 +95,8 @@ class WorldParts final : public PartEngine {
   private:
     class Settings;
     void tick(double h, bool ahead);
+    /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
+    void keep_spins(double h);
     [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
 
     // ---- islands that are done again alone

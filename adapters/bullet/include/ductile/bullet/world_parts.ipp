@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/world_parts.hpp"
 #include "ductile/frame/part_settings.hpp"
+#include "ductile/joint/gyroscopic.hpp"
 
 namespace ductile::bullet {
 
@@ -197,6 +199,24 @@ DUCTILE_INLINE void WorldParts::put_back() {
     time_ = kept_time_;
 }
 
+/// Members reckon with Bullet's own rule.
+DUCTILE_INLINE void WorldParts::keep_spins(double h) {
+    if (!members_->empty()) return;
+    for (btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
+        if (body->isStaticOrKinematicObject() || !body->isActive()) continue;
+        const double keeps = std::pow(1 - double(body->getAngularDamping()), h);
+        const Vector3<double> spin = scaled(keeps, to_core(body->getAngularVelocity()));
+        if (!turns_far(spin, h)) continue;
+        const Matrix3<double> about = sandwiched(
+            to_core(body->getCenterOfMassTransform().getBasis()), to_core(body->getLocalInertia()));
+        const Vector3<double> rest =
+            gyroscopic_rest(gyroscopic_impulse(*body, about, spin, h), about, spin, h);
+        if (is_zero(rest)) continue;
+        body->applyTorque(unweighted(to_bullet(scaled(1 / h, rest)), body->getAngularFactor()));
+        meter_.add_gyroscopic(body, rest);
+    }
+}
+
 DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     if (!std::exchange(forces_act_, false)) {
         forces_.apply([this](const btRigidBody& body) { return !local_ || scope_.has(body); });
@@ -214,6 +234,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
                      [this](const auto& body) { return concerns(body); });
         time_ += h;
         if (metered) meter_.bodies_ahead();
+        keep_spins(h);
     }
     members_->before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);

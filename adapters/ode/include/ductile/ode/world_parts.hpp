@@ -119,6 +119,8 @@ class WorldParts final : public PartEngine {
     void go_as_at(double time) const;
     void drive(const Vector3<double>& velocity, const Vector3<double>& spin, dBodyID body) const;
     void tick(double h, bool blow);
+    /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
+    void keep_spins(double h);
     void damp(double share);
     void drop_forces();
     void see_contacts();

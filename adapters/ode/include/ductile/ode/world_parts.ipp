@@ -235,6 +235,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     drive_as_at(end);
     if (!blow) {
         of_.meter.bodies_ahead();
+        keep_spins(h);
         closing_.see_motions(of_.bodies);
     }
     look(blow ? nullptr : &snapshot_);

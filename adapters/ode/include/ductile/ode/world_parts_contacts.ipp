@@ -9,6 +9,7 @@
 #include <functional>
 #include <utility>
 
+#include "ductile/joint/gyroscopic.hpp"
 #include "ductile/ode/convert.hpp"
 
 namespace ductile::ode {
@@ -172,6 +173,22 @@ DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
     }
     looked_ = false;
     return lengths > most ? std::min(next, most / lengths * h) : next;
+}
+
+/// Members reckon with ODE's own rule.
+DUCTILE_INLINE void WorldParts::keep_spins(double h) {
+    if (!of_.members->empty()) return;
+    for (dBodyID body : of_.bodies) {
+        if (!can_move(body) || dBodyIsEnabled(body) == 0) continue;
+        const Vector3<double> spin = angular_velocity(body);
+        if (!turns_far(spin, h)) continue;
+        const Matrix3<double> about = inertia(body);
+        const Vector3<double> rest =
+            gyroscopic_rest(gyroscopic_impulse(body, about, spin, h), about, spin, h);
+        if (is_zero(rest)) continue;
+        add_force(body, Vector3<double>::Zero(), scaled(1 / h, rest));
+        of_.meter.add_gyroscopic(body, rest);
+    }
 }
 
 } // namespace ductile::ode
