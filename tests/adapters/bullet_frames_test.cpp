@@ -581,3 +581,34 @@ TEST_CASE("Frames: a blow closes what touches, and nothing else", "[frame]") {
         engine.removeRigidBody(top.get());
     }
 }
+
+TEST_CASE("What float rounds of positions far off costs a frame nothing", "[frame]") {
+    // pairs of bodies that turn against each other on weak hinges, up to 400 m off
+    test::BulletEngine rig({0, 0, 0});
+    World world(rig.engine, {.warn = {}});
+    btSphereShape shape(btScalar(0.1));
+    std::vector<std::unique_ptr<btRigidBody>> bodies;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    for (int i = 0; i < 100; ++i) {
+        for (const int side : {-1, 1}) {
+            btRigidBody::btRigidBodyConstructionInfo info(1, nullptr, &shape, btVector3(1, 1, 1));
+            info.m_startWorldTransform.setOrigin(btVector3(btScalar(4 * i + side / 2.0), 0, 0));
+            btRigidBody& body = *bodies.emplace_back(std::make_unique<btRigidBody>(info));
+            body.setAngularVelocity(btVector3(0, 0, btScalar(side / 2.0)));
+            body.setLinearVelocity(btVector3(0, btScalar(0.25), 0));
+            rig.engine.addRigidBody(&body, 0, 0);
+        }
+        btTransform in_a(btQuaternion::getIdentity(), btVector3(btScalar(0.5), 0, 0)),
+            in_b(btQuaternion::getIdentity(), btVector3(btScalar(-0.5), 0, 0));
+        hinges.push_back(std::make_unique<Hinge>(*bodies[bodies.size() - 2], *bodies.back(), in_a,
+                                                 in_b, law(1e-6)));
+        world.add(*hinges.back());
+    }
+    for (int i = 0; i < 60; ++i) {
+        world.step(btScalar(1.0 / 60));
+        CHECK(world.frame().solves() <= 2);
+    }
+    CHECK(world.run().believed() == !rough);
+    for (auto& hinge : hinges) world.remove(*hinge);
+    for (auto& body : bodies) rig.engine.removeRigidBody(body.get());
+}

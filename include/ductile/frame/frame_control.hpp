@@ -33,6 +33,8 @@
 // length, such as a kick from elsewhere. The first length is done, and said. Unless rigid rows take
 // it as a frame begins, of velocities that hands gave since the last one: these are struck first,
 // in the shortest part.
+// Rounding: what rigid rows take and that of the engine's positions explains, in a part as long as
+// the frame, grows in shorter ones: it is said, and cuts none.
 // Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
 // its accelerations are not compared with what follows.
 // Before a part: a contact that touches and closes gets a blow, at most three in one instant, and
@@ -99,6 +101,7 @@ class FrameControl {
         double error = 0;
         double given = 0;     ///< of it: by dampers
         double astray = 0;    ///< of it: by breaks
+        double rounded = 0;   ///< of it: by the engine's rounding, in a part as long as the frame
         double of_rows = 0;   ///< of that, by flows
         double most = 0;      ///< that those can have taken: R x speed x length
         double allowed = 0;   ///< that grows as the budget goes
@@ -112,6 +115,9 @@ class FrameControl {
         bool ended = false;  ///< a flow ended in it
         bool moves = false;  ///< something was to be judged
         bool fitted = false; ///< rigid rows made velocities fit, without an error
+
+        /// That a shorter part would lessen.
+        [[nodiscard]] double of_length() const noexcept { return error - rounded; }
     };
     /// What is known of a row from the part before.
     struct Past {
@@ -163,7 +169,8 @@ class FrameControl {
     double allowed_ = 0;       ///< of the last part [J]
     double work_ = 0;          ///< plastic, of all joints [J]
     double taken_ = 0;         ///< by them beside their flow [J]
-    int solves_ = 0;           ///< of this frame
+    double length_ = 0;        ///< of this frame [s]
+    int solves_ = 0;           ///< the same
 };
 
 } // namespace ductile

@@ -248,6 +248,19 @@ TEST_CASE("An error that does not come from the length of a part is a jump", "[f
     CHECK(report.left.energy >= 0.5);
 }
 
+TEST_CASE("What rounding may explain is said, and no reason for shorter parts", "[frame]") {
+    Engine engine = sliding_mass();
+    engine.kick = 0.5;
+    for (const double rounded : {0.0, 0.4, 0.6}) {
+        engine.rounded = rounded;
+        FrameControl control;
+        const auto& report = control.frame(engine, 1e-3); // it flows all along
+        CHECK((report.solves() == 1) == (rounded > engine.kick));
+        CHECK(report.left.energy >= engine.kick);
+        CHECK_FALSE(control.run().believed());
+    }
+}
+
 TEST_CASE("A kick from elsewhere says nothing of the forces after it", "[frame]") {
     // a mass that is tied to another one while it is faster; these slide on rows that stop late and
     // early in the frame

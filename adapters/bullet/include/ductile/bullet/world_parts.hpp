@@ -91,6 +91,7 @@ class WorldParts final : public PartEngine {
     [[nodiscard]] DUCTILE_INLINE ClosingContacts closing(double h, double touching,
                                                          double apart) override;
     [[nodiscard]] DUCTILE_INLINE double kinetic_energy() const override;
+    [[nodiscard]] DUCTILE_INLINE double rounding(double h) const override;
 
   private:
     class Settings;

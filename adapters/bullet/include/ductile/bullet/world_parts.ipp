@@ -90,6 +90,21 @@ class WorldParts::Settings {
     btContactSolverInfo usual_;
 };
 
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE double kinetic_energy(const btRigidBody& body) {
+    if (!(body.getInvMass() > 0) || body.isStaticOrKinematicObject()) return 0;
+    const btVector3 spin = body.getAngularVelocity() * body.getCenterOfMassTransform().getBasis();
+    double sum = double(body.getLinearVelocity().length2()) / (2 * double(body.getInvMass()));
+    for (int k = 0; k < 3; ++k) {
+        const btScalar inverse = body.getInvInertiaDiagLocal()[k];
+        if (inverse > 0) sum += double(spin[k] * spin[k]) / (2 * double(inverse));
+    }
+    return sum;
+}
+
+} // namespace detail
+
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
                                       EnergyMeter& meter,
                                       const std::unique_ptr<Divisibles>& members, Number number,
@@ -370,16 +385,29 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
 DUCTILE_INLINE double WorldParts::kinetic_energy() const {
     double sum = 0;
     for (const btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
-        if (!(body->getInvMass() > 0) || body->isStaticOrKinematicObject()) continue;
-        const btVector3 spin =
-            body->getAngularVelocity() * body->getCenterOfMassTransform().getBasis();
-        sum += double(body->getLinearVelocity().length2()) / (2 * double(body->getInvMass()));
-        for (int k = 0; k < 3; ++k) {
-            const btScalar inverse = body->getInvInertiaDiagLocal()[k];
-            if (inverse > 0) sum += double(spin[k] * spin[k]) / (2 * double(inverse));
-        }
+        sum += detail::kinetic_energy(*body);
     }
     return sum;
+}
+
+/// Of one joint its bodies' momentum x the last digit of their position / h; what one gives another
+/// takes.
+DUCTILE_INLINE double WorldParts::rounding(double h) const {
+    double sum = 0; // of squares
+    const auto add = [&sum, h](const btTypedConstraint& joint) {
+        for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
+            if (!(body->getInvMass() > 0)) continue;
+            const double square = double(body->getCenterOfMassPosition().length2());
+            const double jump = double(SIMD_EPSILON) * double(SIMD_EPSILON) * square / (h * h);
+            sum += 2 * detail::kinetic_energy(*body) / double(body->getInvMass()) * jump;
+        }
+    };
+    if (local_) {
+        for (const btTypedConstraint* joint : scope_.constraints()) add(*joint);
+    } else {
+        for (int i = 0; i < world_.getNumConstraints(); ++i) add(*world_.getConstraint(i));
+    }
+    return std::sqrt(sum);
 }
 
 } // namespace ductile::bullet
