@@ -42,15 +42,13 @@
 #include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/row_box.hpp"
 #include "ductile/surface/stopping_force.hpp"
-#include "ductile/surface/turned_box.hpp"
 
 namespace {
 
 using namespace ductile;
 
-enum class Mapping { independent, chords, half_space, turned, exact };
-constexpr std::array boxed{Mapping::independent, Mapping::chords, Mapping::half_space,
-                           Mapping::turned};
+enum class Mapping { independent, chords, exact };
+constexpr std::array boxed{Mapping::independent, Mapping::chords};
 
 std::string_view name(Mapping mapping) {
     switch (mapping) {
@@ -58,10 +56,6 @@ std::string_view name(Mapping mapping) {
             return "independent";
         case Mapping::chords:
             return "box_along";
-        case Mapping::half_space:
-            return "half-space";
-        case Mapping::turned:
-            return "turned_box";
         case Mapping::exact:
             return "exact";
     }
@@ -70,27 +64,10 @@ std::string_view name(Mapping mapping) {
 
 template <YieldSurface T>
 RowBox<double, T::dimension> box_of(Mapping mapping, const T& surface,
-                                    const typename T::Vector& predicted,
-                                    const typename T::Matrix& mass) {
+                                    const typename T::Vector& predicted) {
     using Vector = typename T::Vector;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (mapping == Mapping::chords) return box_along(surface, predicted);
     RowBox<double, T::dimension> box;
-    switch (mapping) {
-        case Mapping::chords:
-            return box_along(surface, predicted);
-        case Mapping::turned:
-            return turned_box(surface, predicted, mass);
-        case Mapping::half_space:
-            box = turned_box(surface, predicted, mass);
-            for (int i = 1; i < T::dimension; ++i) {
-                box.upper[i] = infinity;
-                box.lower[i] = -infinity;
-            }
-            return box;
-        case Mapping::independent:
-        case Mapping::exact:
-            break;
-    }
     for (int i = 0; i < T::dimension; ++i) {
         box.upper[i] = 1 / surface.value(Vector::Unit(i));
         box.lower[i] = -box.upper[i];
@@ -140,7 +117,7 @@ Error one_step(const T& surface, Mapping mapping, double angle, double overshoot
         const Vector told = std::cos(angle * degree) * ray + std::sin(angle * degree) * across;
         const Vector predicted = told / surface.value(told);
 
-        const Vector force = enforce(box_of(mapping, surface, predicted, mass), trial, mass);
+        const Vector force = enforce(box_of(mapping, surface, predicted), trial, mass);
         const Vector slip = mass.inverse() * (trial - force);
         const double off = (force - exact).norm();
         const double cosine = slip.dot(flow) / (slip.norm() * flow.norm());
@@ -237,7 +214,7 @@ struct Motion {
                     prediction == Prediction::last_force
                         ? force
                         : predicted_force(surface, force, velocity, last_velocity, guess);
-                force = enforce(box_of(mapping, surface, told, guess), trial, real);
+                force = enforce(box_of(mapping, surface, told), trial, real);
             }
             last_velocity = velocity;
             velocity = loaded + inverse * force * dt;
@@ -269,11 +246,9 @@ void table_two(const char* surface_name, const T& surface, const typename T::Mat
     };
     row(Mapping::exact, Prediction::predicted, "-");
     row(Mapping::independent, Prediction::predicted, "-");
-    for (const Mapping mapping : {Mapping::chords, Mapping::half_space, Mapping::turned}) {
-        for (const auto prediction :
-             {Prediction::predicted, Prediction::wrong_mass, Prediction::last_force}) {
-            row(mapping, prediction, name(prediction));
-        }
+    for (const auto prediction :
+         {Prediction::predicted, Prediction::wrong_mass, Prediction::last_force}) {
+        row(Mapping::chords, prediction, name(prediction));
     }
 }
 

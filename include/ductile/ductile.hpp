@@ -101,7 +101,6 @@
 #include "ductile/surface/stopping_force.hpp"
 #include "ductile/surface/surface.hpp"
 #include "ductile/surface/tube_axial_bending.hpp"
-#include "ductile/surface/turned_box.hpp"
 #include "ductile/vocabulary/angle.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/row.hpp"

@@ -117,8 +117,6 @@ class StructureCourse {
     /// Strength x travel that nobody misses, the least of closed joints [J].
     [[nodiscard]] double unmissed_work() const noexcept { return unmissed_work_; }
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
-    /// Bodies came, went, or their joints did, since this was last asked.
-    [[nodiscard]] bool proof_is_old() noexcept { return std::exchange(proof_is_old_, false); }
 
     /// Closed joints that would have carried more than they can in a step of `dt` [s]; `steps`: by
     /// cluster. Valid until the next call.
@@ -179,7 +177,6 @@ class StructureCourse {
     std::vector<int> found_;
     double unmissed_work_ = 0, left_over_ = 0;
     bool yields_ = false; ///< this blow was seen to yield it
-    bool proof_is_old_ = true;
 };
 
 } // namespace ductile

@@ -160,7 +160,6 @@ DUCTILE_INLINE void StructureCourse::make_forces() {
         }
         closed_forces_.emplace_back(cluster, inside, plan_, frames_);
     }
-    proof_is_old_ = true;
 }
 
 DUCTILE_INLINE StructureCourse::Change StructureCourse::rearrange(

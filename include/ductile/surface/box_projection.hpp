@@ -20,7 +20,6 @@
 #include <limits>
 
 #include "ductile/numeric/ldlt.hpp"
-#include "ductile/numeric/lu.hpp"
 #include "ductile/surface/row_box.hpp"
 
 namespace ductile {
@@ -81,9 +80,7 @@ template <std::floating_point S, int N>
 [[nodiscard]] Eigen::Matrix<S, N, 1> enforce(const RowBox<S, N>& box,
                                              const Eigen::Matrix<S, N, 1>& trial,
                                              const Eigen::Matrix<S, N, N>& mass) noexcept {
-    const Eigen::Matrix<S, N, N> inverse = numeric::inverse(box.basis);
-    const Eigen::Matrix<S, N, N> turned = inverse * mass * inverse.transpose();
-    return box.basis * project_on_box<S, N>(inverse * trial, box.lower, box.upper, turned);
+    return project_on_box<S, N>(trial, box.lower, box.upper, mass);
 }
 
 } // namespace ductile

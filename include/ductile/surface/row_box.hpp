@@ -14,8 +14,6 @@
 //       the chords of the surface through the predicted force, along each row: exact where only one
 //       row strays from the prediction. A corner of the box where the prediction is on the surface,
 //       room on all sides where it is inside, and no jump between. This is the mapping to use.
-//   turned_box (turned_box.hpp)
-//       rows turned so that the first is the normal at the predicted force.
 //
 // A force far inside the surface still gets its own chords, not a box that is cheaper to find: a
 // smaller one would flow below the surface, a larger one leave it, where a load comes that was not
@@ -30,10 +28,6 @@
 //   box_along     predicted_force             0.0036 (0.00027)    0.015 (0.0010)
 //   box_along     same, mass wrong by 4       0.0094 (0.00067)    0.016 (0.0010)
 //   box_along     last force                  1.2    (1.1)        1.4   (1.4)
-//   turned_box    predicted_force             0.017  (0.0024)     0.016 (0.0011)
-//   turned_box    same, mass wrong by 4       0.029  (0.0024)     0.016 (0.0011)
-//   turned_box    last force                  0.051  (0.048)      0.021 (0.0013)
-//   half-space    predicted_force             0.96   (0.99)       0.017 (0.0011)
 //   independent   -                           0.51   (0.51)       0.50  (0.49)
 //
 // In one step, a prediction off by 5 degrees costs box_along at most 0.11 of a capacity in force,
@@ -43,7 +37,6 @@
 //   f_t    force that would stop all rows                                         [N | N m]
 //   u      velocities along the axes of the surface                               [m/s | rad/s]
 //   M      effective mass, (J m⁻¹ Jᵀ)⁻¹; symmetric, positive definite             [kg | kg m²]
-//   g      forces of the rows, f = basis g; of velocities basisᵀ u                [N | N m]
 //
 // Source: derived here.
 #pragma once
@@ -56,15 +49,14 @@
 
 namespace ductile {
 
-/// Bounds of rows: f = basis g, lower ≤ g ≤ upper. Plain value.
+/// Bounds of rows: lower ≤ f ≤ upper. Plain value.
 template <std::floating_point S, int N>
 struct RowBox {
-    Eigen::Matrix<S, N, N> basis = Eigen::Matrix<S, N, N>::Identity(); ///< column i: force of row i
     Eigen::Matrix<S, N, 1> lower = Eigen::Matrix<S, N, 1>::Zero();     ///< [N | N m], <= upper
     Eigen::Matrix<S, N, 1> upper = Eigen::Matrix<S, N, 1>::Zero();     ///< [N | N m]
 };
 
-/// The chords of the surface through `predicted` along the axes; basis 1. A prediction outside is
+/// The chords of the surface through `predicted` along the axes. A prediction outside is
 /// drawn in along its ray.
 template <YieldSurface T>
 [[nodiscard]] RowBox<typename T::Scalar, T::dimension> box_along(

@@ -5,11 +5,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <random>
-
-#include "ductile/numeric/householder.hpp"
 
 namespace matrices {
 
@@ -48,9 +47,8 @@ Matrix random(std::mt19937& random) {
 /// Orthogonal.
 template <class S, int N>
 Eigen::Matrix<S, N, N> axes(std::mt19937& with) {
-    using Vector = Eigen::Matrix<S, N, 1>;
-    return ductile::numeric::basis_along(random<Vector>(with)) *
-           ductile::numeric::basis_along(random<Vector>(with));
+    const Eigen::MatrixXd any = random<Eigen::Matrix<double, N, N>>(with);
+    return Eigen::MatrixXd(any.householderQr().householderQ()).template cast<S>();
 }
 
 /// From 1 down to 1/condition, evenly in their logarithm.
