@@ -4,7 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -16,7 +15,6 @@
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/world_parts.hpp"
 #include "ductile/frame/part_settings.hpp"
-#include "ductile/joint/gyroscopic.hpp"
 
 namespace ductile::bullet {
 
@@ -89,21 +87,6 @@ class WorldParts::Settings {
     btContactSolverInfo& info_;
     btContactSolverInfo usual_;
 };
-
-namespace detail {
-
-[[nodiscard]] DUCTILE_INLINE double kinetic_energy(const btRigidBody& body) {
-    if (!(body.getInvMass() > 0) || body.isStaticOrKinematicObject()) return 0;
-    const btVector3 spin = body.getAngularVelocity() * body.getCenterOfMassTransform().getBasis();
-    double sum = double(body.getLinearVelocity().length2()) / (2 * double(body.getInvMass()));
-    for (int k = 0; k < 3; ++k) {
-        const btScalar inverse = body.getInvInertiaDiagLocal()[k];
-        if (inverse > 0) sum += double(spin[k] * spin[k]) / (2 * double(inverse));
-    }
-    return sum;
-}
-
-} // namespace detail
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
                                       EnergyMeter& meter,
@@ -212,24 +195,6 @@ DUCTILE_INLINE void WorldParts::put_back() {
     }
     forces_act_ = false;
     time_ = kept_time_;
-}
-
-/// Members reckon with Bullet's own rule.
-DUCTILE_INLINE void WorldParts::keep_spins(double h) {
-    if (!members_->empty()) return;
-    for (btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
-        if (body->isStaticOrKinematicObject() || !body->isActive()) continue;
-        const double keeps = std::pow(1 - double(body->getAngularDamping()), h);
-        const Vector3<double> spin = scaled(keeps, to_core(body->getAngularVelocity()));
-        if (!turns_far(spin, h)) continue;
-        const Matrix3<double> about = sandwiched(
-            to_core(body->getCenterOfMassTransform().getBasis()), to_core(body->getLocalInertia()));
-        const Vector3<double> rest =
-            gyroscopic_rest(gyroscopic_impulse(*body, about, spin, h), about, spin, h);
-        if (is_zero(rest)) continue;
-        body->applyTorque(unweighted(to_bullet(scaled(1 / h, rest)), body->getAngularFactor()));
-        meter_.add_gyroscopic(body, rest);
-    }
 }
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
@@ -382,35 +347,8 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     return found;
 }
 
-DUCTILE_INLINE double WorldParts::kinetic_energy() const {
-    double sum = 0;
-    for (const btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
-        sum += detail::kinetic_energy(*body);
-    }
-    return sum;
-}
-
-/// Of one joint its bodies' momentum x the last digit of their position / h; what one gives another
-/// takes.
-DUCTILE_INLINE double WorldParts::rounding(double h) const {
-    double sum = 0; // of squares
-    const auto add = [&sum, h](const btTypedConstraint& joint) {
-        for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
-            if (!(body->getInvMass() > 0)) continue;
-            const double square = double(body->getCenterOfMassPosition().length2());
-            const double jump = double(SIMD_EPSILON) * double(SIMD_EPSILON) * square / (h * h);
-            sum += 2 * detail::kinetic_energy(*body) / double(body->getInvMass()) * jump;
-        }
-    };
-    if (local_) {
-        for (const btTypedConstraint* joint : scope_.constraints()) add(*joint);
-    } else {
-        for (int i = 0; i < world_.getNumConstraints(); ++i) add(*world_.getConstraint(i));
-    }
-    return std::sqrt(sum);
-}
-
 } // namespace ductile::bullet
 
-#include "ductile/bullet/world_parts_alone.ipp" // IWYU pragma: keep
-#include "ductile/bullet/world_parts_blows.ipp" // IWYU pragma: keep
+#include "ductile/bullet/world_parts_alone.ipp"  // IWYU pragma: keep
+#include "ductile/bullet/world_parts_blows.ipp"  // IWYU pragma: keep
+#include "ductile/bullet/world_parts_bodies.ipp" // IWYU pragma: keep
