@@ -582,7 +582,7 @@ TEST_CASE("Frames: a blow closes what touches, and nothing else", "[frame]") {
     }
 }
 
-TEST_CASE("What float rounds of positions far off costs a frame nothing", "[frame]") {
+TEST_CASE("What float rounds of positions far off costs a frame no budget", "[frame]") {
     // pairs of bodies that turn against each other on weak hinges, up to 400 m off
     test::BulletEngine rig({0, 0, 0});
     World world(rig.engine, {.warn = {}});

@@ -32,16 +32,15 @@
 // Jump: an error that four tries and a tenth of the length do not lessen by a third is not one of
 // length, such as a kick from elsewhere. The first length is done, and said. Unless rigid rows take
 // it as a frame begins, of velocities that hands gave since the last one: these are struck first,
-// in the shortest part.
-// Rounding: what rigid rows take and that of the engine's positions explains, in a part as long as
-// the frame, grows in shorter ones: it is said, and cuts none.
-// Kick: where the shortest part is off by its flows, as bodies were set in motion from elsewhere,
-// its accelerations are not compared with what follows.
-// Before a part: a contact that touches and closes gets a blow, at most three in one instant, and
-// so does what was thrown; a gap that would close within the part ends it. What cannot have to be
-// put back is not saved; where that proves wrong the part stands, and says so.
-// Budget: parts that were put back count. From three quarters of it on what is allowed grows by
-// 10^(8 (used - 3/4)): a frame ends coarser and says so, as one last long part would be worse.
+// in the shortest part. Where rigid rows may take more by what the engine rounds than all that
+// there is to be taken, and more so in shorter parts, every error is one. Kick: where the shortest
+// part is off by its flows, as bodies were set in motion from elsewhere, its accelerations are not
+// compared with what follows. Before a part: a contact that touches and closes gets a blow, at most
+// three in one instant, and so does what was thrown; a gap that would close within the part ends
+// it. What cannot have to be put back is not saved; where that proves wrong the part stands, and
+// says so. Budget: parts that were put back count. From three quarters of it on what is allowed
+// grows by 10^(8 (used - 3/4)): a frame ends coarser and says so, as one last long part would be
+// worse.
 //
 // Source: half-step composition as Strang (1968); error per step of the difference of accelerations
 // as in Milne's device, Hairer, Norsett, Wanner, Solving ODEs I, section III.1. The rest is derived
@@ -101,7 +100,6 @@ class FrameControl {
         double error = 0;
         double given = 0;     ///< of it: by dampers
         double astray = 0;    ///< of it: by breaks
-        double rounded = 0;   ///< of it: by the engine's rounding, in a part as long as the frame
         double of_rows = 0;   ///< of that, by flows
         double most = 0;      ///< that those can have taken: R x speed x length
         double allowed = 0;   ///< that grows as the budget goes
@@ -115,9 +113,6 @@ class FrameControl {
         bool ended = false;  ///< a flow ended in it
         bool moves = false;  ///< something was to be judged
         bool fitted = false; ///< rigid rows made velocities fit, without an error
-
-        /// That a shorter part would lessen.
-        [[nodiscard]] double of_length() const noexcept { return error - rounded; }
     };
     /// What is known of a row from the part before.
     struct Past {
@@ -139,6 +134,7 @@ class FrameControl {
     [[nodiscard]] PartBefore before(std::size_t row, const PartMotion& motion) const noexcept;
     [[nodiscard]] bool flowed(std::size_t row, const PartMotion& motion) const noexcept;
     [[nodiscard]] bool breaks(std::size_t row, const PartMotion& motion) const noexcept;
+    [[nodiscard]] bool is_noise(const PartEngine& engine, const Judgement& judged) const;
     [[nodiscard]] double first_length(double left) noexcept;
     [[nodiscard]] double first_stop(double h) const noexcept;
     [[nodiscard]] double followed(double h) const noexcept;

@@ -151,18 +151,15 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         Judgement judged = judge(motion, h, shortest);
         const double early = judged.closed;
         if (tries >= detail::tries_at_gaps) judged.closed = 0;
-        const double rigid = judged.fitted ? 0 : std::abs(motion.rigid_work);
-        if (judged.error > judged.allowed && rigid > 0 && rigid <= engine.rounding(length_)) {
-            judged.rounded = rigid;
-        }
         allowed_ = judged.allowed;
         run_.least = std::max(run_.least, judged.least); // of what sleeps too
         run_.of_one = std::max(run_.of_one, judged.of_one);
         const double error = detail::likely_error(judged, judged.most);
         // of one that turned too far it says nothing, and such a part is no way out
         if (tries == 0 && !(judged.turned > 0)) first_error = error;
-        const bool good = judged.of_length() <= judged.allowed && judged.closed == 0 &&
-                          judged.turned == 0;
+        const bool good =
+            judged.error <= judged.allowed && judged.closed == 0 && judged.turned == 0;
+        jump = jump || (!good && tries == 0 && is_noise(engine, judged));
         const bool done = jump || !saved || spent() || tries > detail::most_tries ||
                           (h <= shortest && judged.closed == 0);
         if (good || done) {
@@ -205,8 +202,15 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     if (!detail::was_there(past_, motion, row)) return {};
     const Past& past = past_[row];
     const bool swings = past.row.swings && past.row.moves();
-    return {past.acceleration,        before_, past.row.end, swings, past.driven,
-            past.fast || used() > detail::of_swings};
+    return {past.acceleration, before_,
+            past.row.end,      swings,
+            past.driven,       past.fast || used() > detail::of_swings};
+}
+
+/// Rigid rows take more of what the engine rounds than all that flows could, in any part.
+DUCTILE_INLINE bool FrameControl::is_noise(const PartEngine& engine,
+                                           const Judgement& judged) const {
+    return tolerated_share() * engine.rounding(length_) > judged.tolerated;
 }
 
 /// In the part before, at or near its strength.
@@ -246,8 +250,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         lets_go = lets_go || row.broke > 0;
         if (breaks(i, motion)) {
             const PartBefore known = before(i, motion);
-            const BrokeAlone broke =
-                row.alone ? broke_alone(row, known, flowed(i, motion)) : broke_with_others(row, h, known);
+            const BrokeAlone broke = row.alone ? broke_alone(row, known, flowed(i, motion))
+                                               : broke_with_others(row, h, known);
             judged.astray += broke.astray;
             freed += row.freed;
             if (broke.astray > largest) {
@@ -318,7 +322,7 @@ DUCTILE_INLINE auto FrameControl::shorter(const Judgement& judged, const PartMot
     if (judged.stop > 0 && !motion.contact_lost && may_stop) {
         return {judged.stop * past_it, true};
     }
-    return {h * detail::growth(judged.allowed, judged.of_length(), 2, 0.1, 0.7), false};
+    return {h * detail::growth(judged.allowed, judged.error, 2, 0.1, 0.7), false};
 }
 
 /// The part stands; `at_event`: it ends where a flow stopped or a gap closed.
@@ -342,7 +346,7 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     fresh_ = judged.ended || at_event;
     // a first short part says nothing of the next one's length
     const bool says = !starts_ && !jump;
-    const double longer = h * detail::growth(judged.allowed, judged.of_length(), 3, 0.2, 3);
+    const double longer = h * detail::growth(judged.allowed, judged.error, 3, 0.2, 3);
     next_ = says ? longer : 0;
     // unless flows stop in one after the other, at the cost of the budget
     start_ = starts_ && fresh_ && !jump && used() > detail::many_starts ? longer : 0;

@@ -78,8 +78,8 @@ class PartEngine {
     [[nodiscard]] virtual ClosingContacts closing(double h, double touching, double apart) = 0;
     /// Of all bodies [J].
     [[nodiscard]] virtual double kinetic_energy() const = 0;
-    /// What rigid rows take in a part of `h` as positions are rounded, after the last part [J]: the
-    /// shorter it is the more.
+    /// What rigid rows may take in a part of `h` as positions are rounded [J]: the shorter it is the
+    /// more.
     [[nodiscard]] virtual double rounding(double /*h*/) const { return 0; }
     /// A part in which contacts took such a share of the speed too early is put back whatever else
     /// it tells; infinite: it stands.

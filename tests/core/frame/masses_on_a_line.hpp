@@ -42,7 +42,6 @@ class Engine final : public ductile::PartEngine {
     std::vector<Tie> ties;
     bool foresees = true;     ///< gaps that close
     double kick = 0;          ///< rigid_work of every part, whatever its length [J]
-    double rounded = 0;       ///< what it tells of its rounding [J]
     double stored = 0;        ///< by elastic joints [J]
     bool breaks_down = false; ///< its answers are no numbers
     double time = 0;
@@ -81,7 +80,6 @@ class Engine final : public ductile::PartEngine {
         for (const Mass& m : masses) sum += m.mass * m.velocity * m.velocity / 2;
         return sum;
     }
-    double rounding(double) const override { return rounded; }
 
   private:
     static constexpr double closed = 2e-6;
