@@ -48,6 +48,14 @@ namespace ductile {
     return norm(spin) * dt > turn;
 }
 
+/// More than round-off: not where a body turns about a principal axis, nor a sphere's.
+[[nodiscard]] inline bool wobbles(const Matrix3<double>& inertia,
+                                  const Vector3<double>& spin) noexcept {
+    constexpr double round_off = 1e-14;
+    const Vector3<double> momentum = times(inertia, spin);
+    return norm(cross(spin, momentum)) > round_off * norm(spin) * norm(momentum);
+}
+
 /// What has to be added to the `engine`'s own [N m s]; zero where there is no better one.
 [[nodiscard]] inline Vector3<double> gyroscopic_rest(const Vector3<double>& engine,
                                                      const Matrix3<double>& inertia,

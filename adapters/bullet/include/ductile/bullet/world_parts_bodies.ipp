@@ -34,6 +34,7 @@ DUCTILE_INLINE void WorldParts::keep_spins(double h) {
         spin = scaled(std::pow(1 - double(body->getAngularDamping()), h), spin);
         const Matrix3<double> about = sandwiched(
             to_core(body->getCenterOfMassTransform().getBasis()), to_core(body->getLocalInertia()));
+        if (!wobbles(about, spin)) continue;
         const Vector3<double> rest =
             gyroscopic_rest(gyroscopic_impulse(*body, about, spin, h), about, spin, h);
         if (is_zero(rest)) continue;
@@ -50,11 +51,12 @@ DUCTILE_INLINE double WorldParts::kinetic_energy() const {
     return sum;
 }
 
-/// Of one joint its bodies' momentum x the last digit of their position / h; what one gives another
-/// takes.
+/// Of one plastic joint its bodies' momentum x the last digit of their position / h; what one gives
+/// another takes.
 DUCTILE_INLINE double WorldParts::rounding(double h) const {
     double sum = 0; // of squares
     const auto add = [&sum, h](const btTypedConstraint& joint) {
+        if (joint.getConstraintType() != plastic_constraint_type || !joint.isEnabled()) return;
         for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
             if (!(body->getInvMass() > 0)) continue;
             const double square = double(body->getCenterOfMassPosition().length2());

@@ -183,6 +183,7 @@ DUCTILE_INLINE void WorldParts::keep_spins(double h) {
         const Vector3<double> spin = angular_velocity(body);
         if (!turns_far(spin, h)) continue;
         const Matrix3<double> about = inertia(body);
+        if (!wobbles(about, spin)) continue;
         const Vector3<double> rest =
             gyroscopic_rest(gyroscopic_impulse(body, about, spin, h), about, spin, h);
         if (is_zero(rest)) continue;
