@@ -134,15 +134,18 @@ template <std::floating_point S>
 [[nodiscard]] inline Matrix3<S> sandwiched(const Matrix3<S>& a, const Matrix3<S>& b) noexcept {
     return times_transposed(times(a, b), a);
 }
-/// a diag(d) aᵀ
+/// a diag(d) aᵀ, exactly symmetric.
 template <std::floating_point S>
 [[nodiscard]] inline Matrix3<S> sandwiched(const Matrix3<S>& a,
                                            const Vector3<S>& diagonal) noexcept {
-    Matrix3<S> weighted;
-    for (int j = 0; j < 3; ++j) {
-        for (int i = 0; i < 3; ++i) weighted(i, j) = a(i, j) * diagonal[j];
+    Matrix3<S> result;
+    for (int i = 0; i < 3; ++i) {
+        const S x = a(i, 0) * diagonal[0], y = a(i, 1) * diagonal[1], z = a(i, 2) * diagonal[2];
+        for (int j = 0; j <= i; ++j) {
+            result(i, j) = result(j, i) = x * a(j, 0) + y * a(j, 1) + z * a(j, 2);
+        }
     }
-    return times_transposed(weighted, a);
+    return result;
 }
 template <std::floating_point S>
 [[nodiscard]] inline Matrix3<S> sum(const Matrix3<S>& a, const Matrix3<S>& b) noexcept {

@@ -24,9 +24,9 @@
 
 #include <cstddef>
 #include <functional>
-#include <unordered_map>
 #include <vector>
 
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/joint_queries.hpp"
 #include "ductile/world/ledger.hpp"
@@ -82,24 +82,6 @@ struct MeteredContact {
     bool driven = false;                 ///< by a body whose motion is prescribed
     double taken = 0;                    ///< what the normal force took, once it is booked [J]
 };
-
-namespace detail {
-
-/// Numbers addresses from 0 on, in the order in which they come.
-class AddressBook {
-  public:
-    static constexpr std::size_t unknown = std::size_t(-1);
-
-    /// The number of an address, given now where it had none.
-    std::size_t enter(const void* address);
-    [[nodiscard]] std::size_t find(const void* address) const;
-    void clear();
-
-  private:
-    std::unordered_map<const void*, std::size_t> numbers_;
-};
-
-} // namespace detail
 
 class EnergyMeter {
   public:
@@ -186,7 +168,7 @@ class EnergyMeter {
     };
     /// A step as it is booked.
     struct Record {
-        detail::AddressBook course_numbers, plastic_numbers;
+        AddressBook course_numbers, plastic_numbers;
         std::vector<Course> courses;
         std::vector<PlasticStart> plastic_start;
         PairAccounts::Accounts pairs;
@@ -231,7 +213,7 @@ class EnergyMeter {
     Ledger<double> ledger_;
     double step_plastic_ = 0; ///< [J]
     HeldEnergy<double> last_;
-    detail::AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
+    AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;
     std::vector<PlasticStart> plastic_start_;
     std::vector<std::size_t> island_;         ///< by course: another one of its island, or itself

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "ductile/joint/gyroscopic.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
@@ -19,15 +20,6 @@ DUCTILE_INLINE double kinetic_energy(const MeteredBody& body, const Vector3<doub
                                      const Vector3<double>& spin) {
     return body.mass * dot(velocity, velocity) / 2 + dot(spin, times(body.inertia, spin)) / 2;
 }
-
-DUCTILE_INLINE std::size_t AddressBook::enter(const void* address) {
-    return numbers_.emplace(address, numbers_.size()).first->second;
-}
-DUCTILE_INLINE std::size_t AddressBook::find(const void* address) const {
-    const auto found = numbers_.find(address);
-    return found != numbers_.end() ? found->second : unknown;
-}
-DUCTILE_INLINE void AddressBook::clear() { numbers_.clear(); }
 
 } // namespace detail
 
@@ -200,7 +192,7 @@ DUCTILE_INLINE void EnergyMeter::moved_back() {
 
 DUCTILE_INLINE EnergyMeter::Course* EnergyMeter::course_of(const void* body) {
     const std::size_t number = course_numbers_.find(body);
-    return number != detail::AddressBook::unknown ? &courses_[number] : nullptr;
+    return number != AddressBook::unknown ? &courses_[number] : nullptr;
 }
 
 DUCTILE_INLINE void EnergyMeter::find_islands() {
@@ -208,7 +200,7 @@ DUCTILE_INLINE void EnergyMeter::find_islands() {
     std::iota(island_.begin(), island_.end(), std::size_t(0));
     const auto join = [this](const void* a, const void* b) {
         const std::size_t of_a = course_numbers_.find(a), of_b = course_numbers_.find(b);
-        constexpr std::size_t unknown = detail::AddressBook::unknown;
+        constexpr std::size_t unknown = AddressBook::unknown;
         if (of_a != unknown && of_b != unknown) island_[island_of(of_a)] = island_of(of_b);
     };
     for (const MeteredJoint& joint : joints_) join(joint.a, joint.b);
@@ -218,7 +210,7 @@ DUCTILE_INLINE void EnergyMeter::find_islands() {
     for (const auto& [joint, a, b] : plastic_) {
         for (const void* body : {a, b}) {
             const std::size_t course = course_numbers_.find(body);
-            if (course != detail::AddressBook::unknown) plastic_island_[island_of(course)] = 1;
+            if (course != AddressBook::unknown) plastic_island_[island_of(course)] = 1;
         }
     }
 }
@@ -232,18 +224,18 @@ DUCTILE_INLINE std::size_t EnergyMeter::island_of(std::size_t course) {
 
 DUCTILE_INLINE bool EnergyMeter::is_plastic(const void* body) {
     const std::size_t course = course_numbers_.find(body);
-    return course != detail::AddressBook::unknown && plastic_island_[island_of(course)] != 0;
+    return course != AddressBook::unknown && plastic_island_[island_of(course)] != 0;
 }
 
 DUCTILE_INLINE const EnergyMeter::PlasticStart* EnergyMeter::start_of(
     const PairQueries* joint) const {
     const std::size_t number = plastic_numbers_.find(joint);
-    return number != detail::AddressBook::unknown ? &plastic_start_[number] : nullptr;
+    return number != AddressBook::unknown ? &plastic_start_[number] : nullptr;
 }
 
 DUCTILE_INLINE double EnergyMeter::taken_by_address(const void* joint) const {
     const std::size_t number = taken_numbers_.find(joint);
-    return number != detail::AddressBook::unknown ? taken_[number] : 0;
+    return number != AddressBook::unknown ? taken_[number] : 0;
 }
 
 DUCTILE_INLINE void EnergyMeter::take_back(const void* body, const VelocityChange<double>& change) {
@@ -281,8 +273,10 @@ DUCTILE_INLINE void EnergyMeter::book_body(const Course& course, const MeteredBo
     const double potential = dot(now.weight, moved) - dt * dot(now.weight, velocities) / 2;
     const Vector3<double>& w = course.spin_after;
     const double turning = (dot(w, times(start.inertia, w)) - dot(w, times(now.inertia, w))) / 2;
-    const double gyroscopic =
-        -dot(sum(gyroscopic_impulse(start, dt), course.gyroscopic), spins) / 2;
+    const Vector3<double> turned = wobbles(start.inertia, start.spin)
+                                       ? gyroscopic_impulse(start, dt)
+                                       : Vector3<double>(0, 0, 0);
+    const double gyroscopic = -dot(sum(turned, course.gyroscopic), spins) / 2;
     add(Account::integration, course.damped + potential + turning + gyroscopic);
 }
 

@@ -4,9 +4,9 @@
 // booked a step and before any of them lets go.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "ductile/joint/joint_totals.hpp"
@@ -37,7 +37,8 @@ void share_work(std::span<Joint* const> joints, const Islands& islands) {
     }
     if (!(all.value() < 1)) return;
     const std::vector<std::size_t> of_joint = islands();
-    std::unordered_map<std::size_t, WorkShare<double>> shares;
+    if (of_joint.empty()) return;
+    std::vector<WorkShare<double>> shares(1 + *std::max_element(of_joint.begin(), of_joint.end()));
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (const Step<double>* step = joints[i]->booked()) shares[of_joint[i]].add(*step);
     }

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <numeric>
-#include <unordered_map>
 
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/world/structures.hpp"
 
 namespace ductile {
@@ -63,7 +63,7 @@ DUCTILE_INLINE void Structures::find_changes() {
 }
 
 DUCTILE_INLINE void Structures::find() {
-    std::unordered_map<const void*, std::size_t> of_body;
+    AddressMap<std::size_t> of_body; // its first joint
     std::vector<std::size_t> parent(members_.size());
     std::iota(parent.begin(), parent.end(), std::size_t(0));
     const auto root = [&parent](std::size_t i) {
@@ -74,8 +74,11 @@ DUCTILE_INLINE void Structures::find() {
         if (!members_[i].acts) continue;
         for (const void* body : members_[i].joint->moving_bodies()) {
             if (body == nullptr) continue;
-            const auto [entry, is_new] = of_body.emplace(body, i);
-            if (!is_new) parent[root(i)] = root(entry->second);
+            if (const std::size_t* first = of_body.find(body)) {
+                parent[root(i)] = root(*first);
+            } else {
+                of_body[body] = i;
+            }
         }
     }
     for (std::size_t i = 0; i < members_.size(); ++i) members_[i].structure = root(i);

@@ -16,7 +16,9 @@
 // contacts are looked for, would carry a body past it: a light bar before a heavy hammer.
 //
 // A pair whose bounds cannot meet in time, or that could not close with the energy that matters,
-// is not asked for; where nothing in the world could, nobody is. An island is that of Bullet's last
+// is not asked for; where nothing in the world could, nobody is. Where little goes far, that alone
+// looks for what is near; what stays within the room that Bullet's trees leave around a body is
+// among Bullet's own pairs. An island is that of Bullet's last
 // tick, and the bodies of the joints.
 //
 // Others know contacts before they touch, and these push so that the gap just closes at the end of
@@ -55,6 +57,10 @@ namespace ductile::bullet {
 inline constexpr double closed_gap = sizeof(btScalar) == sizeof(double) ? 1e-8 : 2e-6;
 
 class Divisibles;
+
+namespace detail {
+class ShapeReach;
+}
 
 class ClosingContactsFinder {
   public:
@@ -104,6 +110,12 @@ class ClosingContactsFinder {
     void note_found(const btCollisionObject& a, const btCollisionObject& b);
     void find_islands(btDiscreteDynamicsWorld& world);
     void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least, btScalar fastest);
+    void add_pair(btDiscreteDynamicsWorld& world, btCollisionObject& one, btCollisionObject& two,
+                  btScalar h, double least, detail::ShapeReach& shapes);
+    [[nodiscard]] btScalar reach(const btRigidBody& body, btScalar h,
+                                 detail::ShapeReach& shapes) const;
+    /// A contact on it may count.
+    [[nodiscard]] bool is_struck_on(const btRigidBody& body) const;
     [[nodiscard]] bool is_plastic(const btRigidBody& body) const;
     /// A body of a member that contacts do not push.
     [[nodiscard]] bool is_still_member(const btCollisionObject& object) const;

@@ -4,9 +4,13 @@
 // part of closing_contacts.ipp.
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <algorithm>
+#include <tuple>
+#include <typeinfo>
+#include <utility>
 #include <vector>
 
 namespace ductile::bullet {
@@ -48,81 +52,144 @@ DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObje
     return detail::pushed(object) == nullptr && members_->is_member(object);
 }
 
+namespace detail {
+
+/// Whether Bullet has all that the body may come near in time among its pairs: these are of bodies
+/// whose leaves in its trees meet, and a leaf has room around its body.
+[[nodiscard]] DUCTILE_INLINE bool stays_in_leaf(const btRigidBody& body, btScalar reach) {
+    const btDbvtVolume& leaf =
+        static_cast<const btDbvtProxy*>(body.getBroadphaseHandle())->leaf->volume;
+    btVector3 low, high;
+    body.getAabb(low, high);
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+        inside = inside && leaf.Mins()[k] <= low[k] - reach && leaf.Maxs()[k] >= high[k] + reach;
+    }
+    return inside;
+}
+
+} // namespace detail
+
+/// How far the body may come in `h` [m].
+DUCTILE_INLINE btScalar ClosingContactsFinder::reach(const btRigidBody& body, btScalar h,
+                                                     detail::ShapeReach& shapes) const {
+    constexpr btScalar margin = btScalar(1e-3);
+    const btScalar speed = body.getLinearVelocity().length() + detail::turning_speed(body, shapes) +
+                           h * falls(body).length();
+    return speed * h + margin;
+}
+
+DUCTILE_INLINE bool ClosingContactsFinder::is_struck_on(const btRigidBody& body) const {
+    return detail::pushed(body) != nullptr ? is_plastic(body) : is_still_member(body);
+}
+
+/// Either each that may be struck looks around, or what goes far does, and the rest is in Bullet's
+/// own pairs: whichever is less.
 DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& world, btScalar h,
                                                       double least, btScalar fastest) {
     const auto& objects = world.getCollisionObjectArray();
     const int count = scope_ != nullptr ? int(scope_->bodies().size()) : objects.size();
-    detail::ShapeReach reach_of, reach_of_mate;
-    constexpr btScalar margin = btScalar(1e-3);
+    const bool has_leaves =
+        scope_ == nullptr && typeid(*world.getBroadphase()) == typeid(btDbvtBroadphase);
+    detail::ShapeReach shapes;
+    std::vector<btRigidBody*> struck, far;
     pairs_.clear();
-    struct Near final : btBroadphaseAabbCallback {
-        std::vector<btCollisionObject*> found;
-        bool process(const btBroadphaseProxy* proxy) override {
-            found.push_back(static_cast<btCollisionObject*>(proxy->m_clientObject));
-            return true;
-        }
-    } near;
-    btOverlappingPairCache& cache = *world.getPairCache();
     for (int i = 0; i < count; ++i) {
         btRigidBody* body =
             scope_ != nullptr ? scope_->bodies()[std::size_t(i)] : btRigidBody::upcast(objects[i]);
-        if (body == nullptr || body->getBroadphaseHandle() == nullptr ||
-            !(detail::pushed(*body) != nullptr ? is_plastic(*body) : is_still_member(*body))) {
-            continue;
+        if (body == nullptr || body->getBroadphaseHandle() == nullptr) continue;
+        const btScalar way = reach(*body, h, shapes);
+        const double most = double(way / h + fastest);
+        const bool counts = most * most > 2 * double(body->getInvMass()) * least;
+        if (counts && is_struck_on(*body)) struck.push_back(body);
+        if (has_leaves && !body->isStaticObject() && !detail::stays_in_leaf(*body, way)) {
+            far.push_back(body);
         }
-        const bool still = detail::pushed(*body) == nullptr;
-        const btScalar turning = detail::turning_speed(*body, reach_of);
-        const btScalar speed = body->getLinearVelocity().length() + turning;
-        const double most = double(speed + fastest);
-        if (!(most * most > 2 * double(body->getInvMass()) * least)) continue;
+    }
+    btOverlappingPairCache& cache = *world.getPairCache();
+    const bool by_pairs = has_leaves && far.size() < struck.size();
+    for (btRigidBody* body : by_pairs ? far : struck) {
+        struct Near final : btBroadphaseAabbCallback {
+            std::vector<btCollisionObject*> found;
+            bool process(const btBroadphaseProxy* proxy) override {
+                found.push_back(static_cast<btCollisionObject*>(proxy->m_clientObject));
+                return true;
+            }
+        } near;
         btVector3 low, high;
         body->getAabb(low, high);
-        const btScalar swept = (speed + fastest) * h + margin;
+        const btScalar swept = reach(*body, h, shapes) + fastest * h;
         const btVector3 around(swept, swept, swept);
-        near.found.clear();
         world.getBroadphase()->aabbTest(low - around, high + around, near);
         for (btCollisionObject* other : near.found) {
-            btRigidBody* mate = btRigidBody::upcast(other);
-            if (other == body || other->getBroadphaseHandle() == nullptr) continue;
-            // seen from there
-            if (still &&
-                (mate == nullptr || detail::pushed(*mate) == nullptr || is_plastic(*mate))) {
-                continue;
-            }
-            // both ways only once
-            if (mate != nullptr && detail::pushed(*mate) != nullptr && is_plastic(*mate) &&
-                other->getWorldArrayIndex() < body->getWorldArrayIndex()) {
-                continue;
-            }
-            const btVector3 away =
-                body->getLinearVelocity() -
-                (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
-            const btScalar closing =
-                away.length() + turning + h * (falls(*body) - falls(*other)).length() +
-                (mate != nullptr ? detail::turning_speed(*mate, reach_of_mate) : btScalar(0));
-            const double yields =
-                double(body->getInvMass()) +
-                (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
-            if (!(double(closing * closing) > 2 * yields * least)) continue;
-            const btScalar reach = closing * h + margin;
-            btVector3 from, to;
-            other->getCollisionShape()->getAabb(other->getWorldTransform(), from, to);
-            bool meet = true;
-            for (int k = 0; k < 3; ++k) {
-                meet = meet && from[k] - reach <= high[k] && to[k] + reach >= low[k];
-            }
-            if (!meet || !cache.needsBroadphaseCollision(body->getBroadphaseHandle(),
-                                                         other->getBroadphaseHandle())) {
-                continue;
-            }
-            if (!world.getDispatcher()->needsCollision(body, other)) continue;
-            if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
-                !scope_->has(*other)) {
-                foreign_.push_back(mate); // where it is now is not where it was
-            } else {
-                pairs_.push_back({body, other, reach});
-            }
+            if (other != body) add_pair(world, *body, *other, h, least, shapes);
         }
+    }
+    if (by_pairs) {
+        const btBroadphasePair* pairs = cache.getOverlappingPairArrayPtr();
+        for (int i = 0; i < cache.getNumOverlappingPairs(); ++i) {
+            add_pair(world, *static_cast<btCollisionObject*>(pairs[i].m_pProxy0->m_clientObject),
+                     *static_cast<btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject), h, least,
+                     shapes);
+        }
+    }
+    const auto place = [](const Pair& pair) {
+        return std::pair(pair.a->getWorldArrayIndex(), pair.b->getWorldArrayIndex());
+    };
+    std::sort(pairs_.begin(), pairs_.end(),
+              [&place](const Pair& x, const Pair& y) { return place(x) < place(y); });
+    pairs_.erase(
+        std::unique(pairs_.begin(), pairs_.end(),
+                    [&place](const Pair& x, const Pair& y) { return place(x) == place(y); }),
+        pairs_.end());
+}
+
+/// Where one of them may be struck by the other in `h`, with an energy of `least` [J] or more.
+DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& world,
+                                                    btCollisionObject& one, btCollisionObject& two,
+                                                    btScalar h, double least,
+                                                    detail::ShapeReach& shapes) {
+    btRigidBody *of_one = btRigidBody::upcast(&one), *of_two = btRigidBody::upcast(&two);
+    const bool one_counts = of_one != nullptr && is_struck_on(*of_one),
+               two_counts = of_two != nullptr && is_struck_on(*of_two);
+    const bool moves = detail::pushed(one) != nullptr || detail::pushed(two) != nullptr;
+    if (!(one_counts || two_counts) || !moves) return;
+    // seen from what moves, and from that which comes first
+    const auto rank = [](bool counts, const btCollisionObject& object) {
+        return std::tuple(!counts, detail::pushed(object) == nullptr, object.getWorldArrayIndex());
+    };
+    const bool first = rank(one_counts, one) < rank(two_counts, two);
+    btRigidBody* body = first ? of_one : of_two;
+    btCollisionObject* other = first ? &two : &one;
+    btRigidBody* mate = first ? of_two : of_one;
+    if (other->getBroadphaseHandle() == nullptr) return;
+    constexpr btScalar margin = btScalar(1e-3);
+    const btVector3 away = body->getLinearVelocity() -
+                           (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
+    const btScalar closing = away.length() + detail::turning_speed(*body, shapes) +
+                             h * (falls(*body) - falls(*other)).length() +
+                             (mate != nullptr ? detail::turning_speed(*mate, shapes) : btScalar(0));
+    const double yields = double(body->getInvMass()) +
+                          (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
+    if (!(double(closing * closing) > 2 * yields * least)) return;
+    const btScalar reach = closing * h + margin;
+    btVector3 low, high, from, to;
+    body->getAabb(low, high);
+    other->getCollisionShape()->getAabb(other->getWorldTransform(), from, to);
+    bool meet = true;
+    for (int k = 0; k < 3; ++k) {
+        meet = meet && from[k] - reach <= high[k] && to[k] + reach >= low[k];
+    }
+    if (!meet || !world.getPairCache()->needsBroadphaseCollision(body->getBroadphaseHandle(),
+                                                                 other->getBroadphaseHandle())) {
+        return;
+    }
+    if (!world.getDispatcher()->needsCollision(body, other)) return;
+    if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
+        !scope_->has(*other)) {
+        foreign_.push_back(mate); // where it is now is not where it was
+    } else {
+        pairs_.push_back({body, other, reach});
     }
 }
 

@@ -17,10 +17,12 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "ductile/bullet/held_contacts.hpp"
+#include "ductile/bullet/island_batches.hpp"
 #include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -39,7 +41,11 @@ enum class TickKind {
 class FrontSolver final : public btConstraintSolver {
   public:
     /// `usual` must outlive this; `owned`: it ends with this, as Bullet's worlds end theirs.
-    FrontSolver(btConstraintSolver& usual, bool owned) : usual_(usual), owned_(owned) {}
+    /// `world`: whose islands it is handed; null: one of several solvers of a world.
+    FrontSolver(btConstraintSolver& usual, bool owned, btDiscreteDynamicsWorld* world = nullptr)
+        : usual_(usual), owned_(owned) {
+        if (world != nullptr) batches_.emplace(*world);
+    }
     FrontSolver(const FrontSolver&) = delete;
     FrontSolver& operator=(const FrontSolver&) = delete;
     DUCTILE_INLINE ~FrontSolver() override;
@@ -57,9 +63,7 @@ class FrontSolver final : public btConstraintSolver {
 
     // ---- Bullet's side
 
-    void prepareSolve(int bodies, int manifolds) override {
-        usual_.prepareSolve(bodies, manifolds);
-    }
+    DUCTILE_INLINE void prepareSolve(int bodies, int manifolds) override;
     DUCTILE_INLINE btScalar solveGroup(btCollisionObject** bodies, int body_count,
                                        btPersistentManifold** manifolds, int manifold_count,
                                        btTypedConstraint** constraints, int constraint_count,
@@ -96,6 +100,8 @@ class FrontSolver final : public btConstraintSolver {
 
     btConstraintSolver& usual_;
     bool owned_;
+    std::optional<IslandBatches> batches_;
+    bool handed_over_ = false; ///< what comes was solved
     TickKind kind_ = TickKind::step;
     const HeldContacts* held_ = nullptr;
     const DirectBodies* direct_ = nullptr;

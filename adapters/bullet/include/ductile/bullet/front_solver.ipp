@@ -164,7 +164,7 @@ class OpenContacts {
 DUCTILE_INLINE FrontHold::FrontHold(btDiscreteDynamicsWorld& world) : world_(world) {
     bool& owned = detail::SolverOfWorld::owned(world);
     void* room = btAlignedAlloc(sizeof(FrontSolver), 16);
-    auto* front = new (room) FrontSolver(*world.getConstraintSolver(), owned);
+    auto* front = new (room) FrontSolver(*world.getConstraintSolver(), owned, &world);
     front_ = front->self_;
     owned = false; // else the world would end the user's solver where another one comes
     world.setConstraintSolver(front);
@@ -231,7 +231,7 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
                                                 const btContactSolverInfo& info,
                                                 btIDebugDraw* drawer, btDispatcher* dispatcher) {
     // Bullet flushes an empty group after an island above its batch size
-    if (body_count == 0 && manifold_count == 0 && constraint_count == 0) return 0;
+    if (handed_over_ || (body_count == 0 && manifold_count == 0 && constraint_count == 0)) return 0;
     const detail::HalfwayContacts halfway(manifolds, kind_ == TickKind::part ? manifold_count : 0);
     static const DirectBodies none;
     const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
@@ -258,7 +258,13 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     return residual;
 }
 
+DUCTILE_INLINE void FrontSolver::prepareSolve(int bodies, int manifolds) {
+    usual_.prepareSolve(bodies, manifolds);
+    handed_over_ = batches_ && batches_->hand_over(*this);
+}
+
 DUCTILE_INLINE void FrontSolver::allSolved(const btContactSolverInfo& info, btIDebugDraw* drawer) {
+    if (std::exchange(handed_over_, false)) batches_->end();
     usual_.allSolved(info, drawer);
     const std::lock_guard lock(mutex_); // one front may serve several worlds
     std::erase_if(kept_, [](auto& entry) { return !std::exchange(entry.second->used, false); });

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <functional>
 #include <stdexcept>
-#include <unordered_set>
 
 #include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
 
@@ -147,15 +147,14 @@ DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
                                                         std::span<PlasticConstraint* const> joints,
                                                         std::span<const dBodyID> members) {
-    std::unordered_set<dBodyID> found;
-    std::unordered_set<dJointID> named;
-    for (const NamedContact& contact : contacts) named.insert(contact.joint);
+    AddressBook found, named;
+    for (const NamedContact& contact : contacts) named.enter(contact.joint);
     island_.clear();
     const auto add = [&](dBodyID body) {
-        if (can_move(body) && found.insert(body).second) island_.push_back(body);
+        if (can_move(body) && found.enter(body) == island_.size()) island_.push_back(body);
     };
     for (dBodyID body : members) {
-        if (found.insert(body).second) island_.push_back(body);
+        if (found.enter(body) == island_.size()) island_.push_back(body);
     }
     for (const PlasticConstraint* joint : joints) {
         if (joint->queries().broken() || dJointIsEnabled(joint->id()) == 0) continue;
@@ -169,7 +168,7 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
             // what members hold hangs together with them while it is cut off, too
             const bool may_be_cut = at < members.size() && !touches;
             if (dJointIsEnabled(joint) == 0 && !may_be_cut) continue;
-            if (touches && !named.contains(joint)) {
+            if (touches && !named.has(joint)) {
                 throw std::logic_error(
                     "World.step: a contact of a body with plastic joints was not named: in a world "
                     "with a tolerance all are made and named (add_contact) by what on_contacts was "

@@ -19,11 +19,10 @@
 
 #include <ode/ode.h>
 
-#include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 #include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
 
@@ -74,9 +73,9 @@ class EnergyMeter final : public ductile::EnergyMeter {
     dWorldID world_;
     std::vector<dBodyID> bodies_;
     std::vector<const PlasticConstraint*> plastic_;
-    std::unordered_map<dJointID, dContactGeom> contacts_;
-    std::vector<WatchedJoint> watched_; ///< each joint of the watched bodies, once
-    std::unordered_set<dJointID> seen_;
+    AddressMap<dContactGeom> contacts_;    ///< by joint
+    std::vector<WatchedJoint> watched_;    ///< each joint of the watched bodies, once
+    AddressBook seen_;                     ///< these
     std::vector<dJointFeedback> feedback_; ///< to be lent
 };
 

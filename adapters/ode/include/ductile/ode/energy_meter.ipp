@@ -76,7 +76,8 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
     for (const dBodyID body : bodies_) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
             const dJointID id = dBodyGetJoint(body, i);
-            if (dJointIsEnabled(id) == 0 || !seen_.insert(id).second) continue;
+            if (dJointIsEnabled(id) == 0 || seen_.has(id)) continue;
+            seen_.enter(id);
             const bool lend = dJointGetFeedback(id) == nullptr;
             if (lend) dJointSetFeedback(id, &feedback_[lent++]);
             watched_.push_back({id, attached_bodies(id), dJointGetFeedback(id), lend});
@@ -85,14 +86,14 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
 }
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
-    std::unordered_map<dJointID, const dJointFeedback*> of_plastic;
+    AddressMap<const dJointFeedback*> of_plastic;
     for (const PlasticConstraint* constraint : plastic_) {
-        if (seen_.count(constraint->id()) > 0) of_plastic.emplace(constraint->id(), nullptr);
+        if (seen_.has(constraint->id())) of_plastic[constraint->id()] = nullptr;
     }
     for (const auto& [id, bodies, feedback, lent] : watched_) {
-        if (contacts_.count(id) > 0) continue;
-        if (const auto found = of_plastic.find(id); found != of_plastic.end()) {
-            found->second = feedback;
+        if (contacts_.find(id) != nullptr) continue;
+        if (const dJointFeedback** of = of_plastic.find(id)) {
+            *of = feedback;
             continue;
         }
         joints.push_back(
@@ -101,8 +102,8 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
              detail::drives(id) || detail::drives(bodies.a) || detail::drives(bodies.b)});
     }
     for (const PlasticConstraint* constraint : plastic_) {
-        const auto found = of_plastic.find(constraint->id());
-        if (found == of_plastic.end()) continue;
+        const dJointFeedback** found = of_plastic.find(constraint->id());
+        if (found == nullptr) continue;
         const auto [a, b, reversed] = constraint->bodies();
         const OutsideForce& outside = constraint->outside_force();
         MeteredJoint& joint = joints.emplace_back();
@@ -116,7 +117,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
                  &constraint->queries(),
                  DrivenPair::is_driven(a) || DrivenPair::is_driven(b)};
         // all motors of one of ODE's joints share its feedback: the first has it
-        const dJointFeedback* feedback = std::exchange(found->second, nullptr);
+        const dJointFeedback* feedback = std::exchange(*found, nullptr);
         if (feedback == nullptr) continue;
         joint.force_a = sum(joint.force_a, to_core(feedback->f1));
         joint.torque_a = sum(joint.torque_a, to_core(feedback->t1));
@@ -128,11 +129,11 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
                                                std::vector<MeteredContact>& contacts) const {
     for (const auto& [id, bodies, feedback, lent] : watched_) {
-        const auto contact = contacts_.find(id);
-        if (contact == contacts_.end()) continue;
+        const dContactGeom* contact = contacts_.find(id);
+        if (contact == nullptr) continue;
         const auto& [a, b, reversed] = bodies;
-        const Vector3<double> point = to_core(contact->second.pos);
-        const Vector3<double> normal = to_core(contact->second.normal);
+        const Vector3<double> point = to_core(contact->pos);
+        const Vector3<double> normal = to_core(contact->normal);
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
         const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
         contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed),

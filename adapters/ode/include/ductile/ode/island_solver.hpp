@@ -26,7 +26,6 @@
 
 #include <cstddef>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -34,6 +33,7 @@
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/solve/island_solver.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
@@ -77,16 +77,16 @@ class IslandSolver {
     [[nodiscard]] Kept& kept_of(const PlasticConstraint& first);
 
     std::size_t step_ = 0;
-    std::vector<Member> members_; ///< in the order in which they were added
-    std::unordered_map<dJointID, std::size_t> member_of_;
+    std::vector<Member> members_;       ///< in the order in which they were added
+    AddressMap<std::size_t> member_of_; ///< by joint
     bool indexed_ = true;
-    std::unordered_map<dJointID, std::size_t> contact_of_;
+    AddressMap<std::size_t> contact_of_; ///< by joint
     std::unordered_map<const PlasticConstraint*, Kept> kept_;
 
     // ---- of the island at hand
     std::vector<std::size_t> joints_, touches_; ///< among members and contacts
     std::vector<dBodyID> bodies_;               ///< that can move
-    std::unordered_map<dBodyID, int> number_;   ///< of all islands of the step
+    AddressMap<int> number_;                    ///< of bodies, of all islands of the step
     std::vector<BodyState<double>> free_;       ///< by number: as the step leaves them without rows
     solve::Island island_;
     std::vector<ContactRows> contact_rows_;

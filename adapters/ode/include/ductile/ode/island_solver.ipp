@@ -65,7 +65,7 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
         for (const std::size_t joint : joints_) members_[joint].rows->make_rows(dt);
     }
     for (const dBodyID body : others) {
-        if (number_.contains(body) || !gather(body)) continue;
+        if (number_.find(body) != nullptr || !gather(body)) continue;
         const auto is_awake = [](dBodyID each) { return dBodyIsEnabled(each) != 0; };
         if (std::none_of(bodies_.begin(), bodies_.end(), is_awake)) continue;
         solve::IslandSolver alone;
@@ -88,7 +88,7 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
     joints_.clear();
     touches_.clear();
     bodies_.assign(1, first);
-    number_.emplace(first, no_seat);
+    number_[first] = no_seat;
     awake_ = false;
     for (std::size_t at = 0; at < bodies_.size(); ++at) {
         const dBodyID body = bodies_[at];
@@ -96,13 +96,13 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
         for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
             if (dJointIsEnabled(joint) == 0) continue;
-            if (const auto member = member_of_.find(joint); member != member_of_.end()) {
-                Member& found = members_[member->second];
+            if (const std::size_t* member = member_of_.find(joint)) {
+                Member& found = members_[*member];
                 if (std::exchange(found.seen, step_) != step_ && found.rows->acts()) {
-                    joints_.push_back(member->second);
+                    joints_.push_back(*member);
                 }
-            } else if (const auto touch = contact_of_.find(joint); touch != contact_of_.end()) {
-                touches_.push_back(touch->second);
+            } else if (const std::size_t* touch = contact_of_.find(joint)) {
+                touches_.push_back(*touch);
             } else {
                 known = false;
             }
@@ -111,7 +111,8 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
                 if (other == nullptr) continue;
                 if (!can_move(other)) {
                     awake_ = awake_ || dBodyIsEnabled(other) != 0;
-                } else if (number_.emplace(other, no_seat).second) {
+                } else if (number_.find(other) == nullptr) {
+                    number_[other] = no_seat;
                     bodies_.push_back(other);
                 }
             }
@@ -203,7 +204,7 @@ DUCTILE_INLINE IslandSeat IslandSolver::seat(dBodyID body) const {
     if (!can_move(body)) {
         return {.velocity = linear_velocity(body), .spin = angular_velocity(body)};
     }
-    const int number = number_.at(body);
+    const int number = *number_.find(body);
     const BodyState<double>& free = free_[std::size_t(number)];
     return {number, free.velocity, free.spin};
 }

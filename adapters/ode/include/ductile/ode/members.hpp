@@ -19,13 +19,13 @@
 
 #include <deque>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "ductile/ode/divisible.hpp"
 #include "ductile/ode/divisibles.hpp"
 #include "ductile/ode/member.hpp"
 #include "ductile/ode/world.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
@@ -89,7 +89,7 @@ class Members final : public Divisibles {
 
     std::vector<Course> members_;
     std::vector<dBodyID> bodies_;
-    std::unordered_map<dBodyID, std::size_t> owners_;
+    AddressMap<std::size_t> owners_; ///< by body
     std::vector<Happened> happened_;
     std::deque<dJointFeedback> lent_;
     std::vector<dJointID> borrowers_, held_by_;

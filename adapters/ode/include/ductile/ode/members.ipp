@@ -59,14 +59,14 @@ DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& 
 }
 DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
     if (members_.empty() || a == nullptr || b == nullptr) return false;
-    const auto of_a = owners_.find(a), of_b = owners_.find(b);
-    return of_a != owners_.end() && of_b != owners_.end() && of_a->second == of_b->second &&
-           members_[of_a->second].of->hangs_together(a, b);
+    const std::size_t *of_a = owners_.find(a), *of_b = owners_.find(b);
+    return of_a != nullptr && of_b != nullptr && *of_a == *of_b &&
+           members_[*of_a].of->hangs_together(a, b);
 }
 DUCTILE_INLINE bool Members::hold(dBodyID a, dBodyID b) const {
     const auto holds = [this](dBodyID own, dBodyID other) {
-        const auto of = owners_.find(own);
-        return of != owners_.end() && members_[of->second].of->holds(own, other);
+        const std::size_t* of = owners_.find(own);
+        return of != nullptr && members_[*of].of->holds(own, other);
     };
     return a != nullptr && b != nullptr && (holds(a, b) || holds(b, a));
 }
@@ -125,12 +125,12 @@ DUCTILE_INLINE void Members::list_contacts(std::span<const NamedContact> contact
         if (dJointIsEnabled(named.joint) == 0) continue;
         const AttachedBodies bodies = attached_bodies(named.joint);
         for (const bool of_a : {true, false}) {
-            const auto owner = owners_.find(of_a ? bodies.a : bodies.b);
-            if (owner == owners_.end()) continue;
+            const std::size_t* owner = owners_.find(of_a ? bodies.a : bodies.b);
+            if (owner == nullptr) continue;
             Touch touch{named.joint, bodies, of_a, to_core(named.contact.geom.pos),
                         scaled(bodies.reversed ? -1 : 1, to_core(named.contact.geom.normal))};
             touch.closing = touch.closing_speed();
-            members_[owner->second].touches.push_back(touch);
+            members_[*owner].touches.push_back(touch);
         }
     }
 }

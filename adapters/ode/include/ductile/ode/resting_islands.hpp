@@ -15,11 +15,11 @@
 #include <ode/ode.h>
 
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "ductile/ode/plastic_constraint.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
@@ -32,7 +32,7 @@ class RestingIslands {
     /// To be called before a body is destroyed.
     void forget(dBodyID body) {
         std::erase_if(samples_, [body](const auto& entry) { return entry.first == body; });
-        idle_.erase(body);
+        if (Idle* idle = idle_.find(body)) *idle = {};
     }
     /// A frame of `length` [s] is over, its contacts are there. True where a body fell asleep.
     bool look(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> joints,
@@ -40,16 +40,16 @@ class RestingIslands {
 
   private:
     struct Idle {
-        int steps = 0;
+        int steps = 0;   ///< 0: it is not
         double time = 0; ///< [s]
     };
     /// All that hangs together with a body, into found_; false where it is to stay awake.
     [[nodiscard]] bool gather(dBodyID first);
 
     std::vector<std::pair<dBodyID, int>> samples_; ///< of those that ODE would count
-    std::unordered_map<dBodyID, Idle> idle_;
-    std::unordered_map<dJointID, PlasticConstraint*> plastic_;
-    std::unordered_map<dBodyID, bool> seen_;
+    AddressMap<Idle> idle_, before_;               ///< by body; before this frame
+    AddressMap<PlasticConstraint*> plastic_;       ///< by joint
+    AddressBook seen_;                             ///< bodies
     std::vector<dBodyID> found_;
 };
 

@@ -28,20 +28,20 @@ DUCTILE_INLINE void RestingIslands::end() {
 
 DUCTILE_INLINE bool RestingIslands::gather(dBodyID first) {
     found_.assign(1, first);
-    seen_[first] = true;
+    seen_.enter(first);
     bool may_sleep = true;
     for (std::size_t at = 0; at < found_.size(); ++at) {
         const dBodyID body = found_[at];
         const int count = dBodyGetNumJoints(body);
-        const auto idle = idle_.find(body);
-        may_sleep = may_sleep && count > 0 && idle != idle_.end() &&
-                    idle->second.steps >= dBodyGetAutoDisableSteps(body) &&
-                    idle->second.time >= double(dBodyGetAutoDisableTime(body));
+        const Idle* idle = idle_.find(body);
+        may_sleep = may_sleep && count > 0 && idle != nullptr && idle->steps > 0 &&
+                    idle->steps >= dBodyGetAutoDisableSteps(body) &&
+                    idle->time >= double(dBodyGetAutoDisableTime(body));
         for (int i = 0; i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
             if (dJointIsEnabled(joint) == 0) continue;
-            if (const auto plastic = plastic_.find(joint); plastic != plastic_.end()) {
-                IslandRows* rows = plastic->second->island_rows();
+            if (PlasticConstraint** plastic = plastic_.find(joint)) {
+                IslandRows* rows = (*plastic)->island_rows();
                 may_sleep = may_sleep && (rows == nullptr || !rows->acts() || rows->rests());
             }
             for (const int side : {0, 1}) {
@@ -49,7 +49,8 @@ DUCTILE_INLINE bool RestingIslands::gather(dBodyID first) {
                 if (other == nullptr) continue;
                 if (!can_move(other)) {
                     may_sleep = may_sleep && dBodyIsEnabled(other) == 0;
-                } else if (!std::exchange(seen_[other], true)) {
+                } else if (!seen_.has(other)) {
+                    seen_.enter(other);
                     found_.push_back(other);
                 }
             }
@@ -61,26 +62,27 @@ DUCTILE_INLINE bool RestingIslands::gather(dBodyID first) {
 DUCTILE_INLINE bool RestingIslands::look(std::span<const dBodyID> bodies,
                                          std::span<PlasticConstraint* const> joints,
                                          double length) {
-    std::unordered_map<dBodyID, Idle> before;
-    before.swap(idle_);
+    std::swap(before_, idle_);
+    idle_.clear();
     for (dBodyID body : bodies) {
         if (!can_move(body) || dBodyIsEnabled(body) == 0 || !detail::is_idle(body)) continue;
-        const Idle last = before[body];
+        const Idle* known = before_.find(body);
+        const Idle last = known != nullptr ? *known : Idle();
         idle_[body] = {last.steps + 1, last.time + length};
     }
-    if (idle_.empty()) return false;
+    if (idle_.size() == 0) return false;
     plastic_.clear();
-    for (PlasticConstraint* joint : joints) plastic_.emplace(joint->id(), joint);
+    for (PlasticConstraint* joint : joints) plastic_[joint->id()] = joint;
     seen_.clear();
     bool slept = false;
     for (dBodyID body : bodies) {
-        if (!can_move(body) || dBodyIsEnabled(body) == 0 || seen_.contains(body)) continue;
+        if (!can_move(body) || dBodyIsEnabled(body) == 0 || seen_.has(body)) continue;
         if (!gather(body)) continue;
         for (dBodyID asleep : found_) {
             dBodyDisable(asleep);
             dBodySetLinearVel(asleep, 0, 0, 0);
             dBodySetAngularVel(asleep, 0, 0, 0);
-            idle_.erase(asleep);
+            idle_[asleep] = {};
         }
         slept = true;
     }

@@ -9,8 +9,6 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/island_solver.hpp"
@@ -18,6 +16,7 @@
 #include "ductile/ode/world.hpp"
 #include "ductile/ode/world_parts.hpp"
 #include "ductile/ode/world_snapshot.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -331,10 +330,12 @@ DUCTILE_INLINE bool World::has_body(const void* body) const {
 }
 
 DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
-    std::unordered_map<dBodyID, std::size_t> island_of;
+    AddressMap<std::size_t> island_of; // by body
     std::vector<dBodyID> found;
     const auto find = [&](dBodyID body, std::size_t island) {
-        if (can_move(body) && island_of.emplace(body, island).second) found.push_back(body);
+        if (!can_move(body) || island_of.find(body) != nullptr) return;
+        island_of[body] = island;
+        found.push_back(body);
     };
     std::vector<std::size_t> result;
     for (const PlasticConstraint* joint : plastic_) {
@@ -355,9 +356,10 @@ DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
 }
 
 DUCTILE_INLINE void World::require_all_bodies() {
-    const std::unordered_set<dBodyID> known(bodies_.begin(), bodies_.end());
+    AddressBook known;
+    for (dBodyID body : bodies_) known.enter(body);
     const auto require = [&known](dBodyID body) {
-        if (body == nullptr || known.contains(body)) return;
+        if (body == nullptr || known.has(body)) return;
         throw std::invalid_argument(
             "World.tolerance: every body that moves must have been added, also where only a joint "
             "or a geom holds it");
