@@ -104,20 +104,34 @@ class Beams {
     std::vector<std::unique_ptr<Hinge>> hinges;
 };
 
-/// Sequential impulse that counts the constraints it is given.
+/// Sequential impulse that counts the constraints it is given, and notes in which groups.
 class CountingSolver final : public btSequentialImpulseConstraintSolver {
   public:
+    using Group = std::array<std::vector<int>, 3>; ///< numbers of bodies, of pairs, of pairs
     btScalar solveGroup(btCollisionObject** bodies, int body_count,
                         btPersistentManifold** manifolds, int manifold_count,
                         btTypedConstraint** constraints, int constraint_count,
                         const btContactSolverInfo& info, btIDebugDraw* drawer,
                         btDispatcher* dispatcher) override {
         solved += constraint_count;
+        Group& group = groups.emplace_back();
+        for (int i = 0; i < body_count; ++i) group[0].push_back(bodies[i]->getWorldArrayIndex());
+        const auto note = [](std::vector<int>& list, const btCollisionObject& a,
+                             const btCollisionObject& b) {
+            list.insert(list.end(), {a.getWorldArrayIndex(), b.getWorldArrayIndex()});
+        };
+        for (int i = 0; i < manifold_count; ++i) {
+            note(group[1], *manifolds[i]->getBody0(), *manifolds[i]->getBody1());
+        }
+        for (int i = 0; i < constraint_count; ++i) {
+            note(group[2], constraints[i]->getRigidBodyA(), constraints[i]->getRigidBodyB());
+        }
         return btSequentialImpulseConstraintSolver::solveGroup(
             bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info,
             drawer, dispatcher);
     }
     int solved = 0;
+    std::vector<Group> groups;
 };
 
 } // namespace
@@ -157,6 +171,72 @@ TEST_CASE("islands without plastic joints are the same beside a World, bit for b
         return state;
     };
     CHECK(heap(true) == heap(false));
+}
+
+TEST_CASE("the user's solver is handed the islands that Bullet hands over", "[bullet][world]") {
+    // chains of boxes, some of which come to rest on a floor, some on a body that is driven
+    const int batch = GENERATE(1, 8, 128);
+    const auto run = [batch](bool with_world) {
+        BulletWorld rig("si");
+        btDiscreteDynamicsWorld& dynamics = rig.world();
+        CountingSolver solver;
+        btConstraintSolver* usual = dynamics.getConstraintSolver();
+        dynamics.setConstraintSolver(&solver);
+        dynamics.getSolverInfo().m_minimumSolverBatchSize = batch;
+        dynamics.setGravity({0, btScalar(-9.81), 0});
+        std::unique_ptr<bullet::World> world;
+        if (with_world) {
+            world = std::make_unique<bullet::World>(
+                dynamics, bullet::WorldParameters{.tolerance = 0, .warn = nullptr});
+        }
+        btBoxShape shape({btScalar(0.5), btScalar(0.5), btScalar(0.5)}), wide({20, 1, 20});
+        std::vector<std::unique_ptr<btRigidBody>> bodies;
+        std::vector<std::unique_ptr<btPoint2PointConstraint>> joints;
+        const auto add = [&](btCollisionShape& of, double mass, const btVector3& place) {
+            btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &of,
+                                                          btVector3(1, 1, 1) * btScalar(mass / 6));
+            info.m_startWorldTransform.setOrigin(place);
+            dynamics.addRigidBody(bodies.emplace_back(std::make_unique<btRigidBody>(info)).get());
+            return bodies.back().get();
+        };
+        add(wide, 0, {0, -1, 0});
+        btRigidBody* driven = add(shape, 1, {30, 0, 0});
+        driven->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
+        driven->setActivationState(DISABLE_DEACTIVATION);
+        for (int i = 0; i < 9; ++i) {
+            btRigidBody* before = nullptr;
+            for (int k = 0; k <= i % 4; ++k) {
+                const double x = i == 8 ? 30 : 4.0 * (i % 4) + 1.1 * k, z = 6.0 * (i / 4);
+                btRigidBody* body = add(
+                    shape, 1 + k, {btScalar(x), btScalar(1.2 + 0.3 * i), btScalar(i == 8 ? 0 : z)});
+                if (before != nullptr) {
+                    joints.push_back(std::make_unique<btPoint2PointConstraint>(
+                        *before, *body, btVector3(btScalar(0.55), 0, 0),
+                        btVector3(btScalar(-0.55), 0, 0)));
+                    dynamics.addConstraint(joints.back().get());
+                }
+                before = body;
+            }
+        }
+        for (int i = 0; i < 300; ++i) {
+            if (with_world) {
+                world->step(1.0 / 60);
+            } else {
+                dynamics.stepSimulation(btScalar(1.0 / 60), 0);
+            }
+        }
+        for (auto& joint : joints) dynamics.removeConstraint(joint.get());
+        for (auto& body : bodies) dynamics.removeRigidBody(body.get());
+        world.reset();
+        dynamics.setConstraintSolver(usual);
+        std::erase_if(solver.groups, [](const CountingSolver::Group& group) {
+            return group == CountingSolver::Group(); // Bullet flushes an empty one
+        });
+        return std::pair(solver.groups, solver.solved);
+    };
+    const auto with = run(true), without = run(false);
+    CHECK(with.second > 1000);
+    CHECK(with == without);
 }
 
 TEST_CASE("islands with a plastic joint never reach the user's solver, which is put back",

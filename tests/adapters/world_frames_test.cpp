@@ -426,15 +426,20 @@ TEST_CASE("Frames: a load meets a spring's swing in its phase", "[frame]") {
     const auto waves = [](int i) { return 32 * std::sin(2 * std::numbers::pi * (i + 0.5) / 21); };
     // a hand gives it 0.3 and -0.24 m/s in turn, whatever it had
     constexpr double kicked = 36e3; // ω h = 2.2
-    constexpr int kick = 15;
+    const auto kicks = [](int i) { return i % 15 != 0 ? NAN : i / 15 % 2 == 0 ? 0.3 : -0.24; };
     const auto no_load = [](int) { return 0.0; };
-    const auto check = [&](const auto& load, double stiffness, double within, bool kicks = false) {
-        const auto speed = [](int i) { return i / kick % 2 == 0 ? 0.3 : -0.24; };
+    // it is thrown, and swings under a load that it bears, five times and more, until that grows
+    constexpr double thrown_soft = 18432, thrown = 28800; // ω h = 1.6, 2
+    const auto throws = [](int i) { return i == 0 ? 1.0 : NAN; };
+    const auto jumps = [](int i) { return i < 24 || i >= 44 ? 8.0 : 27.0; };
+    const auto jumps_far = [](int i) { return i < 24 || i >= 44 ? 3.0 : 23.0; };
+    const auto no_hand = [](int) { return NAN; };
+    const auto check = [&](const auto& load, double stiffness, double within, const auto& hand) {
         double position = 0, velocity = 0, offset = 0, work = 0; // by velocity Verlet
         for (int i = 0; i < frames * fine; ++i) {
             constexpr double h = frame / fine;
             const double given = load(i / fine);
-            if (kicks && i % (kick * fine) == 0) velocity = speed(i / fine);
+            if (i % fine == 0 && !std::isnan(hand(i / fine))) velocity = hand(i / fine);
             velocity += (given - stiffness * (position - offset)) / mass * h / 2;
             position += velocity * h;
             const double force = stiffness * (position - offset);
@@ -447,17 +452,19 @@ TEST_CASE("Frames: a load meets a spring's swing in its phase", "[frame]") {
         const auto body = rig.body(mass, V3::Ones(), V3::Zero());
         auto& slider = rig.slider(body, V3(1, 0, 0), law(strength, 1e9, stiffness));
         for (int i = 0; i < frames; ++i) {
-            if (kicks && i % kick == 0) WorldRig::set_velocity(body, V3(speed(i), 0, 0));
+            if (!std::isnan(hand(i))) WorldRig::set_velocity(body, V3(hand(i), 0, 0));
             WorldRig::apply_force(body, V3(load(i), 0, 0));
             rig.world().step(frame);
         }
         CHECK(slider.absorbed_energy() == Approx(work).epsilon(within));
         CHECK(rig.world().run().believed());
     };
-    check(to_and_fro, soft, 0.01);
-    check(pushes, soft, 0.01);
-    check(waves, stiff, 0.01);
-    check(no_load, kicked, 0.01, true);
+    check(to_and_fro, soft, 0.01, no_hand);
+    check(pushes, soft, 0.01, no_hand);
+    check(waves, stiff, 0.01, no_hand);
+    check(no_load, kicked, 0.01, kicks);
+    check(jumps, thrown_soft, 0.01, throws);
+    check(jumps_far, thrown, 0.01, throws);
 }
 
 TEST_CASE("Frames: a base that is driven by hand goes its way in parts too", "[frame]") {

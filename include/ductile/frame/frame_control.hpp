@@ -118,6 +118,7 @@ class FrameControl {
     struct Past {
         PartRow row;
         double acceleration = 0; ///< a₋ [m/s² | rad/s²]
+        double mass = 0;         ///< that it moves as a spring, as last told
         bool driven = false;     ///< by more than its own force, so far
         bool fast = false;       ///< it swings faster than a frame's parts can follow
     };

@@ -82,7 +82,7 @@ DUCTILE_INLINE double FrameControl::followed(double h) const noexcept {
 /// When the first row stops that would then misplace more than what is allowed; else `h`.
 DUCTILE_INLINE double FrameControl::first_stop(double h) const noexcept {
     double stop = h;
-    for (const auto& [row, acceleration, driven, fast] : past_) {
+    for (const auto& [row, acceleration, mass, driven, fast] : past_) {
         const double speed = std::abs(row.end);
         if (!(acceleration * row.end < 0) || !(row.strength > 0) || speed <= row.noise) continue;
         constexpr double nothing = 1e-3;
@@ -120,9 +120,14 @@ DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         const PartBefore known = before(i, motion);
-        const bool driven = row.elastic && is_driven(row, known);
-        const bool fast = known.fast && row.moves() && !driven;
-        past_[i] = {row, h > 0 ? (row.end - row.start) / h : past_[i].acceleration, driven, fast};
+        Past now{row, past_[i].acceleration, known.mass, is_driven(row, h, known), false};
+        if (h > 0) {
+            now.acceleration = (row.end - row.start) / h;
+            const double mass = swung_mass(row, h, known);
+            if (mass > 0) now.mass = mass;
+        }
+        now.fast = known.fast && row.moves() && !now.driven;
+        past_[i] = now;
     }
     if (h > 0) before_ = h;
 }
@@ -202,9 +207,15 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
     if (!detail::was_there(past_, motion, row)) return {};
     const Past& past = past_[row];
     const bool swings = past.row.swings && past.row.moves();
-    return {past.acceleration, before_,
-            past.row.end,      swings,
-            past.driven,       past.fast || used() > detail::of_swings};
+    const bool fast = past.fast || used() > detail::of_swings;
+    return {.acceleration = past.acceleration,
+            .length = before_,
+            .end = past.row.end,
+            .force = past.row.force,
+            .mass = past.mass,
+            .swings = swings,
+            .driven = past.driven,
+            .fast = fast};
 }
 
 /// Rigid rows take more of what the engine rounds than all that flows could, in any part.

@@ -119,6 +119,8 @@ struct PartBefore {
     double acceleration = 0; ///< a₋ [m/s² | rad/s²]
     double length = 0;       ///< h₋ [s]
     double end = 0;          ///< u' of it [m/s | rad/s]
+    double force = 0;        ///< f of it [N | N m]
+    double mass = 0;         ///< that it moved as a spring; 0: not known [kg | kg m²]
     bool swings = false;     ///< it moved as a spring
     bool driven = false;     ///< by more than its own force, then or before
     bool fast = false;       ///< it swings faster than a frame's parts can follow
@@ -137,26 +139,41 @@ struct PartBefore {
     return {.stop = stop, .lacking = std::abs(back * (h - stop) + way * row.end) / std::sqrt(back)};
 }
 
-/// Whether more than its own force moved a row: a load of half its strength, against which it
-/// was pushed, or what gave it another speed while it swung. It may flow again, then.
-[[nodiscard]] inline bool is_driven(const PartRow& row, const PartBefore& before) noexcept {
-    constexpr double much = 0.5, another = 0.3;
-    const bool pushed =
-        std::abs(row.force) > much * row.strength && (row.end - row.start) * row.force < 0;
-    const double fastest = std::max(std::abs(row.start), std::abs(before.end));
-    const bool struck = before.swings && std::abs(row.start - before.end) > another * fastest;
-    return before.driven || pushed || struck;
+/// What a spring moves, Δf/Δa from part to part whatever rests on it; 0 where too little changes to
+/// tell.
+[[nodiscard]] inline double swung_mass(const PartRow& row, double h,
+                                       const PartBefore& before) noexcept {
+    constexpr double noticed = 1e-3;
+    const double change = row.force - before.force;
+    const double faster = (row.end - row.start) / h - before.acceleration;
+    const bool tells = row.swings && before.swings && before.length > 0 &&
+                       std::abs(change) > noticed * row.strength && faster * change > 0;
+    return tells ? change / faster : 0;
+}
+
+/// Whether more than its own force moved a row: a load m a - f, or what gave it another speed while
+/// it swung, a blow (h = 0) or a hand before the part. It may flow again, then.
+[[nodiscard]] inline bool is_driven(const PartRow& row, double h,
+                                    const PartBefore& before) noexcept {
+    constexpr double much = 0.05, another = 0.3;
+    if (!row.swings || !before.swings) return before.driven;
+    const double load = before.mass * (row.end - row.start) / h - row.force;
+    const bool loaded = h > 0 && before.mass > 0 && std::abs(load) > much * row.strength;
+    const double given = h > 0 ? row.start : row.end;
+    const double fastest = std::max(std::abs(given), std::abs(before.end));
+    const bool struck = std::abs(given - before.end) > another * fastest;
+    return before.driven || loaded || struck;
 }
 
 /// Of a spring; `changed`: |a'|, `below`: travel by which it flows below its strength.
 [[nodiscard]] inline Misplaced misplaced_by_spring(const PartRow& row, double h,
                                                    const PartBefore& before, double changed,
                                                    double below) noexcept {
-    constexpr double idle = 0.02, least_weight = 0.3, parts_of_a_swing = 4;
+    constexpr double idle = 0.02, least_weight = 0.3, parts_of_a_swing = 8;
     Misplaced result;
     if (row.share <= idle && !(row.stopped(h) > row.spring)) return result;
     const double share = std::min(1.0, row.share), cube = h * h * h;
-    const bool driven = is_driven(row, before);
+    const bool driven = is_driven(row, h, before);
     if (!(row.swings && before.swings && before.fast) || driven) {
         result.travel = changed * cube / 8 * std::max(share, least_weight) + below;
     }
