@@ -17,6 +17,7 @@
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>
+#include <ductile/ode/own_axes.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/resting_islands.ipp>

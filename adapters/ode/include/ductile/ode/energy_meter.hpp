@@ -23,6 +23,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "ductile/ode/own_axes.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/energy_meter.hpp"
@@ -57,6 +58,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
         AttachedBodies bodies; ///< that a break may take from it
         const dJointFeedback* feedback;
         bool lent;
+        OwnAxes own; ///< as it is solved
     };
 
     DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;

@@ -281,6 +281,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     for (tick(h, false); beyond(); tick(h, false)) do_again();
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
+    motion_.others_work = of_.meter.step_of_other_joints();
     motion_.stored = of_.meter.stored();
     motion_.contact_lost = false;
     motion_.turned = 0;
