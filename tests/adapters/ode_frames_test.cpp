@@ -404,6 +404,40 @@ TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about"
     }
 }
 
+TEST_CASE("Frames: a stop of ODE's own joint is met where it is, and throws nothing about",
+          "[frame]") {
+    constexpr double mass = 2, speed = 3, strength = 20, stop = 0.05;
+    constexpr double lost = mass * speed * speed / 4; // as both go on together
+    for (const bool slides : {true, false}) {
+        for (const double frame : all_frames) {
+            CAPTURE(slides, frame);
+            Rig rig;
+            const dBodyID held = rig.body(mass, V3::Constant(mass), {0, 0, 0});
+            const dBodyID thrown = rig.body(mass, V3::Constant(mass), {0, 0, 0});
+            const ode::PlasticConstraint* joint = nullptr;
+            const dJointID own = slides ? dJointCreateSlider(rig.engine.id, nullptr)
+                                        : dJointCreateHinge(rig.engine.id, nullptr);
+            dJointAttach(own, thrown, held);
+            if (slides) {
+                joint = &rig.slider(held, {0, 0, 1}, strength);
+                dJointSetSliderAxis(own, 0, 0, 1);
+                dJointSetSliderParam(own, dParamLoStop, -stop);
+                dJointSetSliderParam(own, dParamHiStop, stop);
+                dBodySetLinearVel(thrown, 0, 0, speed);
+            } else {
+                joint = &rig.hinge(held, nullptr, {0, 0, 0}, strength);
+                dJointSetHingeAxis(own, 0, 0, 1);
+                dJointSetHingeParam(own, dParamLoStop, -stop);
+                dJointSetHingeParam(own, dParamHiStop, stop);
+                dBodySetAngularVel(thrown, 0, 0, speed);
+            }
+            rig.run(0.75, frame);
+            CHECK(joint->queries().absorbed_energy() == Approx(lost).epsilon(5e-3));
+            CHECK(rig.world.run().believed());
+        }
+    }
+}
+
 TEST_CASE("Frames: a spring whose island is ODE's is solved in parts of any length", "[frame]") {
     constexpr double mass = 5, speed = 1, strength = 1e3, stiffness = 1e3;
     Rig rig;
