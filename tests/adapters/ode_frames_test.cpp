@@ -457,6 +457,32 @@ TEST_CASE("Frames: a spring whose island is ODE's is solved in parts of any leng
     }
 }
 
+TEST_CASE("Frames: a joint that is taken out of its World acts no more, in ODE's islands too",
+          "[frame]") {
+    constexpr double strength = 4, frame = 1.0 / 60;
+    for (const bool motor : {true, false}) {
+        CAPTURE(motor);
+        Rig rig;
+        const dBodyID rotor = rig.body(1, V3(2, 2, 2), {0, 0, 0});
+        const dJointID pin = dJointCreateHinge(rig.engine.id, nullptr);
+        dJointAttach(pin, rotor, nullptr);
+        dJointSetHingeAxis(pin, 0, 0, 1);
+        if (motor) {
+            rig.joints.push_back(
+                std::make_unique<ode::PlasticMotor<Law>>(ode::hinge_axis(pin), law(strength)));
+            rig.world.add(*rig.joints.back());
+        } else {
+            rig.hinge(rotor, nullptr, {0, 0, 0}, strength);
+        }
+        dBodySetAngularVel(rotor, 0, 0, 5);
+        rig.run(0.1, frame);
+        rig.world.remove(*rig.joints.back());
+        const dReal spin = dBodyGetAngularVel(rotor)[2];
+        rig.run(0.2, frame);
+        CHECK(dBodyGetAngularVel(rotor)[2] == Approx(spin).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("Frames: what contacts bring in is said, what a driven body brings is not", "[frame]") {
     // beside two boxes a disc of 1 kg m² is stopped: 2 J by its hinge of 4 N m
     const bool overlap = GENERATE(true, false), driven = GENERATE(true, false);

@@ -257,6 +257,10 @@ DUCTILE_INLINE void JointConstraint::stand() {
     if (std::exchange(holds_on_, false)) let_go();
 }
 
+DUCTILE_INLINE void JointConstraint::left_world() {
+    if (life_->goes_on()) rest_motor();
+}
+
 // ---- a part of a frame
 
 DUCTILE_INLINE void JointConstraint::begin_frame() {
