@@ -11,12 +11,15 @@
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
+#include <ductile/ode/joint_stops.ipp>
 #include <ductile/ode/member.ipp>
 #include <ductile/ode/member_geoms.ipp>
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/motor_pose.ipp>
+#include <ductile/ode/own_axes.ipp>
+#include <ductile/ode/own_settings.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/resting_islands.ipp>

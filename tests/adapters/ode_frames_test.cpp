@@ -3,6 +3,7 @@
 // Frames with a tolerance in ODE, with contacts of ODE's own shapes.
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -400,6 +401,85 @@ TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about"
             CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(5e-3));
             CHECK(rig.world.run().believed());
         }
+    }
+}
+
+TEST_CASE("Frames: a stop of ODE's own joint is met where it is, and throws nothing about",
+          "[frame]") {
+    constexpr double mass = 2, speed = 3, strength = 20, stop = 0.05;
+    constexpr double lost = mass * speed * speed / 4; // as both go on together
+    for (const bool slides : {true, false}) {
+        for (const double frame : all_frames) {
+            CAPTURE(slides, frame);
+            Rig rig;
+            const dBodyID held = rig.body(mass, V3::Constant(mass), {0, 0, 0});
+            const dBodyID thrown = rig.body(mass, V3::Constant(mass), {0, 0, 0});
+            const ode::PlasticConstraint* joint = nullptr;
+            const dJointID own = slides ? dJointCreateSlider(rig.engine.id, nullptr)
+                                        : dJointCreateHinge(rig.engine.id, nullptr);
+            dJointAttach(own, thrown, held);
+            if (slides) {
+                joint = &rig.slider(held, {0, 0, 1}, strength);
+                dJointSetSliderAxis(own, 0, 0, 1);
+                dJointSetSliderParam(own, dParamLoStop, -stop);
+                dJointSetSliderParam(own, dParamHiStop, stop);
+                dBodySetLinearVel(thrown, 0, 0, speed);
+            } else {
+                joint = &rig.hinge(held, nullptr, {0, 0, 0}, strength);
+                dJointSetHingeAxis(own, 0, 0, 1);
+                dJointSetHingeParam(own, dParamLoStop, -stop);
+                dJointSetHingeParam(own, dParamHiStop, stop);
+                dBodySetAngularVel(thrown, 0, 0, speed);
+            }
+            rig.run(0.75, frame);
+            CHECK(joint->queries().absorbed_energy() == Approx(lost).epsilon(5e-3));
+            CHECK(rig.world.run().believed());
+        }
+    }
+}
+
+TEST_CASE("Frames: a spring whose island is ODE's is solved in parts of any length", "[frame]") {
+    constexpr double mass = 5, speed = 1, strength = 1e3, stiffness = 1e3;
+    Rig rig;
+    const dBodyID block = rig.body(mass, V3(1, 1, 1), {0, 0, 0});
+    const dJointID guide = dJointCreateSlider(rig.engine.id, nullptr);
+    dJointAttach(guide, block, nullptr);
+    dJointSetSliderAxis(guide, 0, 1, 0);
+    Slider slider(rig.engine.id, block, nullptr, {0, 1, 0},
+                  Law(Perfect<double>({.strength = strength}), {}, {.stiffness = stiffness}));
+    rig.world.add(slider);
+    dBodySetLinearVel(block, 0, dReal(speed), 0);
+    rig.run(0.1, 1.0 / 60);
+    for (const double h : {1e-5, 1e-6, 1e-7}) {
+        CAPTURE(h);
+        rig.world.step(h);
+        CHECK(rig.world.frame().unreliable == 0);
+    }
+}
+
+TEST_CASE("Frames: a joint that is taken out of its World acts no more, in ODE's islands too",
+          "[frame]") {
+    constexpr double strength = 4, frame = 1.0 / 60;
+    for (const bool motor : {true, false}) {
+        CAPTURE(motor);
+        Rig rig;
+        const dBodyID rotor = rig.body(1, V3(2, 2, 2), {0, 0, 0});
+        const dJointID pin = dJointCreateHinge(rig.engine.id, nullptr);
+        dJointAttach(pin, rotor, nullptr);
+        dJointSetHingeAxis(pin, 0, 0, 1);
+        if (motor) {
+            rig.joints.push_back(
+                std::make_unique<ode::PlasticMotor<Law>>(ode::hinge_axis(pin), law(strength)));
+            rig.world.add(*rig.joints.back());
+        } else {
+            rig.hinge(rotor, nullptr, {0, 0, 0}, strength);
+        }
+        dBodySetAngularVel(rotor, 0, 0, 5);
+        rig.run(0.1, frame);
+        rig.world.remove(*rig.joints.back());
+        const dReal spin = dBodyGetAngularVel(rotor)[2];
+        rig.run(0.2, frame);
+        CHECK(dBodyGetAngularVel(rotor)[2] == Approx(spin).epsilon(1e-6));
     }
 }
 

@@ -879,6 +879,28 @@ TEST_CASE("Frames: a top that wobbles loses nothing but to the joint that stops 
     }
 }
 
+TEST_CASE("Frames: a pendulum on the engine's own pin loses nothing but to the joint", "[frame]") {
+    constexpr double arm = 0.5, spin = 8, strength = 20, inertia = 0.4, of_wheel = 0.7;
+    // round the pin, the wheel's mass with it
+    constexpr double of_all = inertia + 2 * arm * arm,
+                     mean = of_all * of_wheel / (of_all + of_wheel);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto pendulum = rig.body(1, V3::Constant(inertia), V3(arm, 0, 0));
+        const auto wheel = rig.body(1, V3::Constant(of_wheel), V3(arm, 0, 0));
+        rig.pin(pendulum, nullptr, V3::Zero());
+        const auto& hinge = rig.hinge(wheel, pendulum, V3(arm, 0, 0), law(strength), "hinge");
+        WorldRig::set_spin(pendulum, V3(0, 0, spin));
+        for (const auto body : {pendulum, wheel}) {
+            WorldRig::set_velocity(body, V3(0, arm * spin, 0));
+        }
+        rig.run(0.5, frame);
+        CHECK(hinge.absorbed_energy() == Approx(mean * spin * spin / 2).epsilon(5e-3));
+        CHECK(rig.world().run().believed());
+    }
+}
+
 TEST_CASE("Frames: what the budget does not allow is said", "[frame]") {
     Rig rig(false, 1e-3, 8);
     std::vector<WorldRig::Body> rods;

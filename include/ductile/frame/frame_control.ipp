@@ -301,7 +301,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
-        if (!judged.fitted) judged.error += std::abs(motion.rigid_work);
+        if (!judged.fitted) {
+            judged.error += std::abs(motion.rigid_work) + std::max(motion.others_work, 0.0);
+        }
         if (!(h <= shortest)) {
             judged.error += detail::contact_share * std::abs(motion.contact_work);
         }

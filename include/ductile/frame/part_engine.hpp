@@ -28,6 +28,7 @@ struct PartMotion {
     /// of members; 0: there are none.
     double closed_work = 0;
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
+    double others_work = 0;    ///< that rigid rows of the engine's joints took there [J]
     double stored = 0;         ///< that elastic ones hold [J]
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
@@ -78,8 +79,8 @@ class PartEngine {
     [[nodiscard]] virtual ClosingContacts closing(double h, double touching, double apart) = 0;
     /// Of all bodies [J].
     [[nodiscard]] virtual double kinetic_energy() const = 0;
-    /// What rigid rows may take in a part of `h` as positions are rounded [J]: the shorter it is the
-    /// more.
+    /// What rigid rows may take in a part of `h` as positions are rounded [J]: the shorter it is
+    /// the more.
     [[nodiscard]] virtual double rounding(double /*h*/) const { return 0; }
     /// A part in which contacts took such a share of the speed too early is put back whatever else
     /// it tells; infinite: it stands.

@@ -9,6 +9,8 @@
 //               a frame of 1/60 s does. Bodies have mass: pushed apart in 5 ms, 24 crates that lay
 //               1.4 mm deep in their beams got 1.7 kJ, and a gate whose halves lay 0.1 m deep as
 //               they parted took 183 and 238 kJ at 1/500 and 1/1000 s, where it takes 154.
+//   springs     stops and suspensions that an engine has ERP and compliance of: those of a step of
+//               the frame, so that stiffness and damping are the same in a part of any length
 //   compliance  of contacts and softened rows, which engines divide by the step: in a blow that of
 //               a step of 0.1 ms, else 1 ns would meet a contact softer by 10⁵
 #pragma once
@@ -30,6 +32,19 @@ inline constexpr double blow_length = 1e-9;
 [[nodiscard]] inline double overlap_erp(double usual, double h, double frame) noexcept {
     constexpr double slowly = 1.0 / 60; // [s]
     return std::min(usual * h / std::max(frame, slowly), part_erp(usual, h));
+}
+
+struct Softness {
+    double erp;        ///< [-]
+    double compliance; ///< [s/kg | s/(kg m²)]
+};
+
+/// What has stiffness erp/(h compliance) and damping (1 - erp)/compliance of `usual` in a frame of
+/// `frame` [s]; where it is hard it gives way no faster than a part does.
+[[nodiscard]] inline Softness part_spring(const Softness& usual, double h, double frame) noexcept {
+    const double share = usual.erp * h / frame, whole = 1 - usual.erp + share;
+    if (!(whole > 0)) return {part_erp(usual.erp, h), usual.compliance};
+    return {part_erp(share / whole, h), usual.compliance / whole};
 }
 
 /// Of a world's compliance in a blow of `h` [s], by which it has to be multiplied [-].

@@ -66,9 +66,15 @@ struct MeteredJoint {
     Vector3<double> force_b{0, 0, 0};
     Vector3<double> torque_b{0, 0, 0};
     const PairQueries* plastic = nullptr; ///< whose flow is a part of this; null: nobody's
-    /// Of a body whose motion is prescribed, or with a motor or spring of the engine's: what moves
-    /// that pays too.
+    /// Of a body whose motion is prescribed, or of what is not told apart below: what moves that
+    /// pays too.
     bool driven = false;
+    bool powered = false; ///< by a motor or spring of the engine's
+    /// What its motors, stops and springs did on A, and with the opposite sign on B: all else are
+    /// rigid rows, which take nothing of what goes along.
+    Vector3<double> own_force{0, 0, 0};    ///< [N]
+    Vector3<double> own_torque_a{0, 0, 0}; ///< about A's centre of mass [N m]
+    Vector3<double> own_torque_b{0, 0, 0}; ///< on A, about B's
 };
 
 /// One contact point of a step.
@@ -121,6 +127,8 @@ class EnergyMeter {
     /// Of the last step alone: what plastic joints took beside their flow, damping and what they
     /// store, but for driven ones, and what contacts of bodies took that count [J].
     [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
+    /// What rigid rows of the engine's joints took in it, on islands with plastic joints [J].
+    [[nodiscard]] double step_of_other_joints() const noexcept { return step_others_; }
     /// What elastic joints held at its end [J].
     [[nodiscard]] double stored() const noexcept { return last_.elastic; }
     [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
@@ -211,7 +219,7 @@ class EnergyMeter {
     PairAccounts pairs_;
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
-    double step_plastic_ = 0; ///< [J]
+    double step_plastic_ = 0, step_others_ = 0; ///< [J]
     HeldEnergy<double> last_;
     AddressBook course_numbers_, plastic_numbers_, taken_numbers_; ///< of the next three
     std::vector<Course> courses_;

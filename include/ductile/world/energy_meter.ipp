@@ -45,7 +45,7 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
 }
 
 DUCTILE_INLINE void EnergyMeter::before_step() {
-    step_plastic_ = 0;
+    step_plastic_ = step_others_ = 0;
     pairs_.begin_step(!narrow_);
     // what somebody changed between the steps came from outside
     ledger_.supply(held().total() - last_.total());
@@ -312,7 +312,11 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
     } else if (joint.plastic != nullptr) {
         step_plastic_ += taken - named;
     } else if (dt > instant) {
-        book_pair({joint.joint, nullptr}, is_plastic(joint.a) || is_plastic(joint.b), taken);
+        const double own = work(joint.b, joint.own_force, joint.own_torque_b, dt) -
+                           work(joint.a, joint.own_force, joint.own_torque_a, dt);
+        const bool plastic = is_plastic(joint.a) || is_plastic(joint.b);
+        book_pair({joint.joint, nullptr}, plastic, joint.powered ? taken - own : taken);
+        if (plastic) step_others_ += taken - own;
     }
     const std::size_t number = taken_numbers_.enter(joint.joint);
     if (number == taken_.size()) taken_.push_back(0);

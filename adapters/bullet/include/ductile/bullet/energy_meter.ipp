@@ -45,6 +45,13 @@ namespace detail {
             return true;
     }
 }
+/// No motor, spring or limit of it may act; of others than these it is not told.
+[[nodiscard]] DUCTILE_INLINE bool has_rigid_rows_alone(btTypedConstraint& constraint) {
+    if (constraint.getConstraintType() == POINT2POINT_CONSTRAINT_TYPE) return true;
+    if (constraint.getConstraintType() != HINGE_CONSTRAINT_TYPE) return false;
+    auto& hinge = static_cast<btHingeConstraint&>(constraint);
+    return !hinge.getEnableAngularMotor() && !hinge.hasLimit();
+}
 
 } // namespace detail
 
@@ -129,14 +136,22 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
         const btJointFeedback* feedback = constraint.getJointFeedback();
         if (feedback == nullptr) return;
         const PlasticConstraint* plastic = as_plastic(constraint);
-        joints.push_back(
-            {&constraint, &constraint.getRigidBodyA(), &constraint.getRigidBodyB(),
-             to_core(feedback->m_appliedForceBodyA), to_core(feedback->m_appliedTorqueBodyA),
-             to_core(feedback->m_appliedForceBodyB), to_core(feedback->m_appliedTorqueBodyB),
-             plastic != nullptr ? &plastic->queries() : nullptr,
-             constraint.getRigidBodyA().isKinematicObject() ||
-                 constraint.getRigidBodyB().isKinematicObject() ||
-                 (plastic == nullptr && detail::drives(constraint))});
+        MeteredJoint& joint = joints.emplace_back();
+        joint = {&constraint,
+                 &constraint.getRigidBodyA(),
+                 &constraint.getRigidBodyB(),
+                 to_core(feedback->m_appliedForceBodyA),
+                 to_core(feedback->m_appliedTorqueBodyA),
+                 to_core(feedback->m_appliedForceBodyB),
+                 to_core(feedback->m_appliedTorqueBodyB),
+                 plastic != nullptr ? &plastic->queries() : nullptr,
+                 constraint.getRigidBodyA().isKinematicObject() ||
+                     constraint.getRigidBodyB().isKinematicObject() ||
+                     (plastic == nullptr && detail::drives(constraint))};
+        if (plastic != nullptr || detail::has_rigid_rows_alone(constraint)) return;
+        joint.own_force = joint.force_a;
+        joint.own_torque_a = joint.torque_a;
+        joint.own_torque_b = scaled(-1, joint.torque_b);
     });
 }
 

@@ -255,6 +255,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
+    motion_.others_work = metered ? meter_.step_of_other_joints() : 0;
     motion_.stored = metered ? meter_.stored() : 0;
     motion_.contact_work = 0;
     if (metered && motion_.flows()) {

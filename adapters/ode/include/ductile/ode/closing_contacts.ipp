@@ -11,6 +11,7 @@
 
 #include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/joint_stops.hpp"
 #include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
@@ -72,6 +73,12 @@ namespace detail {
     }
 }
 
+/// Overlap at which what comes at `speed` [m/s] is closed [m].
+[[nodiscard]] DUCTILE_INLINE double closing_depth(double speed) {
+    constexpr double share = 0.01, g = 10, least = 1e-7; // [-] [m/s²] [m]
+    return std::clamp(share * speed * speed / (2 * g), least, closed_depth);
+}
+
 /// How a geom moves.
 struct MovingGeom {
     dGeomID geom;
@@ -130,10 +137,7 @@ DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
     sinks = followed * (norm(difference(comes, scaled(speed, seen.normal))) +
                         norm(a.spin) * norm(seen.arm_a) + norm(b.spin) * norm(seen.arm_b));
 }
-DUCTILE_INLINE double ContactClosing::depth() const {
-    constexpr double share = 0.01, g = 10, least = 1e-7; // [-] [m/s²] [m]
-    return std::clamp(share * speed * speed / (2 * g), least, closed_depth);
-}
+DUCTILE_INLINE double ContactClosing::depth() const { return detail::closing_depth(speed); }
 
 DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
     constexpr double noticed = 0.01, hardly_less = 0.99; // [m/s] [-]
@@ -206,6 +210,25 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
+    look_at_stops();
+}
+
+/// Their gaps are known from afar.
+DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
+    any_stops_ = false;
+    for (dBodyID body : island_) {
+        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body, i);
+            if (dJointIsEnabled(joint) == 0) continue;
+            for (const StoppedAxis& axis : stopped_axes(joint)) {
+                any_stops_ = true;
+                const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
+                if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;
+                touches_.push_back({axis.gap() + depth, depth, speed, speed,
+                                    speed * speed / (2 * axis.yields), false, true});
+            }
+        }
+    }
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::see_motions(std::span<const dBodyID> bodies) {

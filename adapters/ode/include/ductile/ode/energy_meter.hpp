@@ -21,6 +21,7 @@
 
 #include <vector>
 
+#include "ductile/ode/own_axes.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -56,6 +57,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
         AttachedBodies bodies; ///< that a break may take from it
         const dJointFeedback* feedback;
         bool lent;
+        OwnAxes own; ///< as it is solved
     };
 
     DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;

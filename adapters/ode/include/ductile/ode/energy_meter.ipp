@@ -20,23 +20,6 @@ namespace detail {
     const Vector3<double> velocity = linear_velocity(body), spin = angular_velocity(body);
     return dot(velocity, velocity) + dot(spin, spin) > 0;
 }
-/// May bring energy in by itself, as a motor does.
-[[nodiscard]] DUCTILE_INLINE bool drives(dJointID joint) {
-    switch (dJointGetType(joint)) {
-        case dJointTypeBall:
-        case dJointTypeFixed:
-            return false;
-        case dJointTypeHinge:
-            return dJointGetHingeParam(joint, dParamFMax) > 0;
-        case dJointTypeSlider:
-            return dJointGetSliderParam(joint, dParamFMax) > 0;
-        case dJointTypeUniversal:
-            return dJointGetUniversalParam(joint, dParamFMax) > 0 ||
-                   dJointGetUniversalParam(joint, dParamFMax2) > 0;
-        default:
-            return true;
-    }
-}
 
 } // namespace detail
 
@@ -80,7 +63,8 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
             seen_.enter(id);
             const bool lend = dJointGetFeedback(id) == nullptr;
             if (lend) dJointSetFeedback(id, &feedback_[lent++]);
-            watched_.push_back({id, attached_bodies(id), dJointGetFeedback(id), lend});
+            const AttachedBodies bodies = attached_bodies(id);
+            watched_.push_back({id, bodies, dJointGetFeedback(id), lend, OwnAxes::of(id, bodies)});
         }
     }
 }
@@ -90,16 +74,27 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
     for (const PlasticConstraint* constraint : plastic_) {
         if (seen_.has(constraint->id())) of_plastic[constraint->id()] = nullptr;
     }
-    for (const auto& [id, bodies, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent, own] : watched_) {
         if (contacts_.find(id) != nullptr) continue;
         if (const dJointFeedback** of = of_plastic.find(id)) {
             *of = feedback;
             continue;
         }
-        joints.push_back(
-            {id, bodies.a, bodies.b, to_core(feedback->f1), to_core(feedback->t1),
-             to_core(feedback->f2), to_core(feedback->t2), nullptr,
-             detail::drives(id) || detail::drives(bodies.a) || detail::drives(bodies.b)});
+        MeteredJoint& joint = joints.emplace_back();
+        joint = {id,
+                 bodies.a,
+                 bodies.b,
+                 to_core(feedback->f1),
+                 to_core(feedback->t1),
+                 to_core(feedback->f2),
+                 to_core(feedback->t2),
+                 nullptr,
+                 detail::drives(bodies.a) || detail::drives(bodies.b),
+                 own.powered};
+        joint.own_force = own.force(joint.force_a);
+        const Vector3<double> moment = own.moment(joint.force_a, joint.torque_a);
+        joint.own_torque_a = sum(cross(own.arm_a, joint.own_force), moment);
+        joint.own_torque_b = sum(cross(own.arm_b, joint.own_force), moment);
     }
     for (const PlasticConstraint* constraint : plastic_) {
         const dJointFeedback** found = of_plastic.find(constraint->id());
@@ -128,7 +123,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
                                                std::vector<MeteredContact>& contacts) const {
-    for (const auto& [id, bodies, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent, own] : watched_) {
         const dContactGeom* contact = contacts_.find(id);
         if (contact == nullptr) continue;
         const auto& [a, b, reversed] = bodies;
@@ -147,7 +142,7 @@ DUCTILE_INLINE void EnergyMeter::end_watch() {
 }
 
 DUCTILE_INLINE void EnergyMeter::take_feedback_back() {
-    for (const auto& [id, bodies, feedback, lent] : watched_) {
+    for (const auto& [id, bodies, feedback, lent, own] : watched_) {
         // a contact that was made since may have the place of one that is gone, and another's
         if (lent && dJointGetFeedback(id) == feedback) dJointSetFeedback(id, nullptr);
     }

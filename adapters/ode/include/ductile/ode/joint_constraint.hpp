@@ -89,6 +89,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     DUCTILE_INLINE void finish() override;
     DUCTILE_INLINE void stand() override;
 
+    DUCTILE_INLINE void left_world() override;
     DUCTILE_INLINE void begin_frame() override;
     DUCTILE_INLINE void driven_begins(dBodyID body, const Vector3<double>& velocity,
                                       const Vector3<double>& spin) override;

@@ -196,7 +196,10 @@ DUCTILE_INLINE void JointConstraint::make_rows(double dt) {
         const LinkRow<double> row = link_.row(axis).along_unit();
         SymmetricRow symmetric = symmetric_row(row.limits, dt);
         const double moved = detail::mobility(a, arm_a_, row) + detail::mobility(b, arm_b_, row);
-        symmetric.cfm += std::max(detail::softness * moved, row.limits.softness) * dt;
+        // a spring yields enough by itself: in parts of microseconds it would miss its force by
+        // that
+        const double softness = row.limits.compliance > 0 ? 0 : row.limits.softness;
+        symmetric.cfm += std::max(detail::softness * moved, softness) * dt;
         Vector3<double>& centre = row.turns ? centre_.moment : centre_.force;
         centre = sum(centre, scaled(symmetric.centre, row.direction));
         const double scale = row_scale(moved + symmetric.cfm / dt);
@@ -252,6 +255,10 @@ DUCTILE_INLINE void JointConstraint::finish() {
 
 DUCTILE_INLINE void JointConstraint::stand() {
     if (std::exchange(holds_on_, false)) let_go();
+}
+
+DUCTILE_INLINE void JointConstraint::left_world() {
+    if (life_->goes_on()) rest_motor();
 }
 
 // ---- a part of a frame

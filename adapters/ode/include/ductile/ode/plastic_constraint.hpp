@@ -79,6 +79,9 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     /// Null: its rows are a joint's of ODE.
     [[nodiscard]] virtual IslandRows* island_rows() noexcept { return nullptr; }
 
+    /// A World that stepped it does so no more: ODE's joint is as without it.
+    virtual void left_world() = 0;
+
     // ---- parts of a frame (world_parts.hpp)
 
     /// A frame begins: what hands did to the bodies is seen now, before they are half a step ahead.

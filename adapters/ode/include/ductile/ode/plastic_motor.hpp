@@ -101,6 +101,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// Then lets go of the joint.
     DUCTILE_INLINE void stand() override;
 
+    DUCTILE_INLINE void left_world() override { give_motor_back(); }
     DUCTILE_INLINE void begin_frame() override;
     DUCTILE_INLINE void keep_all() override;
     DUCTILE_INLINE void put_all_back() override;
@@ -144,6 +145,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// Where the row is half a step ahead of where it was last looked at, moving at `velocity`.
     [[nodiscard]] double follow_ahead(double velocity, double dt);
     void part();
+    void give_motor_back();
 
     [[nodiscard]] Vector6<double> direction() const;
     /// What the row moves while the joint's other rows hold [kg | kg m²]; 0: not known.

@@ -41,6 +41,11 @@ DUCTILE_INLINE MotorConstraint::MotorConstraint(AxisJoint& joint, const MotorAxi
 DUCTILE_INLINE MotorConstraint::~MotorConstraint() {
     if (!life_->goes_on()) return;
     if (dJointGetFeedback(row_.joint()) == &feedback_) dJointSetFeedback(row_.joint(), nullptr);
+    give_motor_back();
+}
+
+DUCTILE_INLINE void MotorConstraint::give_motor_back() {
+    if (!life_->goes_on()) return;
     row_.set(dParamVel, users_.velocity);
     row_.set(dParamFMax, joint_.broken() ? 0 : users_.strength);
     row_.set(dParamCFM, users_.cfm);

@@ -91,6 +91,7 @@ DUCTILE_INLINE World::World(dWorldID world, Solver solver)
 DUCTILE_INLINE World::~World() {
     parts_.reset();
     members_->leave();
+    for (PlasticConstraint* joint : plastic_) joint->left_world();
 }
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
@@ -111,8 +112,10 @@ DUCTILE_INLINE void World::take_in(PlasticConstraint& joint) {
     joint.came_into_world();
 }
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
+    const bool was_here = std::find(plastic_.begin(), plastic_.end(), &joint) != plastic_.end();
     let_go(joint);
     forget(joint);
+    if (was_here) joint.left_world();
 }
 DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     supervisor().remove(&joint);

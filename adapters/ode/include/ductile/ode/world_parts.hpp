@@ -7,7 +7,8 @@
 //   blow    a step of a nanosecond in which contacts of islands with plastic joints are closed and
 //           all others open; nothing is pushed apart, and nothing moves
 //   ERP, compliance of contacts by the length of the part (frame/part_settings.hpp), those that a
-//           contact has for itself too: its joint is then made once more
+//           contact has for itself too: its joint is then made once more; those of other joints, of
+//           their stops and suspensions (own_settings.hpp)
 //   damping of the bodies by its share for the part
 //   kinematic bodies go on with the velocity they had, to where the user's leads
 //           (world/driven_course.hpp)
@@ -35,6 +36,7 @@
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/resting_islands.hpp"
 #include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
@@ -146,6 +148,7 @@ class WorldParts final : public PartEngine {
     std::vector<Driven> driven_, last_driven_;
     ThrownBodies thrown_;
     HalfAhead half_ahead_;
+    OwnSettings own_settings_;
     HeldForces forces_;
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
     std::vector<Damped> damped_;

@@ -16,47 +16,22 @@
 
 namespace ductile::ode {
 
-namespace detail {
-
-/// What a ball or a fixed joint has of its own, of the world's as it was made.
-struct OwnSettings {
-    dJointID joint;
-    bool ball;
-    dReal erp, cfm;
-
-    OwnSettings(dJointID of, bool is_ball)
-        : joint(of), ball(is_ball), erp(get(dParamERP)), cfm(get(dParamCFM)) {}
-    [[nodiscard]] dReal get(int what) const {
-        return (ball ? dJointGetBallParam : dJointGetFixedParam)(joint, what);
-    }
-    void set(dReal new_erp, dReal new_cfm) const {
-        const auto put = ball ? dJointSetBallParam : dJointSetFixedParam;
-        put(joint, dParamERP, new_erp);
-        put(joint, dParamCFM, new_cfm);
-    }
-};
-
-} // namespace detail
-
 /// The world's settings of a part or a blow while this lives, and those of the user's joints.
 class WorldParts::Settings {
   public:
-    Settings(dWorldID world, std::span<const dBodyID> bodies, double h, bool blow)
-        : world_(world),
-          erp_(dWorldGetERP(world)),
-          cfm_(dWorldGetCFM(world)),
-          layer_(dWorldGetContactSurfaceLayer(world)) {
-        dWorldSetERP(world, dReal(blow ? 0 : part_erp(double(erp_), h)));
-        dWorldSetContactSurfaceLayer(world, std::max(layer_, dReal(closed_depth)));
-        if (blow) dWorldSetCFM(world, cfm_ * dReal(blow_compliance(h)));
-        for (dBodyID body : bodies) find_own(body);
-        for (const detail::OwnSettings& own : own_) {
-            own.set(dReal(blow ? 0 : part_erp(double(own.erp), h)),
-                    blow ? own.cfm * dReal(blow_compliance(h)) : own.cfm);
-        }
+    Settings(WorldParts& parts, double h, bool blow)
+        : world_(parts.of_.world),
+          own_(parts.own_settings_),
+          erp_(dWorldGetERP(world_)),
+          cfm_(dWorldGetCFM(world_)),
+          layer_(dWorldGetContactSurfaceLayer(world_)) {
+        dWorldSetERP(world_, dReal(blow ? 0 : part_erp(double(erp_), h)));
+        dWorldSetContactSurfaceLayer(world_, std::max(layer_, dReal(closed_depth)));
+        if (blow) dWorldSetCFM(world_, cfm_ * dReal(blow_compliance(h)));
+        own_.rule(parts.of_.bodies, h, parts.length_, blow);
     }
     ~Settings() {
-        for (const detail::OwnSettings& own : own_) own.set(own.erp, own.cfm);
+        own_.put_back();
         dWorldSetERP(world_, erp_);
         dWorldSetCFM(world_, cfm_);
         dWorldSetContactSurfaceLayer(world_, layer_);
@@ -65,20 +40,9 @@ class WorldParts::Settings {
     Settings& operator=(const Settings&) = delete;
 
   private:
-    void find_own(dBodyID body) {
-        for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
-            const dJointID joint = dBodyGetJoint(body, i);
-            const dJointType type = dJointGetType(joint);
-            if (type != dJointTypeBall && type != dJointTypeFixed) continue;
-            const bool seen = std::any_of(own_.begin(), own_.end(),
-                                          [joint](const auto& own) { return own.joint == joint; });
-            if (!seen) own_.emplace_back(joint, type == dJointTypeBall);
-        }
-    }
-
     dWorldID world_;
+    OwnSettings& own_;
     dReal erp_, cfm_, layer_;
-    std::vector<detail::OwnSettings> own_;
 };
 
 // ---- a frame
@@ -250,7 +214,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     of_.meter.look_at_contacts();
     damp(blow ? 0 : h / length_);
     {
-        const Settings settings(of_.world, of_.bodies, h, blow);
+        const Settings settings(*this, h, blow);
         of_.solve(h);
     }
     if (!blow) {
@@ -281,10 +245,11 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     for (tick(h, false); beyond(); tick(h, false)) do_again();
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
+    motion_.others_work = of_.meter.step_of_other_joints();
     motion_.stored = of_.meter.stored();
     motion_.contact_lost = false;
     motion_.turned = 0;
-    if (closing_.any_plastic() && of_.maker) {
+    if (closing_.any_plastic() && (of_.maker || closing_.any_stops())) {
         look();
         looked_ = true;
         closed_ = std::min(closed_, closing_.closed(h, h, apart_));

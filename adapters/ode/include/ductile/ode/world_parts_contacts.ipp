@@ -128,7 +128,7 @@ DUCTILE_INLINE void WorldParts::open_others() {
 
 /// As the coming part begins.
 DUCTILE_INLINE void WorldParts::see_contacts() {
-    if (!of_.maker) return;
+    if (!of_.maker && !closing_.any_stops()) return;
     if (!std::exchange(looked_, true)) look();
     seen_.clear();
     if (!closing_.any_plastic()) return;
@@ -142,11 +142,12 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     apart_ = apart;
     see_contacts();
     ClosingContacts found{.strikes = is_thrown()};
-    if (found.strikes || !of_.maker || !closing_.any_plastic()) return found;
+    const bool looks = of_.maker || closing_.any_stops();
+    if (found.strikes || !looks || !closing_.any_plastic()) return found;
     found.strikes = closing_.strikes(touching);
     if (found.strikes) return found;
     found.time = closing_.next_gap(apart);
-    if (!(found.time < h)) found.time = next_gap(h, apart);
+    if (!(found.time < h) && of_.maker) found.time = next_gap(h, apart);
     return found;
 }
 
