@@ -615,6 +615,31 @@ TEST_CASE("Frames: what turns on a pin of Bullet's takes what it should", "[fram
     CHECK(rig.world->run().believed());
 }
 
+/// Its motor brakes one of two bodies on an axis; the other turns, and takes it along.
+TEST_CASE("Frames: a motor of Bullet's has its moment in every part", "[frame]") {
+    constexpr double spin = 10, strength = 60, brakes = 20, inertia = 2;
+    const double frame = GENERATE(1.0 / 240, 1.0 / 60, 1.0 / 30);
+    INFO("frame " << frame);
+    Rig rig;
+    btRigidBody& turns = rig.body(3, btVector3(inertia, inertia, inertia), {0, 0, 0});
+    btRigidBody& held = rig.body(3, btVector3(inertia, inertia, inertia), {0, 0, 0});
+    auto pin = std::make_unique<btHingeConstraint>(held, at({0, 0, 0}));
+    pin->enableAngularMotor(true, 0, btScalar(brakes * frame));
+    btHingeConstraint& motor = *pin;
+    rig.guides.push_back(std::move(pin));
+    rig.engine.addConstraint(&motor, true);
+    Hinge hinge(turns, held, at({0, 0, 0}), at({0, 0, 0}), law(strength));
+    rig.world->add(hinge);
+    turns.setAngularVelocity({0, 0, btScalar(spin)});
+    rig.run(0.5, frame);
+    const double time = spin * inertia / (2 * strength - brakes);
+    const double work = strength * spin * time / 2;
+    CHECK(std::abs(hinge.absorbed_energy() - work) < 0.01 * work);
+    const double spin_after = spin / 2 - brakes * 0.5 / (2 * inertia);
+    CHECK(std::abs(double(held.getAngularVelocity().z()) - spin_after) < 0.01 * spin);
+    CHECK(motor.getMaxMotorImpulse() == btScalar(brakes * frame));
+}
+
 TEST_CASE("What float rounds of positions far off costs a frame no budget", "[frame]") {
     // pairs of bodies that turn against each other on weak hinges, up to 400 m off
     test::BulletEngine rig({0, 0, 0});

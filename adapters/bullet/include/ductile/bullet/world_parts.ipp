@@ -3,11 +3,15 @@
 // Bodies of world_parts.hpp.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/divisibles.hpp"
@@ -86,6 +90,45 @@ class WorldParts::Settings {
   private:
     btContactSolverInfo& info_;
     btContactSolverInfo usual_;
+};
+
+/// While this lives a part has its share of what Bullet bounds by an impulse a tick: motors of
+/// hinges, clamps of points.
+class WorldParts::Impulses {
+  public:
+    Impulses(btDiscreteDynamicsWorld& world, btScalar share) {
+        for (int i = 0; i < world.getNumConstraints(); ++i) {
+            btTypedConstraint& constraint = *world.getConstraint(i);
+            if (constraint.getConstraintType() == HINGE_CONSTRAINT_TYPE) {
+                auto& hinge = static_cast<btHingeConstraint&>(constraint);
+                if (hinge.getEnableAngularMotor()) take(hinge, hinge.getMaxMotorImpulse(), share);
+            } else if (constraint.getConstraintType() == POINT2POINT_CONSTRAINT_TYPE) {
+                auto& point = static_cast<btPoint2PointConstraint&>(constraint);
+                const btScalar clamp = point.m_setting.m_impulseClamp;
+                if (clamp > 0) take(point, clamp, share);
+            }
+        }
+    }
+    ~Impulses() {
+        for (const auto& [constraint, impulse] : usual_) set(*constraint, impulse);
+    }
+    Impulses(const Impulses&) = delete;
+    Impulses& operator=(const Impulses&) = delete;
+
+  private:
+    void take(btTypedConstraint& constraint, btScalar impulse, btScalar share) {
+        usual_.emplace_back(&constraint, impulse);
+        set(constraint, impulse * share);
+    }
+    static void set(btTypedConstraint& constraint, btScalar impulse) {
+        if (constraint.getConstraintType() == HINGE_CONSTRAINT_TYPE) {
+            static_cast<btHingeConstraint&>(constraint).setMaxMotorImpulse(impulse);
+        } else {
+            static_cast<btPoint2PointConstraint&>(constraint).m_setting.m_impulseClamp = impulse;
+        }
+    }
+
+    std::vector<std::pair<btTypedConstraint*, btScalar>> usual_;
 };
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
@@ -218,6 +261,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     }
     members_->before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
+    const Impulses impulses(world_, btScalar(h / length_));
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),
