@@ -123,6 +123,7 @@ class WorldParts final : public PartEngine {
 
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds();
     [[nodiscard]] bool concerns(const btCollisionObject& object);
+    [[nodiscard]] double time_to_stops(double h);
     void look_at_pushes(double h);
 
     /// Back to before it, with the sections open that it was beyond.

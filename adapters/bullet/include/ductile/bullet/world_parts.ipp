@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -61,6 +62,26 @@ DUCTILE_INLINE void tell_broadphase(btDiscreteDynamicsWorld& world, btScalar h) 
         }
         if (!known) world.updateSingleAabb(body);
     }
+}
+
+/// When a hinge turns into its stop if it goes on as it does, within `h`; else infinite [s].
+DUCTILE_INLINE double time_to_stop(btHingeConstraint& hinge, btScalar h) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    if (!hinge.isEnabled() || !hinge.hasLimit()) return never;
+    const btRigidBody &a = hinge.getRigidBodyA(), &b = hinge.getRigidBodyB();
+    const btScalar spin = (a.getAngularVelocity() - b.getAngularVelocity()).length();
+    constexpr btScalar followed = btScalar(0.1); // [rad]
+    if (!(spin > 0)) return never;
+    const btScalar time = std::min(h, followed / spin);
+    const btScalar now =
+        hinge.getHingeAngle(a.getCenterOfMassTransform(), b.getCenterOfMassTransform());
+    const btScalar then = hinge.getHingeAngle(moved(a, a.getCenterOfMassTransform(), time),
+                                              moved(b, b.getCenterOfMassTransform(), time));
+    const auto turns = double(btNormalizeAngle(then - now) / time);
+    const btScalar stop = turns > 0 ? hinge.getUpperLimit() : hinge.getLowerLimit();
+    const double left = double(stop - now) / turns;
+    constexpr double past_it = 1 + 1e-6;
+    return left > 0 && left < double(h) ? past_it * left : never;
 }
 
 } // namespace detail
@@ -376,6 +397,20 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     return motion_;
 }
 
+/// Of hinges of Bullet's in islands with plastic joints [s].
+DUCTILE_INLINE double WorldParts::time_to_stops(double h) {
+    double first = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < world_.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world_.getConstraint(i);
+        if (constraint.getConstraintType() != HINGE_CONSTRAINT_TYPE) continue;
+        auto& hinge = static_cast<btHingeConstraint&>(constraint);
+        const double time = detail::time_to_stop(hinge, btScalar(h));
+        if (!(time < first)) continue;
+        if (concerns(hinge.getRigidBodyA()) || concerns(hinge.getRigidBodyB())) first = time;
+    }
+    return first;
+}
+
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     touching_ = touching;
     apart_ = apart;
@@ -385,6 +420,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
+    found.time = std::min(found.time, time_to_stops(ahead));
     found.strikes = found.strikes || !thrown_.bodies().empty();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
