@@ -7,6 +7,11 @@
 // Between Bullet's setup and its finish, which stay as they are:
 //   body      inverse mass × linear factor; world inertia with the angular factor on both sides
 //   row       b = m_rhs/m_jacDiagABInv, C = m_cfm/m_jacDiagABInv; m_jacDiagABInv = 0: no row
+//             where bodies are half a step ahead (frame/README.md): one that holds both ways is to
+//             be right at the end of the part, as rows of plastic joints are (joint/any_link.hpp).
+//             With J where bodies go by their velocities until then and J as it is in the middle,
+//             it leaves the solve at w = (J - J_end) v. What was off as the part began is put back:
+//             e = (4 e_mid - e_end)/3, of straight ways that lead off by the square of the time
 //   contact   one cone with its friction rows (solve/contact_form.hpp): two directions always, as
 //             with one loose structures walk in every solver
 //   answer    impulses into Bullet's rows, velocities into its solver bodies, in place of those of
@@ -34,6 +39,12 @@
 
 namespace ductile::bullet {
 
+/// What a constraint of Bullet's states in getInfo2.
+struct EndRow {
+    btVector3 move_a{0, 0, 0}, turn_a{0, 0, 0}, move_b{0, 0, 0}, turn_b{0, 0, 0};
+    btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;
+};
+
 class IslandSolver final : public btSequentialImpulseConstraintSolver {
   public:
     DUCTILE_INLINE btScalar solveGroup(btCollisionObject** bodies, int body_count,
@@ -44,6 +55,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
 
     /// How contacts turned before the coming solve; null: nobody knows.
     void set_held(const HeldContacts* held) noexcept { held_ = held; }
+    /// Whether bodies are half a step ahead (half_ahead.hpp).
+    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
     /// Whether what overlaps is pushed apart in a solve of its own.
     void set_pushes_apart(bool pushes) noexcept { pushes_apart_ = pushes; }
 
@@ -68,7 +81,9 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     [[nodiscard]] static IslandSeat still_seat(const btRigidBody& body);
     void load_bodies();
     void load_plastic_joints(const btContactSolverInfo& info);
+    void look_ahead(const btContactSolverInfo& info);
     void load_rows();
+    void turn_rows();
     void load_contacts();
     void find_turned(btPersistentManifold** manifolds, int count, double tick);
     [[nodiscard]] double turned(const void* point) const;
@@ -86,7 +101,10 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::vector<btSolverConstraint*> read_; ///< Bullet's rows, in the order of the island's
     std::size_t first_read_ = 0;
     const HeldContacts* held_ = nullptr;
+    bool ahead_ = false;
     bool pushes_apart_ = true;
+    std::vector<EndRow> at_end_;    ///< of the others' rows, constraint by constraint
+    std::vector<int> count_at_end_; ///< rows of each
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };
 

@@ -10,6 +10,7 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/island_solver.hpp"
+#include "ductile/bullet/island_solver_turned.ipp" // IWYU pragma: keep
 
 namespace ductile::bullet {
 
@@ -21,10 +22,6 @@ namespace detail {
     if (double(value) >= unlimited) return infinity;
     if (double(value) <= -unlimited) return -infinity;
     return double(value);
-}
-
-[[nodiscard]] DUCTILE_INLINE bool moves(const btRigidBody* body) noexcept {
-    return body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
 }
 
 } // namespace detail
@@ -119,6 +116,8 @@ DUCTILE_INLINE void IslandSolver::convertJoints(btTypedConstraint** constraints,
             others_.push_back(constraints[i]);
         }
     }
+    const detail::PinsInWorld pins(others_, ahead_);
+    look_ahead(info);
     btSequentialImpulseConstraintSolver::convertJoints(others_.data(), int(others_.size()), info);
 }
 
@@ -215,6 +214,7 @@ DUCTILE_INLINE void IslandSolver::load_rows() {
         row.lower = detail::limit(pool[i].m_lowerLimit);
         row.upper = detail::limit(pool[i].m_upperLimit);
     }
+    turn_rows();
 }
 
 DUCTILE_INLINE void IslandSolver::find_turned(btPersistentManifold** manifolds, int count,

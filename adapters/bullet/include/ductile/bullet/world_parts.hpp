@@ -11,7 +11,9 @@
 //
 // User's forces act in every part. Motion states are told once, at the end of the frame. Tick
 // callbacks and actions are called for each tick, also of parts that are put back, and have to
-// allow that. Kinematic bodies go their way over the frame (driven_ways.hpp).
+// allow that. A hinge's motor and the clamp of a point, which Bullet bounds by an impulse a tick,
+// have in each part its share of that. Kinematic bodies go their way over the frame
+// (driven_ways.hpp).
 //
 // Locality. Where little of the world may have to be put back, the first part is one of all, as
 // long as the frame. What was in trouble in it is put back alone, and done in parts by
@@ -95,6 +97,7 @@ class WorldParts final : public PartEngine {
 
   private:
     class Settings;
+    class Impulses;
     void tick(double h, bool ahead);
     /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
     void keep_spins(double h);
@@ -120,6 +123,7 @@ class WorldParts final : public PartEngine {
 
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds();
     [[nodiscard]] bool concerns(const btCollisionObject& object);
+    [[nodiscard]] double time_to_stops(double h);
     void look_at_pushes(double h);
 
     /// Back to before it, with the sections open that it was beyond.

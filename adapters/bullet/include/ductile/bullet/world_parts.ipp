@@ -14,6 +14,7 @@
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/world_parts.hpp"
+#include "ductile/bullet/world_parts_joints.ipp" // IWYU pragma: keep
 #include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
@@ -218,6 +219,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     }
     members_->before_solve();
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
+    const Impulses impulses(world_, btScalar(h / length_));
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),
@@ -342,6 +344,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
+    found.time = std::min(found.time, time_to_stops(ahead));
     found.strikes = found.strikes || !thrown_.bodies().empty();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();
