@@ -28,7 +28,8 @@ struct PartMotion {
     /// of members; 0: there are none.
     double closed_work = 0;
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
-    double others_work = 0;    ///< that rigid rows of the engine's joints took there [J]
+    double others_work = 0;    ///< that rigid rows of the engine's joints took there, or gave where
+                               ///< that is no drift that they pull back [J]
     double stored = 0;         ///< that elastic ones hold [J]
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -257,7 +258,8 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
-    motion_.others_work = metered ? meter_.step_of_other_joints() : 0;
+    // they are right at the end of the part: what they give is no drift that is pulled back
+    motion_.others_work = metered ? std::abs(meter_.step_of_other_joints()) : 0;
     motion_.stored = metered ? meter_.stored() : 0;
     motion_.contact_work = 0;
     if (metered && motion_.flows()) {
