@@ -260,6 +260,12 @@ struct BrokeAlone {
     return {row.broke, row.astray + std::abs(row.force) * travel};
 }
 
+/// Of what a row flowed after another joint had broken at `held` of a part of h: the rows of that
+/// joint acted on it all along, by no more than made its speed another [J].
+[[nodiscard]] inline double flow_after(const PartRow& row, double held, double h) noexcept {
+    return row.flows() ? row.strength * std::abs(row.end - row.start) * (h - held) / 2 : 0;
+}
+
 /// What that is in energy; `work`: W [J].
 [[nodiscard]] inline double misplaced_energy(const PartRow& row, const Misplaced& off,
                                              double work) noexcept {
