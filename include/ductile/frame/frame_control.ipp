@@ -245,6 +245,21 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
     bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
+    double held = h;      // until the first joint broke
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        if (!breaks(i, motion)) continue;
+        const PartRow& row = motion.rows[i];
+        const PartBefore known = before(i, motion);
+        const BrokeAlone broke = row.alone ? broke_alone(row, known, flowed(i, motion))
+                                           : broke_with_others(row, h, known);
+        judged.astray += broke.astray;
+        freed += row.freed;
+        held = std::min(held, broke.stop);
+        if (broke.astray > largest) {
+            largest = broke.astray;
+            judged.stop = broke.stop;
+        }
+    }
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         const double least = row.strength * row.least;
@@ -259,19 +274,14 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
         lets_go = lets_go || row.broke > 0;
-        if (breaks(i, motion)) {
-            const PartBefore known = before(i, motion);
-            const BrokeAlone broke = row.alone ? broke_alone(row, known, flowed(i, motion))
-                                               : broke_with_others(row, h, known);
-            judged.astray += broke.astray;
-            freed += row.freed;
-            if (broke.astray > largest) {
-                largest = broke.astray;
-                judged.stop = broke.stop;
-            }
-        }
         judged.error += row.misfit;
         if (!row.moves()) continue;
+        const double later = flow_after(row, held, h);
+        judged.astray += later;
+        if (later > largest) {
+            largest = later;
+            judged.stop = held;
+        }
         const Misplaced off = misplaced(row, h, before(i, motion));
         const double error = misplaced_energy(row, off, motion.plastic_work);
         judged.error += error;

@@ -260,6 +260,12 @@ struct BrokeAlone {
     return {row.broke, row.astray + std::abs(row.force) * travel};
 }
 
+/// What a row took after another joint had broken at `held` of a part of h: the rigid rows of that
+/// acted on it all along, by nobody knows how much [J].
+[[nodiscard]] inline double flow_after(const PartRow& row, double held, double h) noexcept {
+    return row.flows() ? row.strength * std::abs(row.start + row.end) / 2 * (h - held) : 0;
+}
+
 /// What that is in energy; `work`: W [J].
 [[nodiscard]] inline double misplaced_energy(const PartRow& row, const Misplaced& off,
                                              double work) noexcept {

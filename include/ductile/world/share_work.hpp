@@ -4,9 +4,9 @@
 // booked a step and before any of them lets go.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "ductile/joint/joint_totals.hpp"
@@ -27,8 +27,8 @@ class SharesWork {
     ~SharesWork() = default;
 };
 
-/// `islands()`: of each of the `joints` a number that joints solved together have in common; it is
-/// called where there is something to share. O(joints).
+/// `islands()`: of each of the `joints` a number that joints solved together have in common, any
+/// number where it booked none; called where there is something to share. O(joints).
 template <class Joint, class Islands>
 void share_work(std::span<Joint* const> joints, const Islands& islands) {
     WorkShare<double> all;
@@ -38,14 +38,15 @@ void share_work(std::span<Joint* const> joints, const Islands& islands) {
     if (!(all.value() < 1)) return;
     const std::vector<std::size_t> of_joint = islands();
     if (of_joint.empty()) return;
-    std::vector<WorkShare<double>> shares(1 + *std::max_element(of_joint.begin(), of_joint.end()));
+    std::unordered_map<std::size_t, WorkShare<double>> shares;
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (const Step<double>* step = joints[i]->booked()) shares[of_joint[i]].add(*step);
     }
     for (std::size_t i = 0; i < joints.size(); ++i) {
         const Step<double>* step = joints[i]->booked();
+        if (step == nullptr || !(step->claimed > 0)) continue;
         const double share = shares[of_joint[i]].value();
-        if (step != nullptr && step->claimed > 0 && share < 1) joints[i]->grant(share);
+        if (share < 1) joints[i]->grant(share);
     }
 }
 

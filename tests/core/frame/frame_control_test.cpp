@@ -3,6 +3,7 @@
 // Frames of masses on a line, whose answers are known.
 #include "ductile/frame/frame_control.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -455,6 +456,29 @@ TEST_CASE("A frame in which a part that ended at a stop did not do tries that no
         }
         CAPTURE(i);
         CHECK(at_stops == 1);
+    }
+}
+
+TEST_CASE("A part in which a joint breaks ends there where others flow on", "[frame]") {
+    // what another one takes meanwhile may have come to it through the one that broke
+    Told engine;
+    constexpr double held = frame / 10;
+    double speed = 0;
+    engine.tell = [&](double h, ductile::PartMotion& motion) {
+        motion.plastic_work = 1;
+        motion.rows = {
+            ductile::PartRow{.start = 3, .end = 3, .broke = h > held ? held : 0, .alone = true},
+            ductile::PartRow{.joint = 1, .start = speed, .end = speed, .share = 1, .strength = 10}};
+    };
+    for (const double flows : {0.0, 1.0}) {
+        CAPTURE(flows);
+        speed = flows;
+        engine.tried.clear();
+        FrameControl control({.tolerance = 0.01});
+        control.frame(engine, frame);
+        const bool ends = std::any_of(engine.tried.begin(), engine.tried.end(),
+                                      [](double h) { return h == Approx(held); });
+        CHECK(ends == (flows > 0));
     }
 }
 

@@ -9,6 +9,7 @@
 #include <deque>
 #include <limits>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "ductile/joint/coupled_joint.hpp"
@@ -17,6 +18,7 @@
 #include "ductile/joint/work_share.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/surface/ellipsoid.hpp"
+#include "ductile/world/share_work.hpp"
 #include "reference/beam.hpp"
 #include "reference/pair_world.hpp"
 #include "reference/world.hpp"
@@ -118,6 +120,28 @@ TEST_CASE("joints of any chain never absorb more than their bodies lost", "[join
     }
     CHECK(shared > 100);
     CHECK(alone > 100);
+}
+
+TEST_CASE("a joint that stands still may be in no island, whatever an engine calls that",
+          "[joint][share]") {
+    struct Joint final : SharesWork {
+        Step<double> step{};
+        bool acts = true;
+        double granted = 1;
+        [[nodiscard]] const Step<double>* booked() const noexcept override {
+            return acts ? &step : nullptr;
+        }
+        void grant(double share) noexcept override { granted = share; }
+    } moves, stands;
+    moves.step.claimed = 2;
+    moves.step.unclaimed = -1;
+    stands.acts = false;
+    const std::vector<Joint*> joints{&stands, &moves};
+    share_work(std::span<Joint* const>(joints), [] {
+        return std::vector{std::numeric_limits<std::size_t>::max(), std::size_t(3)};
+    });
+    CHECK(moves.granted == 0.5);
+    CHECK(stands.granted == 1);
 }
 
 TEST_CASE("a joint of six axes alone absorbs no more than its bodies lost", "[joint][share]") {
