@@ -481,3 +481,19 @@ TEST_CASE("a World says once of a joint that nobody added", "[bullet][ends]") {
     CHECK(said[0].find("never added") != std::string::npos);
     world.world().removeConstraint(&by_engine);
 }
+
+TEST_CASE("a second World over one Bullet world is refused until the first has ended",
+          "[bullet][ends]") {
+    BulletWorld world("si");
+    btConstraintSolver* const usual = world.world().getConstraintSolver();
+    {
+        const bullet::World first(world.world(), {.warn = nullptr});
+        const btConstraintSolver* const front = world.world().getConstraintSolver();
+        CHECK(message_of([&] { bullet::World(world.world(), {.warn = nullptr}); }) ==
+              "World.world: must have no other World, which would solve its joints too: end that "
+              "one first");
+        CHECK(world.world().getConstraintSolver() == front);
+    }
+    CHECK(world.world().getConstraintSolver() == usual);
+    const bullet::World again(world.world(), {.warn = nullptr});
+}

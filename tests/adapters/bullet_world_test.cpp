@@ -376,7 +376,7 @@ TEST_CASE("a motor taken over and a sleeping joint are told of too", "[bullet][w
 TEST_CASE("a body that cannot turn leaves the ledger a number", "[bullet][world]") {
     const double tolerance = GENERATE(0.0, 0.01);
     const bool partly = GENERATE(false, true); // about one axis alone it can
-    BulletWorld rig;
+    BulletWorld rig("si");
     std::vector<std::string> said;
     bullet::World world(rig.world(), {.tolerance = tolerance, .warn = [&](const std::string& line) {
                                           said.push_back(line);
@@ -430,7 +430,7 @@ TEST_CASE("the joint of a multibody is told of, and refused where the world has 
     }
     CHECK(told == std::vector<std::string>{"knee yielded", "knee broke"});
     CHECK(hinge.absorbed_energy() == Approx(96).epsilon(single ? 1e-3 : 1e-6));
-    BulletWorld rig;
+    BulletWorld rig("si");
     bullet::World plain(rig.world());
     CHECK(message_of([&] { plain.add(hinge); }) ==
           "World.world: must be a btMultiBodyDynamicsWorld for the joint of a multibody");

@@ -115,7 +115,7 @@ class FrontSolver final : public btConstraintSolver {
 /// front belongs to the world, which ends it with itself.
 class FrontHold {
   public:
-    /// @throws std::bad_alloc
+    /// @throws std::invalid_argument where there is a front already.
     explicit FrontHold(btDiscreteDynamicsWorld& world);
     DUCTILE_INLINE ~FrontHold();
     FrontHold(const FrontHold&) = delete;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "ductile/bullet/closing_contacts.hpp"
@@ -162,6 +163,11 @@ class OpenContacts {
 } // namespace detail
 
 DUCTILE_INLINE FrontHold::FrontHold(btDiscreteDynamicsWorld& world) : world_(world) {
+    if (dynamic_cast<FrontSolver*>(world.getConstraintSolver()) != nullptr) {
+        throw std::invalid_argument(
+            "World.world: must have no other World, which would solve its joints too: end that one "
+            "first");
+    }
     bool& owned = detail::SolverOfWorld::owned(world);
     void* room = btAlignedAlloc(sizeof(FrontSolver), 16);
     auto* front = new (room) FrontSolver(*world.getConstraintSolver(), owned, &world);

@@ -78,8 +78,8 @@ class World final : public SteppedWorld {
   public:
     /// `world` must outlive this, but for one that holds no constraint any more and whose solver
     /// was not exchanged.
-    /// @throws std::invalid_argument where a parameter is out of range or the solver of this world
-    /// cannot be exchanged.
+    /// @throws std::invalid_argument where a parameter is out of range, the solver of this world
+    /// cannot be exchanged, or it has another World.
     explicit World(btDiscreteDynamicsWorld& world, WorldParameters parameters = {});
     /// Joints stay in Bullet's world.
     DUCTILE_INLINE ~World();
