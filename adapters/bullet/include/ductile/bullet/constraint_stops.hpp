@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: MIT
 //
 // Stops of Bullet's own constraints: where their axes are, when they come to a stop, and what a
-// part asks of them. Of hinges, sliders and those of six degrees of freedom, with springs or
-// without; those of others are not told.
+// part asks of them. Of hinges, sliders, cones and those of six degrees of freedom, with
+// springs or without; those of others are not told.
 //
 //   at it or not    as the part begins: an axis that is not at a stop has none in the part, which
 //                   ends where it comes to one. Bullet asks in the middle of the part, and of
 //                   btGeneric6DofSpring2Constraint it has rows of stops that it is far from, which
 //                   brake it as a share of the gap over a tick would
-//   how far beyond  as the part begins: the way to its middle is no error
+//   how far beyond  as the part begins: the way to its middle is no error. That is
+//                   taken back as slowly as an overlap
 //   strikes         an axis at its stop that goes into it: a blow
 //   ERP, CFM        set for stops of constraints of six degrees of freedom, they are a spring of
 //                   the frame: a part's (frame/part_settings.hpp)
+//   bias            takes a btConeTwistConstraint back from its limits by a share a tick: by as
+//   much
+//                   in all its parts
 //
 // Not thread-safe.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btConeTwistConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include <array>
@@ -73,8 +78,9 @@ class PartStops {
 
     /// To be called with its bodies as the part begins.
     DUCTILE_INLINE void take(btTypedConstraint& constraint);
-    /// For a part of `h` in a frame of `frame` [s], with all bodies as it sees them.
-    DUCTILE_INLINE void set(double h, double frame);
+    /// For a part of `h` in a frame of `frame` [s] and a world of `erp` [-], with all bodies as it
+    /// sees them.
+    DUCTILE_INLINE void set(double h, double frame, double erp);
     /// They have the user's again.
     DUCTILE_INLINE void put_back();
     /// When the first of them that was open in the part came to its stop with more than `energy`
@@ -92,12 +98,18 @@ class PartStops {
         int number;
         btScalar least, most;
     };
+    struct Cone { ///< the user's
+        btConeTwistConstraint* constraint;
+        btScalar span_1, span_2, twist, bias;
+    };
     void hold(btTypedConstraint& constraint, const StoppedAxis& began, const StoppedAxis& now);
     template <class SixAxes>
     void soften_all(SixAxes& constraint, double h, double frame);
     void put(btScalar& place, btScalar value);
 
     std::vector<AsItBegan> began_;
+    std::vector<Cone> cones_;
+    btScalar slowly_ = 1;                               ///< of the way beyond a stop
     std::vector<Limits> limits_;                        ///< the user's
     std::vector<std::pair<btScalar*, btScalar>> usual_; ///< the user's ERP and CFM
 };

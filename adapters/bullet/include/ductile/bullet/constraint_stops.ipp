@@ -52,6 +52,29 @@ DUCTILE_INLINE void add_slider(btSliderConstraint& slider, const btTransform& a,
     axes.add({3, slider.getLowerAngLimit(), slider.getUpperAngLimit(), slider.getAngularPos()});
 }
 
+/// Of its twist, and of its swing where both spans bound that; as far as it goes either way.
+DUCTILE_INLINE void add_cone(btConeTwistConstraint& cone, const btTransform& a,
+                             const btTransform& b, StoppedAxes& axes) {
+    if (cone.isMotorEnabled()) return;
+    const btQuaternion turned =
+        (b * cone.getBFrame()).getRotation().inverse() * (a * cone.getAFrame()).getRotation();
+    const btVector3 x(1, 0, 0), leans = quatRotate(turned, x).normalized();
+    const btQuaternion twist = shortestArcQuat(x, leans).inverse() * turned;
+    const btScalar softness = cone.getLimitSoftness(), none = -SIMD_2_PI;
+    const btScalar twisted = btVector3(twist.x(), twist.y(), twist.z()).length();
+    const btScalar span = cone.getTwistSpan() * softness;
+    if (span > 0 && span < SIMD_PI) {
+        axes.add({3, none, span, 2 * btAtan2(twisted, std::abs(twist.w()))});
+    }
+    const btScalar side = std::hypot(leans.y(), leans.z());
+    const btScalar span_1 = cone.getSwingSpan1(), span_2 = cone.getSwingSpan2();
+    const btScalar narrow = std::min(span_1, span_2);
+    if (!(narrow >= cone.getFixThresh()) || !(narrow < SIMD_PI)) return;
+    const btScalar limit =
+        side > 0 ? side / std::hypot(leans.z() / span_2, leans.y() / span_1) : narrow;
+    axes.add({4, none, limit * softness, btAtan2(side, leans.x())});
+}
+
 } // namespace detail
 
 DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint, const btTransform& a,
@@ -72,6 +95,9 @@ DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint, const btT
         case D6_CONSTRAINT_TYPE:
         case D6_SPRING_CONSTRAINT_TYPE:
             detail::add_six(static_cast<btGeneric6DofConstraint&>(constraint), a, b, axes);
+            break;
+        case CONETWIST_CONSTRAINT_TYPE:
+            detail::add_cone(static_cast<btConeTwistConstraint&>(constraint), a, b, axes);
             break;
         case D6_SPRING_2_CONSTRAINT_TYPE:
             detail::add_six(static_cast<btGeneric6DofSpring2Constraint&>(constraint), a, b, axes);
@@ -121,6 +147,19 @@ DUCTILE_INLINE void set_limits(btTypedConstraint& constraint, int number, btScal
             break;
         default:
             set_six(static_cast<btGeneric6DofConstraint&>(constraint));
+    }
+}
+
+/// Of what bounds `axis`, which is there now; `most` < 0: nothing does.
+DUCTILE_INLINE void set_span(btConeTwistConstraint& cone, const StoppedAxis& axis, btScalar most) {
+    constexpr btScalar unlimited = btScalar(1e9);
+    if (axis.number == 3) {
+        cone.setLimit(3, most < 0 ? unlimited : most / cone.getLimitSoftness());
+    } else {
+        const btScalar span_1 = cone.getSwingSpan1() * most / axis.most,
+                       span_2 = cone.getSwingSpan2() * most / axis.most;
+        cone.setLimit(5, most < 0 ? unlimited : span_1);
+        cone.setLimit(4, most < 0 ? unlimited : span_2);
     }
 }
 
@@ -222,6 +261,11 @@ DUCTILE_INLINE void PartStops::put_back() {
         detail::set_limits(*constraint, number, least, most);
     }
     limits_.clear();
+    for (const auto& [cone, span_1, span_2, twist, bias] : cones_) {
+        cone->setLimit(span_1, span_2, twist, cone->getLimitSoftness(), bias,
+                       cone->getRelaxationFactor());
+    }
+    cones_.clear();
     for (const auto& [place, value] : usual_) *place = value;
     usual_.clear();
 }
@@ -246,13 +290,20 @@ DUCTILE_INLINE double PartStops::met(double h, double energy) const {
 
 DUCTILE_INLINE void PartStops::take(btTypedConstraint& constraint) {
     if (!constraint.isEnabled()) return;
+    if (constraint.getConstraintType() == CONETWIST_CONSTRAINT_TYPE) {
+        auto& cone = static_cast<btConeTwistConstraint&>(constraint);
+        cones_.push_back({&cone, cone.getSwingSpan1(), cone.getSwingSpan2(), cone.getTwistSpan(),
+                          cone.getBiasFactor()});
+    }
     const StoppedAxes axes =
         stopped_axes(constraint, constraint.getRigidBodyA().getCenterOfMassTransform(),
                      constraint.getRigidBodyB().getCenterOfMassTransform());
     if (axes.count > 0) began_.push_back({&constraint, axes});
 }
 
-DUCTILE_INLINE void PartStops::set(double h, double frame) {
+DUCTILE_INLINE void PartStops::set(double h, double frame, double erp) {
+    // of what a part without budget went beyond it, as of bodies that overlap
+    slowly_ = erp > 0 ? btScalar(overlap_erp(erp, h, frame) / part_erp(erp, h)) : btScalar(1);
     for (const auto& [constraint, began] : began_) {
         const StoppedAxes now =
             stopped_axes(*constraint, constraint->getRigidBodyA().getCenterOfMassTransform(),
@@ -265,6 +316,11 @@ DUCTILE_INLINE void PartStops::set(double h, double frame) {
             soften_all(static_cast<btGeneric6DofConstraint&>(*constraint), h, frame);
         }
     }
+    for (const auto& [cone, span_1, span_2, twist, bias] : cones_) {
+        cone->setLimit(cone->getSwingSpan1(), cone->getSwingSpan2(), cone->getTwistSpan(),
+                       cone->getLimitSoftness(), btScalar(part_erp(double(bias), h)),
+                       cone->getRelaxationFactor());
+    }
 }
 
 /// Beyond its stop as it began to be, if it was at one; else it has none.
@@ -272,16 +328,20 @@ DUCTILE_INLINE void PartStops::hold(btTypedConstraint& constraint, const Stopped
                                     const StoppedAxis& now) {
     const bool at_least = began.gap(false) <= detail::at_stop,
                at_most = began.gap(true) <= detail::at_stop;
-    limits_.push_back({&constraint, now.number, now.least, now.most});
-    if (!at_least && !at_most) {
-        detail::set_limits(constraint, now.number, 1, -1);
-        return;
-    }
-    const btScalar nothing = 4 * SIMD_EPSILON * std::max(btScalar(1), std::abs(now.at));
+    const bool open = !at_least && !at_most;
+    constexpr auto nothing = btScalar(0.01 * detail::at_stop); // but more than Bullet rounds
     const btScalar far_off = now.moves() ? btScalar(1e6) : btScalar(3);
-    const auto beyond = [&](bool upper) { return std::max(nothing, btScalar(-began.gap(upper))); };
-    detail::set_limits(constraint, now.number, now.at + (at_least ? beyond(false) : -far_off),
-                       now.at - (at_most ? beyond(true) : -far_off));
+    const auto beyond = [&](bool upper) {
+        return std::max(nothing, slowly_ * btScalar(-began.gap(upper)));
+    };
+    const btScalar least = open ? btScalar(1) : now.at + (at_least ? beyond(false) : -far_off),
+                   most = open ? btScalar(-1) : now.at - (at_most ? beyond(true) : -far_off);
+    if (constraint.getConstraintType() == CONETWIST_CONSTRAINT_TYPE) {
+        detail::set_span(static_cast<btConeTwistConstraint&>(constraint), now, most);
+    } else {
+        limits_.push_back({&constraint, now.number, now.least, now.most});
+        detail::set_limits(constraint, now.number, least, most);
+    }
 }
 
 /// Bullet sets those that the user did not.
