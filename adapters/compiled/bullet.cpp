@@ -5,6 +5,7 @@
 
 #include <ductile/bullet/attachment.ipp>
 #include <ductile/bullet/closing_contacts.ipp>
+#include <ductile/bullet/constraint_stops.ipp>
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/driven_body.ipp>
 #include <ductile/bullet/driven_ways.ipp>

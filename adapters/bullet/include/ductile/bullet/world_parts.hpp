@@ -41,6 +41,7 @@
 #include <vector>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/constraint_stops.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_contacts.hpp"
@@ -123,7 +124,12 @@ class WorldParts final : public PartEngine {
 
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds();
     [[nodiscard]] bool concerns(const btCollisionObject& object);
-    [[nodiscard]] double time_to_stops(double h);
+    void see_stops(double h, ClosingContacts& found);
+    /// It is Bullet's own, in an island with plastic joints.
+    [[nodiscard]] bool has_part_stops(btTypedConstraint& constraint);
+    void take_stops(PartStops& stops);
+    /// When a gap closed or a stop was met that was not foreseen; 0: none [s].
+    [[nodiscard]] double closed_early(double h);
     void look_at_pushes(double h);
 
     /// Back to before it, with the sections open that it was beyond.
@@ -152,7 +158,8 @@ class WorldParts final : public PartEngine {
     ClosingContactsFinder closing_;
     HeldContacts held_;
     ThrownBodies thrown_;
-    double half_ = 0; ///< of the last part that stands, since which bodies went straight on [s]
+    double half_ = 0;     ///< of the last part that stands, since which bodies went straight on [s]
+    double stop_met_ = 0; ///< in the last part, unforeseen; infinite: none [s]
     double touching_ = 0, apart_ = 0; ///< energies that a contact, a gap has to close with [J]
     bool closes_ = false;             ///< a contact, as the last look ahead found
     PartRisk risk_;

@@ -70,7 +70,8 @@ class WorldParts::Settings {
     Settings(btContactSolverInfo& info, btScalar h, double frame, bool blow)
         : info_(info), usual_(info) {
         const auto part = double(h);
-        info.m_erp = blow ? btScalar(0) : btScalar(part_erp(double(info.m_erp), part));
+        constexpr btScalar bounces = btScalar(1e-20); // at 0 stops of Bullet's do not
+        info.m_erp = blow ? bounces : btScalar(part_erp(double(info.m_erp), part));
         info.m_erp2 = blow ? btScalar(0) : btScalar(overlap_erp(double(info.m_erp2), part, frame));
         if (!blow) return;
         info.m_splitImpulse = 0;
@@ -206,6 +207,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     members_->apply_forces();
     const bool metered = keeps_ledger_ || at_risk_;
     if (metered) meter_.before_step();
+    PartStops stops;
+    take_stops(stops);
     if (ahead) {
         if (at_risk_) {
             held_.see(manifolds(), half_, [this](const auto& body) { return concerns(body); });
@@ -219,6 +222,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         keep_spins(h);
     }
     members_->before_solve();
+    stops.set(h, length_, double(world_.getSolverInfo().m_erp));
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
     const Impulses impulses(world_, btScalar(h / length_));
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
@@ -229,6 +233,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         detail::SingleTick::go(world_, btScalar(h));
     }
     front_.set_kind(TickKind::step);
+    stops.put_back();
+    stop_met_ = stops.met(h, apart_);
     if (metered) meter_.after_step(double(btScalar(h)));
 }
 
@@ -245,7 +251,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     const auto look = [&] {
         if (members_->empty()) return false;
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
-        motion_.closed = closing_.closed_early(world_, h, apart_);
+        motion_.closed = closed_early(h);
         if (is_put_back(motion_.closed, h)) return false;
         const auto length = double(btScalar(h));
         return instant ? members_->look_blow(length) : members_->look(length);
@@ -267,7 +273,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
             return body != nullptr && concerns(*static_cast<const btRigidBody*>(body));
         });
     }
-    if (members_->empty()) motion_.closed = closing_.closed_early(world_, h, apart_);
+    if (members_->empty()) motion_.closed = closed_early(h);
     look_at_pushes(h);
     return motion_;
 }
@@ -346,7 +352,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
         join(std::vector<btRigidBody*>(closing_.foreign()));
         found = closing_.find(world_, ahead, touching, apart);
     }
-    found.time = std::min(found.time, time_to_stops(ahead));
+    see_stops(ahead, found);
     found.strikes = found.strikes || !thrown_.bodies().empty();
     closes_ = found.strikes || found.time <= ahead;
     if (closes_) decide();

@@ -7,37 +7,12 @@
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
-#include "ductile/bullet/half_ahead.hpp"
+#include "ductile/bullet/constraint_stops.hpp"
 
 namespace ductile::bullet {
-
-namespace detail {
-
-/// When a hinge turns into its stop if it goes on as it does, within `h`; else infinite [s].
-DUCTILE_INLINE double time_to_stop(btHingeConstraint& hinge, btScalar h) {
-    constexpr double never = std::numeric_limits<double>::infinity();
-    if (!hinge.isEnabled() || !hinge.hasLimit()) return never;
-    const btRigidBody &a = hinge.getRigidBodyA(), &b = hinge.getRigidBodyB();
-    const btScalar spin = (a.getAngularVelocity() - b.getAngularVelocity()).length();
-    constexpr btScalar followed = btScalar(0.1); // [rad]
-    if (!(spin > 0)) return never;
-    const btScalar time = std::min(h, followed / spin);
-    const btScalar now =
-        hinge.getHingeAngle(a.getCenterOfMassTransform(), b.getCenterOfMassTransform());
-    const btScalar then = hinge.getHingeAngle(moved(a, a.getCenterOfMassTransform(), time),
-                                              moved(b, b.getCenterOfMassTransform(), time));
-    const auto turns = double(btNormalizeAngle(then - now) / time);
-    const btScalar stop = turns > 0 ? hinge.getUpperLimit() : hinge.getLowerLimit();
-    const double left = double(stop - now) / turns;
-    constexpr double past_it = 1 + 1e-6;
-    return left > 0 && left < double(h) ? past_it * left : never;
-}
-
-} // namespace detail
 
 /// While this lives a part has its share of what Bullet bounds by an impulse a tick: motors of
 /// hinges, clamps of points.
@@ -78,18 +53,33 @@ class WorldParts::Impulses {
     std::vector<std::pair<btTypedConstraint*, btScalar>> usual_;
 };
 
-/// Of hinges of Bullet's in islands with plastic joints [s].
-DUCTILE_INLINE double WorldParts::time_to_stops(double h) {
-    double first = std::numeric_limits<double>::infinity();
+/// Stops of Bullet's own constraints in islands with plastic joints, within `h` [s].
+DUCTILE_INLINE void WorldParts::see_stops(double h, ClosingContacts& found) {
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (constraint.getConstraintType() != HINGE_CONSTRAINT_TYPE) continue;
-        auto& hinge = static_cast<btHingeConstraint&>(constraint);
-        const double time = detail::time_to_stop(hinge, btScalar(h));
-        if (!(time < first)) continue;
-        if (concerns(hinge.getRigidBodyA()) || concerns(hinge.getRigidBodyB())) first = time;
+        if (!has_part_stops(constraint)) continue;
+        found.strikes = found.strikes || strikes_stop(constraint, touching_);
+        found.time =
+            std::min(found.time, time_to_stop(constraint, std::min(h, found.time), apart_));
     }
-    return first;
+}
+
+DUCTILE_INLINE bool WorldParts::has_part_stops(btTypedConstraint& constraint) {
+    return as_plastic(constraint) == nullptr &&
+           (concerns(constraint.getRigidBodyA()) || concerns(constraint.getRigidBodyB()));
+}
+
+DUCTILE_INLINE double WorldParts::closed_early(double h) {
+    const double gap = closing_.closed_early(world_, h, apart_);
+    if (!(stop_met_ < h)) return gap;
+    return gap > 0 ? std::min(gap, stop_met_) : stop_met_;
+}
+
+DUCTILE_INLINE void WorldParts::take_stops(PartStops& stops) {
+    for (int i = 0; at_risk_ && i < world_.getNumConstraints(); ++i) {
+        btTypedConstraint& constraint = *world_.getConstraint(i);
+        if (has_part_stops(constraint)) stops.take(constraint);
+    }
 }
 
 } // namespace ductile::bullet
