@@ -89,8 +89,8 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
                                                       double least, btScalar fastest) {
     const auto& objects = world.getCollisionObjectArray();
     const int count = scope_ != nullptr ? int(scope_->bodies().size()) : objects.size();
-    const bool has_leaves =
-        scope_ == nullptr && typeid(*world.getBroadphase()) == typeid(btDbvtBroadphase);
+    const btBroadphaseInterface& broadphase = *world.getBroadphase();
+    const bool has_leaves = scope_ == nullptr && typeid(broadphase) == typeid(btDbvtBroadphase);
     detail::ShapeReach shapes;
     std::vector<btRigidBody*> struck, far;
     pairs_.clear();
