@@ -54,6 +54,9 @@ DUCTILE_INLINE bool ClosingContactsFinder::is_still_member(const btCollisionObje
 
 namespace detail {
 
+/// Beyond what bodies may come nearer each other [m].
+inline constexpr btScalar near_margin = btScalar(1e-3);
+
 /// Whether Bullet has all that the body may come near in time among its pairs: these are of bodies
 /// whose leaves in its trees meet, and a leaf has room around its body.
 [[nodiscard]] DUCTILE_INLINE bool stays_in_leaf(const btRigidBody& body, btScalar reach) {
@@ -73,10 +76,9 @@ namespace detail {
 /// How far the body may come in `h` [m].
 DUCTILE_INLINE btScalar ClosingContactsFinder::reach(const btRigidBody& body, btScalar h,
                                                      detail::ShapeReach& shapes) const {
-    constexpr btScalar margin = btScalar(1e-3);
     const btScalar speed = body.getLinearVelocity().length() + detail::turning_speed(body, shapes) +
                            h * falls(body).length();
-    return speed * h + margin;
+    return speed * h + detail::near_margin;
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_struck_on(const btRigidBody& body) const {
@@ -163,7 +165,6 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
     btCollisionObject* other = first ? &two : &one;
     btRigidBody* mate = first ? of_two : of_one;
     if (other->getBroadphaseHandle() == nullptr) return;
-    constexpr btScalar margin = btScalar(1e-3);
     const btVector3 away = body->getLinearVelocity() -
                            (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
     const btScalar closing = away.length() + detail::turning_speed(*body, shapes) +
@@ -172,7 +173,7 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
     const double yields = double(body->getInvMass()) +
                           (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
     if (!(double(closing * closing) > 2 * yields * least)) return;
-    const btScalar reach = closing * h + margin;
+    const btScalar reach = closing * h + detail::near_margin;
     btVector3 low, high, from, to;
     body->getAabb(low, high);
     other->getCollisionShape()->getAabb(other->getWorldTransform(), from, to);

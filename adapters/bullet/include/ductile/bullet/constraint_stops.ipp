@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "ductile/bullet/constraint_stops.hpp"
-#include "ductile/bullet/half_ahead.ipp" // IWYU pragma: keep
+#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
-#include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
 #include <utility>
@@ -24,14 +23,6 @@ struct ActionArray : btDiscreteDynamicsWorld {
 /// A body that a tick moves; null for any other.
 [[nodiscard]] DUCTILE_INLINE btRigidBody* awake_body(btRigidBody& body) {
     return !body.isStaticOrKinematicObject() && body.isActive() ? &body : nullptr;
-}
-
-[[nodiscard]] DUCTILE_INLINE btTransform moved(const btRigidBody& body, const btTransform& from,
-                                               btScalar time) {
-    btTransform result;
-    btTransformUtil::integrateTransform(from, body.getLinearVelocity(), body.getAngularVelocity(),
-                                        time, result);
-    return result;
 }
 
 /// Whether the body, moved by its velocity for `time` [s] since it was at `from`, is elsewhere.

@@ -5,13 +5,13 @@
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
-#include <LinearMath/btTransformUtil.h>
 
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
 
@@ -31,11 +31,7 @@ namespace detail {
 class BodyAhead {
   public:
     BodyAhead(btRigidBody& body, btScalar time) : body_(body), now_(body.getWorldTransform()) {
-        if (!moves(&body_)) return;
-        btTransform then;
-        btTransformUtil::integrateTransform(now_, body.getLinearVelocity(),
-                                            body.getAngularVelocity(), time, then);
-        body_.setWorldTransform(then);
+        if (moves(&body_)) body_.setWorldTransform(moved(body_, now_, time));
     }
     ~BodyAhead() {
         if (moves(&body_)) body_.setWorldTransform(now_);

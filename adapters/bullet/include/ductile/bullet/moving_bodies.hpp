@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// The bodies of a world that are not static; Bullet keeps such a list and does not show it.
+// The bodies of a world that are not static; Bullet keeps such a list and does not show it. And
+// where a body goes by its velocities.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btTransformUtil.h>
 
 #include <cstddef>
 #include <span>
@@ -22,5 +24,18 @@ struct MovingBodies : btDiscreteDynamicsWorld {
         return {&bodies[0], std::size_t(bodies.size())};
     }
 };
+
+namespace detail {
+
+/// `time` [s] after it was at `from`.
+[[nodiscard]] inline btTransform moved(const btRigidBody& body, const btTransform& from,
+                                       btScalar time) {
+    btTransform result;
+    btTransformUtil::integrateTransform(from, body.getLinearVelocity(), body.getAngularVelocity(),
+                                        time, result);
+    return result;
+}
+
+} // namespace detail
 
 } // namespace ductile::bullet

@@ -59,8 +59,7 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
     for (const dBodyID body : bodies_) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
             const dJointID id = dBodyGetJoint(body, i);
-            if (dJointIsEnabled(id) == 0 || seen_.has(id)) continue;
-            seen_.enter(id);
+            if (dJointIsEnabled(id) == 0 || seen_.enter(id) < watched_.size()) continue;
             const bool lend = dJointGetFeedback(id) == nullptr;
             if (lend) dJointSetFeedback(id, &feedback_[lent++]);
             const AttachedBodies bodies = attached_bodies(id);
