@@ -3,17 +3,21 @@
 // A three-storey frame of steel loses a column.
 //
 // Reference problem P29: columns HEB 200, beams IPE 300, S355, 6 × 5 m, three storeys of 3.5 m, 3 t
-// on every beam, 41 t in all, at most 4 % of its strength used. By the elastic calculation the
-// frame without a ground-floor column comes to rest at 0.5089 of its strength, most at the foot of
-// a beam. Members that are rigid below yield (P30): with all weights times 2.2 the rest stands,
-// with 2.3 the beam that lost its column falls, as the collapse factor is 2.2773. Where the column
-// has lost its foot alone it hangs and holds the three floors together: the factor is 2.5887, 2.5
-// stands, 2.6 gives way, by a centimetre, where its beams come to hang like ropes, of which the
-// calculation of small displacements knows nothing. Last, 500 kg at 20 m/s against a column.
+// on every beam, 41 t in all, at most 4 % of its strength used. Without a ground-floor column it
+// comes to rest at 0.5089 of its strength, most at the foot of a beam, where the weights grow
+// slowly. Where the column is taken away at once the frame swings, and yields: without damping
+// 145 J in the first second, 211 J in three. What flowed leaves stresses, and it rests at 0.4976.
+//
+// Members that are rigid below yield (P30): with all weights times 2.2 the rest stands, with 2.3
+// the beam that lost its column falls, as the collapse factor is 2.2773. Where the column has lost
+// its foot alone it hangs and holds the three floors together: the factor is 2.5887, 2.5 stands,
+// 2.6 gives way, by a centimetre, where its beams come to hang like ropes, of which the calculation
+// of small displacements knows nothing. Last, 500 kg at 20 m/s against a column.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -79,6 +83,7 @@ class Frame final : public Scene {
     }
     [[nodiscard]] std::vector<Part> parts() override {
         return {{lost, [this](Run& run) { lose_a_column(run); }},
+                {"without a column", without_a_column},
                 {"weights times 2.2", [](Run& run) { load(run, false, 2.2, true); }},
                 {"weights times 2.3", [](Run& run) { load(run, false, 2.3, false); }},
                 {"foot cut, weights times 2.5", [](Run& run) { load(run, true, 2.5, true); }},
@@ -88,30 +93,42 @@ class Frame final : public Scene {
 
   private:
     void lose_a_column(Run& run) const {
-        Take take = run.take(lost, "A ground-floor column is taken away.", {.plain = true});
+        Take take = run.take(lost, "A ground-floor column is taken away.");
         BuiltStructure& frame = take.stage().build(three_storeys(true));
         take.stage().describe(words);
         take.action();
         take.run(1);
         run.expect("utilisation, intact", frame.utilisation(), 0.0380, 0.01);
         take.stage().remove("column 00");
-        for (int i = 0; i * take.frame() < rest_; ++i) take.step();
+        take.run(1);
+        run.tell("absorbed in the first second", frame.absorbed_energy(), "J");
+        take.run(rest_ - 1);
         // what flowed on the way leaves stresses of its own
-        const double absorbed = frame.absorbed_energy();
-        run.expect("utilisation at rest without a column", frame.utilisation(), 0.5089,
-                   absorbed > 0 ? 0.03 : 0.005);
-        run.tell("absorbed on the way", absorbed, "J");
+        run.expect("utilisation at rest", frame.utilisation(), 0.5089, 0.03);
+        run.tell("absorbed", frame.absorbed_energy(), "J");
         take.cut();
+    }
+    static void without_a_column(Run& run) {
+        Take take =
+            run.take("without a column", "Weights grow slowly on a frame without a column.");
+        BuiltStructure& frame = take.stage().build(three_storeys(true));
+        take.stage().remove("column 00");
+        const int steps = int(std::lround(4 / take.frame()));
+        for (int i = 1; i <= steps; ++i) {
+            frame.scale_weights((1 - std::cos(std::numbers::pi * i / steps)) / 2);
+            take.step();
+        }
+        take.settle(1e-4, 30);
+        run.expect("loaded slowly: utilisation", frame.utilisation(), 0.5089, 0.005);
+        run.expect("loaded slowly: absorbed", frame.absorbed_energy(), 0, 0, "J");
     }
     /// `cut`: the column hangs on, else it is gone. `stands`: whether the frame does.
     static void load(Run& run, bool cut, double weights, bool stands) {
         char name[64];
         std::snprintf(name, sizeof name, "%sweights times %.1f", cut ? "foot cut, " : "", weights);
         const std::string of = name;
-        Take take = run.take(of,
-                             cut ? "Rigid below yield, a column has lost its foot."
-                                 : "Rigid below yield, a column is gone.",
-                             {.plain = true});
+        Take take = run.take(of, cut ? "Rigid below yield, a column has lost its foot."
+                                     : "Rigid below yield, a column is gone.");
         BuiltStructure& frame = take.stage().build(three_storeys(false, cut));
         if (!cut) take.stage().remove("column 00");
         take.stage().keep_awake();

@@ -68,7 +68,7 @@ Take::~Take() {
     }
 }
 
-double Take::frame() const { return run_.options().frame; }
+double Take::frame() const { return slow_ > 0 ? slow_ : run_.options().frame; }
 
 void Take::action(double samples_a_second) {
     if (!run_.options().keep) return;
@@ -83,7 +83,7 @@ void Take::action(double samples_a_second) {
 void Take::step(double frame) {
     const std::clock_t start = std::clock();
     stage_->step(frame);
-    run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
+    if (!(slow_ > 0)) run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
     for (const JointEvent<double>& event : stage_->world().events()) {
         unsolved_ = unsolved_ || event.kind == EventKind::unreliable;
     }

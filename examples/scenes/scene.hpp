@@ -44,7 +44,7 @@ struct RunOptions {
 struct Option {
     std::string name, about, unit;
     double* value;
-    double low, high; ///< of a slider for it
+    double low, high; ///< its range, and that of a slider for it
     std::string part; ///< the only one that asks for it; empty: all do
 };
 
@@ -60,9 +60,11 @@ class Take {
     Take& operator=(const Take&) = delete;
 
     [[nodiscard]] Stage& stage() { return *stage_; }
-    [[nodiscard]] double frame() const;
+    [[nodiscard]] double frame() const; ///< [s]
     /// All bodies and joints are there: what follows is seen.
     void action(double samples_a_second = 30);
+    /// From now on frames are so short [s], whatever the run's are: for what is over in a few.
+    void slow_motion(double frame) { slow_ = frame; }
     void step() { step(frame()); }
     /// A frame of another length than the run's [s], as where something is to be read in between.
     void step(double frame);
@@ -78,6 +80,7 @@ class Take {
     std::string name_, about_;
     std::unique_ptr<Stage> stage_;
     std::unique_ptr<replay::Recorder> recorder_;
+    double slow_ = 0;       ///< [s]; 0: frames are the run's
     bool unsolved_ = false; ///< a joint, in a plain step
 };
 

@@ -115,7 +115,7 @@ int main(int argc, char** argv) try {
             command
                 .add_option("--" + option.name, *option.value,
                             option.about + " [" + option.unit + "]")
-                ->check(within(1e-9, 1e9))
+                ->check(within(option.low, option.high))
                 ->capture_default_str();
         }
     }

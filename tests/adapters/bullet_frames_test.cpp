@@ -649,6 +649,45 @@ TEST_CASE("Frames: a motor of Bullet's has its moment in every part", "[frame]")
     CHECK(motor.getMaxMotorImpulse() == btScalar(brakes * frame));
 }
 
+/// Beside a hinge that flows to and fro, so that frames have several parts.
+TEST_CASE("Frames: a vehicle brakes once in all parts of a frame", "[frame]") {
+    constexpr double mass = 1000, speed = 20, brake = 15, frame = 1.0 / 60; // [kg] [m/s] [N s] [s]
+    Rig rig;
+    rig.engine.setGravity({0, btScalar(-9.81), 0});
+    rig.body(0, {0, 0, 0}, {0, -1, 0}, box(100, 1, 100), 1, -1);
+    btRigidBody& chassis =
+        rig.body(mass, {800, 1000, 400}, {0, btScalar(0.8), -50}, box(0.8, 0.2, 1.8));
+    chassis.setLinearVelocity({0, 0, btScalar(speed)});
+    btDefaultVehicleRaycaster rays(&rig.engine);
+    const btRaycastVehicle::btVehicleTuning tuning;
+    btRaycastVehicle vehicle(tuning, &chassis, &rays);
+    vehicle.setCoordinateSystem(0, 1, 2);
+    for (const double x : {-0.8, 0.8}) {
+        for (const double z : {-1.5, 1.5}) {
+            vehicle.addWheel({btScalar(x), 0, btScalar(z)}, {0, -1, 0}, {-1, 0, 0}, btScalar(0.5),
+                             btScalar(0.3), tuning, z > 0);
+        }
+    }
+    for (int k = 0; k < 4; ++k) vehicle.setBrake(btScalar(brake), k);
+    rig.engine.addVehicle(&vehicle);
+    btRigidBody& shaken = rig.body(3, {2, 2, 2}, {0, 5, 0});
+    shaken.setGravity({0, 0, 0});
+    Hinge hinge(shaken, along({1, 0, 0}), law(5));
+    rig.world->add(hinge);
+    constexpr int frames = 60;
+    int solves = 0;
+    for (int i = 0; i < frames; ++i) {
+        shaken.applyTorque({btScalar(i % 8 < 4 ? 30 : -30), 0, 0});
+        rig.world->step(frame);
+        solves += rig.world->frame().solves();
+    }
+    rig.engine.removeVehicle(&vehicle);
+    CHECK(solves > frames);
+    CHECK(vehicle.getWheelInfo(0).m_brake == btScalar(brake));
+    const double braked = 4 * brake * frames / mass;
+    CHECK(std::abs(speed - double(chassis.getLinearVelocity().z()) - braked) < 0.01 * braked);
+}
+
 enum class Own { hinge, cone, six, springs, slider };
 
 /// Holds `body` to the world in all but one direction of `in_world`: about z, or along z.

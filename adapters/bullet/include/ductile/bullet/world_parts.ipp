@@ -224,7 +224,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     members_->before_solve();
     stops.set(h, length_, double(world_.getSolverInfo().m_erp));
     const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
-    const Impulses impulses(world_, btScalar(h / length_));
+    const Impulses impulses(world_, btScalar(h / length_), calls_others_);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),

@@ -5,20 +5,24 @@
 
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
+#include <BulletDynamics/Vehicle/btRaycastVehicle.h>
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "ductile/bullet/constraint_stops.hpp"
+#include "ductile/bullet/half_ahead.hpp"
 
 namespace ductile::bullet {
 
 /// While this lives a part has its share of what Bullet bounds by an impulse a tick: motors of
-/// hinges, clamps of points.
+/// hinges, clamps of points, brakes of vehicles.
 class WorldParts::Impulses {
   public:
-    Impulses(btDiscreteDynamicsWorld& world, btScalar share) {
+    /// `vehicles`: there may be some.
+    Impulses(btDiscreteDynamicsWorld& world, btScalar share, bool vehicles) {
+        if (vehicles) take_brakes(world, share);
         for (int i = 0; i < world.getNumConstraints(); ++i) {
             btTypedConstraint& constraint = *world.getConstraint(i);
             if (constraint.getConstraintType() == HINGE_CONSTRAINT_TYPE) {
@@ -32,12 +36,24 @@ class WorldParts::Impulses {
         }
     }
     ~Impulses() {
+        for (const auto& [wheel, brake] : brakes_) wheel->m_brake = brake;
         for (const auto& [constraint, impulse] : usual_) set(*constraint, impulse);
     }
     Impulses(const Impulses&) = delete;
     Impulses& operator=(const Impulses&) = delete;
 
   private:
+    void take_brakes(btDiscreteDynamicsWorld& world, btScalar share) {
+        auto& actions = detail::ActionArray::of(world);
+        for (int i = 0; i < actions.size(); ++i) {
+            auto* vehicle = dynamic_cast<btRaycastVehicle*>(actions[i]);
+            for (int k = 0; vehicle != nullptr && k < vehicle->getNumWheels(); ++k) {
+                btWheelInfo& wheel = vehicle->getWheelInfo(k);
+                brakes_.emplace_back(&wheel, wheel.m_brake);
+                wheel.m_brake *= share;
+            }
+        }
+    }
     void take(btTypedConstraint& constraint, btScalar impulse, btScalar share) {
         usual_.emplace_back(&constraint, impulse);
         set(constraint, impulse * share);
@@ -51,6 +67,7 @@ class WorldParts::Impulses {
     }
 
     std::vector<std::pair<btTypedConstraint*, btScalar>> usual_;
+    std::vector<std::pair<btWheelInfo*, btScalar>> brakes_;
 };
 
 /// Stops of Bullet's own constraints in islands with plastic joints, within `h` [s].
