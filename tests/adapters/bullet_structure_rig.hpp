@@ -165,6 +165,9 @@ class StructureRig {
     [[nodiscard]] static Matrix3<double> inertia(Body body) {
         return bullet::to_core(body->getInvInertiaTensorWorld().inverse());
     }
+    static void set_mass(Body body, double mass) {
+        body->setMassProps(btScalar(mass), body->getLocalInertia());
+    }
     static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
         body->applyForce(bullet::to_bullet(force), bullet::to_bullet(at - place(body)));
     }

@@ -267,6 +267,18 @@ inline void set_velocity(btRigidBody* body, const Vector3<double>& v) {
     body->setLinearVelocity(bullet::to_bullet(v));
 }
 
+/// By the engine's own calls, of which a member that is whole is not told.
+inline void push_behind(bullet::Member& member, double force) {
+    member.pieces().front()->applyCentralForce({0, btScalar(force), 0});
+}
+inline void change_mass(bullet::Member& member, double factor) {
+    btRigidBody& body = *member.pieces().front();
+    body.setMassProps(body.getMass() * btScalar(factor), body.getLocalInertia());
+}
+inline void apply_force(bullet::Member& member, double force, double place) {
+    member.apply_force({0, btScalar(force), 0}, place);
+}
+
 struct Scene {
     Rig rig;
     bullet::World world;

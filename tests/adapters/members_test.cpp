@@ -10,11 +10,13 @@
 #include <cmath>
 #include <initializer_list>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "ductile/material/named.hpp"
 #include "ductile/section/rectangle.hpp"
+#include "support/throws.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -152,6 +154,73 @@ TEST_CASE("held along at both ends a beam that flows is said to be locked", "[me
             }
         }
     }
+}
+
+TEST_CASE("what a member bears but by bending about its x, and cannot, is said", "[member]") {
+    // 1 kg fixed by a point to the tip: 48 J bend it, about either axis, or 190 J stretch it, to
+    // yield
+    const Rectangle<double> section({.width = 0.064, .height = 0.01});
+    const Member of = beam(section, Material<double>(s355<double>()),
+                           {.length = 1, .segments = 10, .clamped = true});
+    const Vector3<double> along_y(0, 1, 0), along_x(1, 0, 0), along_z(0, 0, 1);
+    for (const double tolerance : {0.01, 0.0}) {
+        const double dt = tolerance > 0 ? 1.0 / 60 : 1e-4;
+        for (const auto& [way, speed, bears] : {std::tuple{along_y, 20.0, true},
+                                                {along_x, 5.0, true},
+                                                {along_x, 20.0, false},
+                                                {along_z, 10.0, true},
+                                                {along_z, 30.0, false}}) {
+            Struck scene(of, true, tolerance);
+            set_velocity(scene.mass, scaled(speed, way));
+            for (int i = 0; i < 6; ++i) scene.world.step(dt);
+            CAPTURE(tolerance, way.transpose(), speed, scene.absorbed_energy());
+            const std::size_t unreliable = scene.world.watch().unreliable_steps(0);
+            if (tolerance > 0) {
+                CHECK((unreliable == 0) == bears);
+                CHECK(scene.world.run().believed() == bears);
+            } else if (!bears) { // a step loads with all of a blow at once, whatever bears it
+                CHECK(unreliable > 0);
+            }
+        }
+    }
+}
+
+TEST_CASE("a force that a member is not told of is said, one that it is told of is in the ledger",
+          "[member]") {
+    const Member of = free_bar();
+    for (const bool behind : {true, false}) {
+        BallOnBar scene(of, 1, 0, 1);
+        for (int i = 0; i < 30; ++i) {
+            if (behind) push_behind(*scene.bar, 1e3);
+            if (!behind) apply_force(*scene.bar, 1e3, of.length() / 2);
+            scene.world.step(1.0 / 60);
+        }
+        CAPTURE(behind);
+        CHECK(scene.world.run().believed() == !behind);
+        CHECK((scene.world.watch().unreliable_steps(0) > 0) == behind);
+        const std::size_t said = scene.world.watch().unreliable_steps(0);
+        for (int i = 0; i < 10; ++i) scene.world.step(1.0 / 60);
+        CHECK(scene.world.watch().unreliable_steps(0) == said);
+    }
+    HeldTwice held(beam_to_hold(10), true, 0, 2);
+    for (int i = 0; i < 40; ++i) { // beyond its limit load
+        apply_force(*held.member, 1.2e5, 2);
+        held.world.step(1e-3);
+    }
+    CHECK(held.absorbed_energy() > 1);
+    const Ledger<double>& ledger = held.world.ledger();
+    CHECK(ledger.supplied() > held.absorbed_energy());
+    CHECK(std::abs(ledger.unexplained()) < (rough ? 1e-3 : 1e-9) * ledger.supplied());
+}
+
+TEST_CASE("a member that is heavier than it was made is refused", "[member]") {
+    BallOnBar scene(free_bar(), 1, 0, 1);
+    scene.world.step(1.0 / 60);
+    change_mass(*scene.bar, 10);
+    apply_force(*scene.bar, 1, 1);
+    CHECK(message_of([&] { scene.world.step(1.0 / 60); }).find("Member.body.mass = ") == 0);
+    change_mass(*scene.bar, 0.1);
+    scene.world.step(1.0 / 60);
 }
 
 TEST_CASE("a beam has a section at its fixed end, or it is said that it has none", "[member]") {

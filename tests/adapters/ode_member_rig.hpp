@@ -240,6 +240,20 @@ inline dBodyID ball_of(const Rig& rig, double mass, const V3& at) {
     return ball;
 }
 
+/// By the engine's own calls, of which a member that is whole is not told.
+inline void push_behind(ode::Member& member, double force) {
+    dBodyAddForce(member.body_of(0), 0, dReal(force), 0);
+}
+inline void change_mass(ode::Member& member, double factor) {
+    dMass mass;
+    dBodyGetMass(member.body_of(0), &mass);
+    dMassAdjust(&mass, dReal(double(mass.mass) * factor));
+    dBodySetMass(member.body_of(0), &mass);
+}
+inline void apply_force(ode::Member& member, double force, double place) {
+    member.apply_force({0, force, 0}, place);
+}
+
 struct Scene {
     Rig rig;
     ode::World world;

@@ -146,6 +146,12 @@ class StructureRig {
         return {ode::linear_velocity(body), ode::angular_velocity(body)};
     }
     [[nodiscard]] static Matrix3<double> inertia(Body body) { return ode::inertia(body); }
+    static void set_mass(Body body, double mass) {
+        dMass now;
+        dBodyGetMass(body, &now);
+        dMassAdjust(&now, dReal(mass));
+        dBodySetMass(body, &now);
+    }
     static void apply_force(Body body, const Vector3<double>& force, const Vector3<double>& at) {
         dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
                            dReal(at.x()), dReal(at.y()), dReal(at.z()));

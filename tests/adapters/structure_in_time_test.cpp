@@ -545,6 +545,35 @@ TEST_CASE("what hangs on a frame and lies within it strikes no piece of it",
     }
 }
 
+TEST_CASE("what moves a structure and it is not told of is said, or refused",
+          "[structure][member]") {
+    const Rectangle<double> bar({.width = 0.1, .height = 0.1});
+    StructureModel model({.elastic = false});
+    const NodeId a = model.node({0, 0, 5}), b = model.node({4, 0, 5}), c = model.node({4, 0, 8});
+    model.member("low", a, b, bar, Material<double>(s355<double>()));
+    model.member("right", b, c, bar, Material<double>(s355<double>()));
+    for (const bool behind : {true, false}) {
+        InTime scene(in_frames({.weights = 0}), model);
+        for (int i = 0; i < 20; ++i) {
+            const StructureRig::Body body = scene.frame->bodies().front();
+            if (behind) StructureRig::apply_force(body, {0, 0, 3e4}, scene.frame->place(b));
+            if (!behind) scene.frame->apply(b, {0, 0, 3e4});
+            scene.rig.step(dt);
+        }
+        CAPTURE(behind);
+        CHECK(scene.rig.world().run().believed() == !behind);
+    }
+    InTime scene(in_frames({.weights = 0}), model);
+    CHECK(message_of([&] {
+              scene.frame->apply(b, {0, 0, 1e160});
+          }).find("at most 1e100") != std::string::npos);
+    CHECK(message_of([&] { scene.frame->scale_weights(1e160); }) ==
+          "Structure.scale_weights.factor = 1e+160: must be at most 1e100");
+    StructureRig::set_mass(scene.frame->bodies().front(), 1e6);
+    CHECK_THROWS_WITH(scene.rig.step(dt),
+                      Catch::Contains("StructureInTime.bodies: must move as they did"));
+}
+
 TEST_CASE("what cannot be one body until it yields is refused", "[structure][member]") {
     InTime scene(in_frames({.elastic = false}));
     CHECK(message_of([] {

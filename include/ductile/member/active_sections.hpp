@@ -46,6 +46,44 @@ inline constexpr int no_section = -1;
                         : std::numeric_limits<double>::infinity();
 }
 
+/// What it carries beside bending about x as a share of its strength there, in a step of one
+/// second; 0 where that is not known [-].
+[[nodiscard]] inline double utilisation_beside(const Member& member,
+                                               const SectionForce& carried) noexcept {
+    if (!member.all_axes()) return 0;
+    const auto& capacity = member.all_axes()->capacity;
+    return std::hypot(carried.axial / capacity[2], carried.weak_bending / capacity[4],
+                      carried.torsion / capacity[5]);
+}
+
+/// Strain energy of a blow's profile beside bending about x, and in all [J s²].
+struct BlowProfile {
+    double beside = 0, all = 0;
+    double utilisation = 0; ///< largest utilisation_beside [-]
+
+    void add(const Member& member, const InternalForces& forces) noexcept {
+        if (!member.all_axes()) return;
+        const auto& stiffness = member.all_axes()->stiffness;
+        for (const SectionForce& carried : forces.sections) {
+            const double length = member.segment(carried.section + 1).length;
+            const auto energy = [&](double q, std::size_t axis) {
+                return length * q * q / (2 * stiffness[axis]);
+            };
+            const double of_these = energy(carried.axial, 2) + energy(carried.weak_bending, 4) +
+                                    energy(carried.torsion, 5);
+            beside += of_these;
+            all += of_these + energy(carried.bending, 3);
+            utilisation = std::max(utilisation, utilisation_beside(member, carried));
+        }
+    }
+    /// Whether a blow of `energy` [J] loads an elastic member beyond what it bears there, by what
+    /// is more than a hundredth of it.
+    [[nodiscard]] bool is_off_plane(double energy) const noexcept {
+        constexpr double noticed = 0.01;
+        return beside > noticed * all && utilisation * std::sqrt(energy / all) > 1;
+    }
+};
+
 /// Half of the product of a blow's moment at a closed section and of the turn that opening it would
 /// give: what the section then takes of the blow, of a piece as if it were straight [J]. Derived
 /// from two bodies that share a point.

@@ -36,6 +36,14 @@ struct MemberBox {
     }
 };
 
+/// @throws std::invalid_argument where `mass` [kg] is another than that of a member that moves.
+inline void require_mass(const Member& of, double mass) {
+    constexpr double share = 1e-3;
+    if (of.clamped() || std::abs(mass - of.mass()) <= share * of.mass()) return;
+    check::fail("Member.body.mass", mass, "kg",
+                "that of the member, " + number_text(of.mass(), 6) + " kg");
+}
+
 /// The frame of the whole member in its body, of mass `mass` [kg] where it moves; `start_in_body`:
 /// the member's frame in that of the body's centre of mass.
 /// @throws std::invalid_argument where the mass or the centre is another than the member's.
@@ -43,12 +51,9 @@ struct MemberBox {
                                                       const JointFrame<double>& start_in_body,
                                                       double mass) {
     JointFrame<double> frame = frame_around(start_in_body, whole.section(of, 0, false));
+    require_mass(of, mass);
     if (of.clamped()) return frame;
     constexpr double share = 1e-3;
-    if (!(std::abs(mass - of.mass()) <= share * of.mass())) {
-        check::fail("Member.body.mass", mass, "kg",
-                    "that of the member, " + number_text(of.mass(), 6) + " kg");
-    }
     const double off = norm(frame.origin);
     if (!(off <= share * of.length())) {
         check::fail("Member.start_in_body", off, "m", "0: the member's centre is to be the body's");
@@ -183,7 +188,7 @@ class DividedMember {
             if (report.outcome == Outcome::yielding && report.plastic_travel > hair &&
                 course_.is_locked(open.section)) {
                 report.outcome = Outcome::unreliable;
-                all.locked = true;
+                all.unmodelled = Unmodelled::stretch;
             }
             all.first_yield = all.first_yield || report.first_yield;
             all.coarse = all.coarse || report.coarse;
@@ -192,6 +197,10 @@ class DividedMember {
             all.plastic_travel += report.plastic_travel;
             if (int(report.outcome) > int(all.outcome)) all.outcome = report.outcome;
             if (report.fracture) all.fracture = report.fracture;
+        }
+        if (course_.unmodelled() != Unmodelled::nothing) {
+            all.outcome = Outcome::unreliable;
+            all.unmodelled = course_.unmodelled();
         }
         all.absorbed_energy = absorbed_energy();
         all.plastic_travel += course_.closed_travel();

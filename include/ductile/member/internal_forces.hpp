@@ -51,6 +51,7 @@ struct PieceStep {
     BodyMotion change{};
     Vector3<double> spin = Vector3<double>::Zero(); ///< ω before
     double dt = 0;                                  ///< in which it turned [s]; 0 in a blow
+    double blur = 0; ///< of its change, by the engine's last digits [m/s]
 };
 
 /// Of a section that is closed. Plain value.
@@ -60,6 +61,8 @@ struct SectionForce {
     Vector3<double> force = Vector3<double>::Zero();  ///< on what is beyond [N s]
     Vector3<double> moment = Vector3<double>::Zero(); ///< about the section [N m s]
     double bending = 0; ///< of it about x, as a joint's row would give it [N m s]
+    /// Along z [N s], about y and z [N m s]; where the member knows what it bears of these.
+    double axial = 0, weak_bending = 0, torsion = 0;
 };
 
 /// Kept from step to step, so that nothing is allocated.
@@ -117,8 +120,14 @@ inline void internal_forces(const Member& member, const MemberPiece& piece, cons
         move_to(start.origin);
         if (k == piece.run.first) break;
         // a row's axes are those of the segment before
-        const Vector3<double> x = column(placed(step.pose, piece.segment(k - 1)).axes, 0);
-        result.sections.push_back({k - 1, start.origin, force, moment, dot(x, moment)});
+        const Matrix3<double> axes = placed(step.pose, piece.segment(k - 1)).axes;
+        result.sections.push_back(
+            {k - 1, start.origin, force, moment, dot(column(axes, 0), moment)});
+        if (!member.all_axes()) continue;
+        SectionForce& section = result.sections.back();
+        section.axial = dot(column(axes, 2), force);
+        section.weak_bending = dot(column(axes, 1), moment);
+        section.torsion = dot(column(axes, 2), moment);
     }
     result.left_over_force = piece.held ? Vector3<double>::Zero() : force;
     result.left_over_moment = piece.held ? Vector3<double>::Zero() : moment;

@@ -24,12 +24,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ductile/joint/usual_joints.hpp"
 #include "ductile/material.hpp"
 #include "ductile/member/section_joint.hpp"
+#include "ductile/section/capacity.hpp"
 #include "ductile/section/section.hpp"
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/number_text.hpp"
@@ -52,6 +54,9 @@ struct MemberParameters {
     std::vector<UsualAxisJoint> sections;
     /// EI [N m²], > 0; infinite: rigid below yield, and every blow yields it (blow.hpp).
     double bending_stiffness = std::numeric_limits<double>::infinity();
+    /// Of its sections in all axes, a metre long. A member bends about x alone: with these it says
+    /// where it would have to bear more of something else than it can. None: that is not looked at.
+    std::optional<JointCapacity<double>> all_axes = std::nullopt;
 };
 
 /// On the axis of a segment. Plain value.
@@ -72,6 +77,11 @@ class Member {
                         std::to_string(count - 1) + ", one less than segments");
         }
         check::positive_or_infinite("Member.bending_stiffness", given_.bending_stiffness, "N m^2");
+        for (std::size_t i = 0; given_.all_axes && i < 6; ++i) {
+            const std::string name = "[" + std::to_string(i) + "]";
+            check::positive("Member.all_axes.capacity" + name, given_.all_axes->capacity[i], "");
+            check::positive("Member.all_axes.stiffness" + name, given_.all_axes->stiffness[i], "");
+        }
         for (std::size_t k = 0; k < count; ++k) {
             const MemberSegment& segment = given_.segments[k];
             const std::string name = "Member.segments[" + std::to_string(k) + "]";
@@ -108,6 +118,9 @@ class Member {
         return given_.sections[std::size_t(i)];
     }
     [[nodiscard]] double bending_stiffness() const noexcept { return given_.bending_stiffness; }
+    [[nodiscard]] const std::optional<JointCapacity<double>>& all_axes() const noexcept {
+        return given_.all_axes;
+    }
     [[nodiscard]] bool clamped() const noexcept { return given_.segments.front().held; }
     [[nodiscard]] double length() const noexcept { return length_; } ///< [m]
     [[nodiscard]] double mass() const noexcept { return mass_; }     ///< of what moves [kg]
@@ -157,7 +170,7 @@ struct BeamParameters {
     /// Of the last segment, >= 0: into a half and what is halved again. A contact takes of a blow
     /// what the segment that it meets takes, x/(1 + x) with x = μ s/(2 G) at an end and μ s/G
     /// within the span, of a striker of mass G: 3 % of P13a's with 32 equal ones, 0.3 % with 4
-    /// halvings.
+    /// halvings. At most 40.
     int halvings = 0;
     bool clamped = false; ///< at its start
     /// A section at its end too, before a stub of 1e-6 of its length: for a joint that keeps the
@@ -205,8 +218,10 @@ requires std::same_as<typename T::Scalar, double>
     if (parameters.segments < 1) {
         check::fail("Beam.segments", double(parameters.segments), "", "1 or more");
     }
-    if (parameters.halvings < 0) {
-        check::fail("Beam.halvings", double(parameters.halvings), "", "0 or more");
+    constexpr int most_halvings = 40; // to 1e-12 of a segment
+    if (parameters.halvings < 0 || parameters.halvings > most_halvings) {
+        check::fail("Beam.halvings", double(parameters.halvings), "",
+                    "0 to " + std::to_string(most_halvings));
     }
     const double area = section.area(), x = section.second_moment(SectionAxis::x) / area,
                  y = section.second_moment(SectionAxis::y) / area;
@@ -237,6 +252,9 @@ requires std::same_as<typename T::Scalar, double>
         member.segments.size() - 1,
         section_hinge(section, material, {.largest_bending = parameters.largest_bending}));
     member.bending_stiffness = material.youngs_modulus() * section.second_moment(SectionAxis::x);
+    if constexpr (FullSection<T>) {
+        member.all_axes = joint_capacity(section, material, {.length = 1});
+    }
     return Member(std::move(member));
 }
 

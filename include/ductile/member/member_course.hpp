@@ -23,6 +23,7 @@
 
 #include "ductile/member/blow.hpp"
 #include "ductile/member/redundant_forces.hpp"
+#include "ductile/world/joint_report.hpp"
 #include "ductile/world/turned_contact.hpp"
 
 namespace ductile {
@@ -128,6 +129,9 @@ class MemberCourse {
     [[nodiscard]] bool is_locked(int section) const noexcept { return locked_.holds(section); }
     /// Largest left_over of the last `beyond` [-].
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
+    /// What the looks since the last call of begin_step met.
+    [[nodiscard]] Unmodelled unmodelled() const noexcept { return unmodelled_; }
+    void begin_step() noexcept { unmodelled_ = Unmodelled::nothing; }
 
     /// Closed sections, the worst of each piece, that carried more than they can in a step of `dt`
     /// [s]; `steps`: by piece. Valid until the next call.
@@ -139,6 +143,7 @@ class MemberCourse {
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             left_over_ = std::max(left_over_, forces_.left_over());
+            find_unmodelled(pieces_[i].mass * steps[i].blur, dt);
             const int worst = worst_section(member_, state_, forces_, dt, rule_);
             if (worst != no_section) found_.push_back(worst);
         }
@@ -166,12 +171,14 @@ class MemberCourse {
             strike.add(by_joints.energy, by_joints.speed, by_joints.segment);
         }
         if (!(strike.energy > 0)) return no_section;
+        BlowProfile profile;
         int nearest = no_section, least = std::numeric_limits<int>::max();
         double utilisation = 0;
         constexpr double noticed = 1e-4; // of the blow's energy
         const bool first = !std::exchange(struck_, true);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
+            profile.add(member_, forces_);
             const MemberBlow blow = member_blow(member_, state_, elastic_forces(steps, loads),
                                                 strike.energy, strike.speed, strike.segment);
             utilisation = std::max(utilisation, blow.in_all);
@@ -187,6 +194,7 @@ class MemberCourse {
             }
         }
         if (first && nearest != no_section) expect_vibration(strike.energy, utilisation);
+        if (profile.is_off_plane(strike.energy)) unmodelled_ = Unmodelled::off_plane;
         return nearest;
     }
 
@@ -231,6 +239,19 @@ class MemberCourse {
     }
 
   private:
+    /// Of a piece, whose forces in a step of `dt` [s] were just found, but for `blur` [N s].
+    void find_unmodelled(double blur, double dt) noexcept {
+        constexpr double noticed = 1e-3, loads = 0.01; // of what acted, of the strength
+        const double strength = least_strength_ * dt;
+        const double left = std::max(norm(forces_.left_over_force) * member_.length(),
+                                     norm(forces_.left_over_moment));
+        if (forces_.left_over() > noticed && left > loads * strength + blur * member_.length()) {
+            unmodelled_ = Unmodelled::forces;
+        }
+        for (const SectionForce& carried : forces_.sections) {
+            if (utilisation_beside(member_, carried) > dt) unmodelled_ = Unmodelled::off_plane;
+        }
+    }
     void find_locked(std::span<const MemberLoad> loads) noexcept {
         locked_ = {member_.clamped() ? 0 : member_.segments(), no_section};
         for (const MemberLoad& load : loads) {
@@ -328,6 +349,7 @@ class MemberCourse {
     std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
     double closed_dt_ = 0;
     double noticed_ = 0;
+    Unmodelled unmodelled_ = Unmodelled::nothing;
     bool struck_ = false; ///< this blow was looked at
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };

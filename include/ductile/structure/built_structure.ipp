@@ -190,7 +190,11 @@ DUCTILE_INLINE void BuiltStructure::remove(std::string_view member) {
 }
 
 DUCTILE_INLINE void BuiltStructure::scale_weights(double factor) {
-    if (!std::isfinite(factor)) check::fail("Structure.scale_weights.factor", factor, "", "finite");
+    constexpr double most = 1e100; // a step squares it
+    if (!(std::abs(factor) <= most)) {
+        check::fail("Structure.scale_weights.factor", factor, "",
+                    std::isfinite(factor) ? "at most 1e100" : "finite");
+    }
     set_gravity(factor);
     wake();
 }

@@ -106,6 +106,8 @@ class ClosedForces {
     /// Share of the loads that no forces carry: of a free cluster, whose loads have to be in
     /// balance with its motion [-].
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
+    /// The same as a share of a joint's strength, had it to carry them [-].
+    [[nodiscard]] double left_over_use() const noexcept { return left_over_use_; }
 
     /// The most used joint of `forces`, by plan, which become what carries the loads; no_joint:
     /// none is used beyond 1 + `beyond`; else they stay what they are, those of an elastic cluster
@@ -238,7 +240,7 @@ class ClosedForces {
                 forces[joint.joint] += used_[i].cwiseProduct(along);
             }
         }
-        left_over_ = 0;
+        left_over_ = left_over_use_ = 0;
         if (free_) {
             Wrench off = loads_.front();
             for (const ClosedJoint& joint : joints_) {
@@ -246,6 +248,7 @@ class ClosedForces {
                 if (joint.b == 0) off -= joint.on_b * forces[joint.joint];
             }
             left_over_ = scale > 0 ? off.head<3>().norm() / scale : 0;
+            left_over_use_ = use(joints_.front().joint, off);
         }
         std::size_t worst = no_joint;
         double most = 1 + beyond;
@@ -264,7 +267,7 @@ class ClosedForces {
     std::vector<double> penalties_;      ///< by joint of this, of a round
     std::vector<Wrench> loads_, rest_, first_, rows_;
     numeric::BlockLdlt solver_;
-    double left_over_ = 0;
+    double left_over_ = 0, left_over_use_ = 0;
 };
 
 } // namespace ductile

@@ -8,10 +8,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -20,6 +23,7 @@
 #include "ductile/structure/built_structure.hpp"
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 #include "ductile/world/joint_report.hpp"
 
 namespace ductile {
@@ -32,6 +36,17 @@ struct StructureHold {
     /// On it, about where it holds, world axes [N], [N m].
     Vector3<double> force{0, 0, 0}, moment{0, 0, 0};
 };
+
+/// @throws std::logic_error where a body of a structure is no more as that made it: of mass `made`
+/// [kg], 0: it stands.
+inline void require_body(const char* whose, double made, double mass, bool kinematic) {
+    constexpr double share = 1e-3;
+    if (!kinematic && std::abs(mass - made) <= share * made) return;
+    throw std::logic_error(std::string(whose) +
+                           ".bodies: must move as they did when they were made"
+                           ", with " +
+                           number_text(made, 6) + " kg");
+}
 
 /// `OpenJoint`: has the `joint` [index in the plan] and, by a pointer, the engine's plastic joint
 /// of six axes there, `constraint`.
@@ -86,6 +101,20 @@ class DividedStructure : public BuiltStructure {
         return six;
     }
     [[nodiscard]] JointReport<double> report(std::size_t joint) const {
+        JointReport<double> report = report_alone(joint);
+        // of all of it, said by its first joint
+        if (!course_.knows_loads() && joint == first_joint()) {
+            report.outcome = Outcome::unreliable;
+            report.unmodelled = Unmodelled::forces;
+        }
+        return report;
+    }
+    [[nodiscard]] std::size_t first_joint() const {
+        std::size_t j = 0;
+        while (j + 1 < plan().joints.size() && !course_.joint(j).there) ++j;
+        return j;
+    }
+    [[nodiscard]] JointReport<double> report_alone(std::size_t joint) const {
         if (const OpenJoint* open = open_joint(joint)) return open->constraint->report();
         JointReport<double> report;
         const auto& state = course_.joint(joint).state;

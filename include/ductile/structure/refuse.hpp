@@ -32,7 +32,11 @@ namespace ductile::detail {
 
 /// Finite, and not zero where that is asked for.
 inline void require_vector(const std::string& field, const Vector3<double>& v, bool has_direction) {
-    if (is_finite(v) && !(has_direction && is_zero(v))) return;
+    constexpr double most = 1e100; // a step squares it
+    if (is_finite(v) && !(has_direction && is_zero(v))) {
+        if (!(v.cwiseAbs().maxCoeff() > most)) return;
+        refuse(field, text(v), "at most 1e100 in each component");
+    }
     refuse(field, text(v), has_direction ? "finite and not zero" : "finite");
 }
 

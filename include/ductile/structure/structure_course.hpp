@@ -117,6 +117,9 @@ class StructureCourse {
     /// Strength x travel that nobody misses, the least of closed joints [J].
     [[nodiscard]] double unmissed_work() const noexcept { return unmissed_work_; }
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
+    /// Whether the looks since the last call of begin_step knew of what moved it.
+    [[nodiscard]] bool knows_loads() const noexcept { return knows_loads_; }
+    void begin_step() noexcept { knows_loads_ = true; }
 
     /// Closed joints that would have carried more than they can in a step of `dt` [s]; `steps`: by
     /// cluster. Valid until the next call.
@@ -176,6 +179,7 @@ class StructureCourse {
     std::vector<Vector6<double>> trial_; ///< forces of this look
     std::vector<int> found_;
     double unmissed_work_ = 0, left_over_ = 0;
+    bool knows_loads_ = true;
     bool yields_ = false; ///< this blow was seen to yield it
 };
 

@@ -320,6 +320,9 @@ DUCTILE_INLINE const std::vector<int>& StructureCourse::beyond(std::span<const C
         gather(c, steps[c], loads, dt);
         const std::size_t worst = closed_forces_[c].find(trial_, use, hair);
         left_over_ = std::max(left_over_, closed_forces_[c].left_over());
+        constexpr double noticed = 1e-3, borne = 0.01; // of the loads, of a joint's strength
+        knows_loads_ = knows_loads_ && !(closed_forces_[c].left_over() > noticed &&
+                                         closed_forces_[c].left_over_use() > borne);
         if (worst != ClosedForces::no_joint) open_with(worst);
     }
     state_.forces = trial_;

@@ -15,6 +15,14 @@
 
 namespace ductile {
 
+/// What a member or a structure met that its description knows nothing of.
+enum class Unmodelled : unsigned char {
+    nothing,
+    stretch,   ///< a member flowed that nothing lets stretch (member/member_course.hpp)
+    off_plane, ///< more along, about or across a member than it bears, but bending about its x
+    forces     ///< it went as no load that it was told of explains
+};
+
 /// Plain value, of one joint after one step.
 template <std::floating_point S>
 struct JointReport {
@@ -24,11 +32,11 @@ struct JointReport {
     S residual = 0;           ///< worst violation of any of its rows, as Step::residual
     S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
-    bool locked = false;   ///< a member flowed that nothing lets stretch (member_course.hpp)
-    S plastic_travel = 0;  ///< p [m | rad]
-    S absorbed_energy = 0; ///< D [J]
-    S step_error = 0;      ///< share of p that the steps so far may have misplaced [-]
-    S after_break = 0;     ///< where it broke in this step: time of it that was left then [s]
+    Unmodelled unmodelled = Unmodelled::nothing; ///< of a member or a structure
+    S plastic_travel = 0;                        ///< p [m | rad]
+    S absorbed_energy = 0;                       ///< D [J]
+    S step_error = 0;  ///< share of p that the steps so far may have misplaced [-]
+    S after_break = 0; ///< where it broke in this step: time of it that was left then [s]
     std::optional<FractureEvent<S>> fracture{}; ///< once it is broken
 };
 

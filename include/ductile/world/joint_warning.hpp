@@ -15,11 +15,32 @@
 
 namespace ductile {
 
+[[nodiscard]] inline const char* unmodelled_warning(Unmodelled what) {
+    switch (what) {
+        case Unmodelled::stretch:
+            return "flowed between supports that hold it along, where it would have to stretch";
+        case Unmodelled::off_plane:
+            return "had to bear more than it can along its axis, about it or across the plane in "
+                   "which it bends, of which it knows nothing";
+        default:
+            return "moved as the loads that it knows of do not explain";
+    }
+}
+[[nodiscard]] inline const char* unmodelled_advice(Unmodelled what) {
+    switch (what) {
+        case Unmodelled::stretch:
+            return "let one of its ends slide";
+        case Unmodelled::off_plane:
+            return "a structure (StructureInTime) yields whichever way it is loaded";
+        default:
+            return "push it by its apply_force or apply, hold it by attach, and leave its bodies "
+                   "the masses that it gave them";
+    }
+}
 [[nodiscard]] inline std::string unreliable_warning(const JointEvent<double>& event) {
     std::ostringstream line;
-    if (event.report.locked) {
-        line << "flowed at t = " << event.time
-             << " s between supports that hold it along, where it would have to stretch";
+    if (event.report.unmodelled != Unmodelled::nothing) {
+        line << unmodelled_warning(event.report.unmodelled) << " (t = " << event.time << " s)";
     } else if (!(event.report.residual <= std::numeric_limits<double>::max())) {
         line << "was shown numbers that are not finite at t = " << event.time
              << " s, and keeps its state";
@@ -44,7 +65,7 @@ namespace ductile {
 [[nodiscard]] inline const char* unreliable_advice(const JointEvent<double>& event,
                                                    bool in_frames) {
     const JointReport<double>& report = event.report;
-    if (report.locked) return "let one of its ends slide";
+    if (report.unmodelled != Unmodelled::nothing) return unmodelled_advice(report.unmodelled);
     if (!(report.residual <= std::numeric_limits<double>::max())) {
         return "look for what moved or pushed its bodies so";
     }

@@ -52,6 +52,8 @@ class Divisible {
     /// Where nothing touches it and no force was applied, nothing can have become of it.
     [[nodiscard]] virtual bool idle() const = 0;
     [[nodiscard]] virtual bool whole() const = 0;
+    /// The last look met what it cannot be asked, which its report says.
+    [[nodiscard]] virtual bool doubts() const { return false; }
     /// Under which a joint of its own is reported, and of which section it is; null: not its own.
     [[nodiscard]] virtual const void* key_of(const PlasticConstraint& joint,
                                              int& section) const = 0;

@@ -94,6 +94,7 @@ DUCTILE_INLINE void Member::require_possible() const {
         throw std::logic_error("Member.body: must be in the world: addRigidBody it");
     }
     if (user_.isKinematicObject()) throw std::logic_error("Member.body: must not be kinematic");
+    if (whole()) require_mass(description(), double(user_.getMass()));
     if (description().clamped() &&
         !(user_.getLinearVelocity().isZero() && user_.getAngularVelocity().isZero())) {
         throw std::logic_error("Member.body: must not move where the member is clamped");

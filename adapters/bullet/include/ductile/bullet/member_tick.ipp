@@ -23,6 +23,9 @@ DUCTILE_INLINE bool MemberTick::whole() const { return member_.whole(); }
 DUCTILE_INLINE bool MemberTick::idle() const {
     return member_.whole() && member_.course_.member().clamped() && member_.attachments_.empty();
 }
+DUCTILE_INLINE bool MemberTick::doubts() const {
+    return member_.course_.unmodelled() != Unmodelled::nothing;
+}
 DUCTILE_INLINE void MemberTick::require_possible() const { member_.require_possible(); }
 DUCTILE_INLINE void MemberTick::leave() { member_.leave(); }
 DUCTILE_INLINE double MemberTick::closed_work() const { return member_.course_.closed_work(); }
@@ -109,6 +112,7 @@ DUCTILE_INLINE MemberTick::MemberTick(Member& member) : member_(member) {
 }
 
 DUCTILE_INLINE void MemberTick::begin() {
+    member_.course_.begin_step();
     touches_.clear();
     sum_ = 0;
 }
@@ -136,14 +140,14 @@ DUCTILE_INLINE void MemberTick::read(double dt, std::span<const BodyBefore> befo
     finish_steps(dt, before, gravity);
 }
 
-/// Whatever the arms of what acted on it: those of impulses and of the masses that they move. Where
-/// that says too little, along the member's axes.
+/// Whatever the arms of what acted on it: those of impulses and of the masses that they move, and
+/// of what moved it beside those. Where that says too little, along the member's axes.
 DUCTILE_INLINE bool MemberTick::may_be_beyond(double dt, std::span<const BodyBefore> before,
                                               const btVector3& gravity) const {
     constexpr double arms = 4; // of its length
     const MemberCourse& of = member_.course_;
     const double length = of.member().length();
-    double all = sum_;
+    double all = sum_, moved = 0; // what it is told of, and what moved it
     bool solved = of.member().clamped();
     if (solved) all += of.member().mass() * double(gravity.length()) * dt;
     for (const PieceBody& piece : member_.pieces_) {
@@ -152,7 +156,11 @@ DUCTILE_INLINE bool MemberTick::may_be_beyond(double dt, std::span<const BodyBef
         solved = true;
         const BodyBefore& was = before[std::size_t(body.getWorldArrayIndex())];
         all += double(body.getMass()) * double(was.spin.length2()) * length * dt;
+        const btVector3 fallen = body.getGravity() * btScalar(dt);
+        moved += double(body.getMass()) *
+                 double((body.getLinearVelocity() - was.velocity - fallen).length());
     }
+    all += std::max(moved - sum_, 0.0);
     if (!solved || arms * all * length <= of.least_strength() * dt) return false;
     return !is_plain() || largest_moment(dt, before, gravity) > of.least_strength() * dt;
 }
@@ -360,6 +368,9 @@ DUCTILE_INLINE void MemberTick::finish_steps(double dt, std::span<const BodyBefo
         step.change = went.of(piece.inertia, step.pose.axes);
         step.spin = went.spin;
         step.dt = went.dt;
+        constexpr double digits = 8 * double(SIMD_EPSILON);
+        step.blur = digits * (norm(to_core(body.getLinearVelocity())) +
+                              member.description().length() * norm(went.spin));
     }
 }
 

@@ -115,6 +115,10 @@ class Members final : public Divisibles {
     void remove(std::size_t course);
     /// What is known of its bodies is of now.
     void note_bodies(std::size_t course);
+    /// It was looked at, and may have met what it cannot be asked.
+    void note_doubts(Course& course);
+    /// Those of the last tick were told.
+    void forget_doubts();
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);
@@ -130,7 +134,7 @@ class Members final : public Divisibles {
     std::vector<Course*> here_;        ///< that are looked at in this tick
     std::vector<Member*> pushed_;      ///< with forces
     btVector3 gravity_{0, 0, 0};       ///< of the last look
-    bool look_at_all_ = true;
+    bool look_at_all_ = true, any_doubts_ = false;
     int objects_ = 0; ///< of the world, in the last tick
     std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world

@@ -93,9 +93,9 @@ DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
         course.bodies.push_back(piece.body);
         owners_[piece.body] = i;
     }
-    const bool whole = course.of->whole(); // what it reports stays
-    if (course.member != nullptr && std::exchange(course.asked, !whole) == whole) {
-        idle_changes_.emplace_back(course.member, whole);
+    const bool quiet = course.of->whole() && !course.of->doubts(); // what it reports stays
+    if (course.member != nullptr && std::exchange(course.asked, !quiet) == quiet) {
+        idle_changes_.emplace_back(course.member, quiet);
     }
     const bool watched = !course.of->idle() || course.direct > 0;
     if (std::exchange(course.watched, watched) == watched) return;
@@ -177,6 +177,7 @@ DUCTILE_INLINE void Members::list(Course& course) {
 
 DUCTILE_INLINE void Members::before_solve() {
     if (members_.empty()) return;
+    forget_doubts();
     before_.resize(std::size_t(world_.getNumCollisionObjects()));
     const auto& moving = MovingBodies::of(world_);
     for (int i = 0; i < moving.size(); ++i) {
@@ -288,6 +289,7 @@ DUCTILE_INLINE bool Members::look(double dt) {
         }
         course->of->read(dt, before_, gravity);
         course->of->find_beyond(dt, course->found);
+        note_doubts(*course);
         if (course->found.empty() && !vain && (course->direct > 0 || !course->of->is_held()))
             continue;
         any = true;
@@ -337,6 +339,7 @@ DUCTILE_INLINE bool Members::look_blow(double dt) {
         if (!course->of->touched()) continue;
         course->of->read(dt, before_, gravity);
         course->of->find_struck(course->found);
+        note_doubts(*course);
         if (course->found.empty()) continue;
         any = true;
         if (!is_decided(*course)) course->found.clear();

@@ -116,14 +116,17 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
                                                     int& section) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
     [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
-    void require_possible() const override {}
+    DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
     [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
     DUCTILE_INLINE void list_holds(std::vector<const btTypedConstraint*>& list) const override;
     void leave() override { left_ = true; }
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
-    void begin() override { touches_.clear(); }
+    void begin() override {
+        course_.begin_step();
+        touches_.clear();
+    }
     void touch(const ContactTouch& touch, double /*sum*/) override { touches_.push_back(touch); }
     void sum_up(double /*dt*/) override {}
     [[nodiscard]] bool touched() const override { return !touches_.empty() || !holds_.empty(); }

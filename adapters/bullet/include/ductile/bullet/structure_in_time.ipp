@@ -230,6 +230,19 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 
 // ---- what the world asks
 
+DUCTILE_INLINE void StructureInTime::require_possible() const {
+    for (std::size_t c = 0; c < pieces_.size(); ++c) {
+        const btRigidBody& body = *pieces_[c].body;
+        if (!body.isInWorld()) {
+            throw std::logic_error(
+                "StructureInTime.bodies: must stay in the world: addRigidBody them, or end the "
+                "structure");
+        }
+        const Cluster& cluster = course_.clusters()[c];
+        require_body("StructureInTime", cluster.held ? 0 : cluster.mass, double(body.getMass()),
+                     body.isKinematicObject());
+    }
+}
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
         btRigidBody& body = *pieces_[c].body;

@@ -227,9 +227,9 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
     if (snapshot_ == nullptr) snapshot_ = std::make_unique<WorldSnapshot>();
     for (;;) {
         snapshot_->take(world_, front_->usual());
+        members_->apply_forces(); // before the ledger asks for them
         if (meter_) meter_->keep();
         if (meter_) meter_->before_step();
-        members_->apply_forces();
         members_->before_solve();
         world_.stepSimulation(btScalar(dt), 0);
         if (!members_->look(double(btScalar(dt)))) break;

@@ -4,6 +4,7 @@
 // bear. A part of members.ipp.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -52,8 +53,25 @@ DUCTILE_INLINE void World::remove(Member& member) {
     members->remove(member);
 }
 
+DUCTILE_INLINE void Members::note_doubts(Course& course) {
+    if (!course.of->doubts()) return;
+    any_doubts_ = true;
+    note_bodies(std::size_t(&course - members_.data()));
+}
+DUCTILE_INLINE void Members::forget_doubts() {
+    if (!std::exchange(any_doubts_, false)) return;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        if (!members_[i].of->doubts()) continue;
+        members_[i].of->begin();
+        note_bodies(i);
+    }
+}
+
 /// What they carry would be read without these.
 DUCTILE_INLINE void Members::require_known() const {
+    if (!members_.empty() && !std::isfinite(double(world_.getGravity().length()))) {
+        throw std::invalid_argument("World.gravity: must be finite");
+    }
     for (int i = 0; !members_.empty() && i < world_.getNumConstraints(); ++i) {
         btTypedConstraint& constraint = *world_.getConstraint(i);
         if (!constraint.isEnabled()) continue;

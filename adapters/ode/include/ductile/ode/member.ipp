@@ -170,6 +170,11 @@ DUCTILE_INLINE void Member::require_possible() {
             "Member.body: must be kinematic where the member is clamped, and "
             "nowhere else");
     }
+    if (whole()) {
+        dMass now;
+        dBodyGetMass(user_, &now);
+        require_mass(description(), double(now.mass));
+    }
     if (description().clamped()) {
         if (!is_zero(linear_velocity(user_)) || !is_zero(angular_velocity(user_))) {
             throw std::logic_error("Member.body: must not move where the member is clamped");

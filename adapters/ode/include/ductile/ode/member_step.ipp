@@ -25,6 +25,7 @@ DUCTILE_INLINE void Member::apply_forces() {
 }
 
 DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
+    course_.begin_step();
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     before_.clear();
     for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
@@ -76,20 +77,23 @@ DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touc
     constexpr double arms = 4; // of its length
     const double length = description().length();
     bool solved = description().clamped();
-    double all = 0;
-    if (solved) {
-        dVector3 gravity;
-        dWorldGetGravity(dBodyGetWorld(user_), gravity);
-        all += description().mass() * norm(to_core(gravity)) * dt;
-    }
+    double all = 0, moved = 0; // what it is told of, and what moved it
+    dVector3 down;
+    dWorldGetGravity(dBodyGetWorld(user_), down);
+    const Vector3<double> fallen = scaled(dt, to_core(down));
+    if (solved) all += description().mass() * norm(fallen);
     for (std::size_t i = 0; i < before_.size(); ++i) {
         if (!before_[i].solved) continue;
         solved = true;
         const Vector3<double>& spin = before_[i].motion.spin;
         all += course_.pieces()[i].mass * dot(spin, spin) * length * dt;
+        const Vector3<double> change =
+            difference(linear_velocity(pieces_[i].body), before_[i].motion.velocity);
+        moved += course_.pieces()[i].mass * norm(difference(change, fallen));
     }
     if (!solved) return false;
-    all += sum_of_impulses(dt, touches);
+    const double told = sum_of_impulses(dt, touches);
+    all += told + std::max(moved - told, 0.0);
     return arms * all * length > course_.least_strength() * dt;
 }
 

@@ -110,8 +110,7 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     if (members_.empty()) return;
     list_contacts(contacts);
     for (const Course& course : members_) require_named(course);
-    lent_.clear();      // not sooner: the ledger reads it when the step stands
-    borrowers_.clear(); // contacts of a step that was never looked at may be gone
+    lent_.clear(); // not sooner: the ledger reads it when the step stands
     held_by_.clear();
     for (const Course& course : members_) course.of->before_solve(held_by_);
     for (dJointID joint : held_by_) static_cast<void>(feedback_of(joint));

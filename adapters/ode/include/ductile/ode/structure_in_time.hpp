@@ -145,7 +145,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     [[nodiscard]] DUCTILE_INLINE bool holds(dBodyID own, dBodyID other) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
     [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
-    void require_possible() override { find_holds(); }
+    DUCTILE_INLINE void require_possible() override;
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;

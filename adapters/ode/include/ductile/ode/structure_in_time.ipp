@@ -236,6 +236,16 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 
 // ---- a step
 
+DUCTILE_INLINE void StructureInTime::require_possible() {
+    find_holds();
+    for (std::size_t c = 0; c < bodies_.size(); ++c) {
+        if (held(c)) continue;
+        dMass mass;
+        dBodyGetMass(bodies_[c], &mass);
+        require_body("StructureInTime", course_.clusters()[c].mass, double(mass.mass),
+                     dBodyIsKinematic(bodies_[c]) != 0);
+    }
+}
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
         const Vector3<double> arm = difference(at, to_core(dBodyGetPosition(bodies_[c])));
@@ -244,6 +254,7 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
 }
 
 DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& joints) {
+    course_.begin_step();
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     courses_.clear();
     for (dBodyID body : bodies_) courses_.emplace_back(body);

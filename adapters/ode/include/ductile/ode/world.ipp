@@ -192,6 +192,11 @@ DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
 
 DUCTILE_INLINE void World::require_possible(double) {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
+    dVector3 gravity;
+    dWorldGetGravity(world_, gravity);
+    if (!members_->empty() && !is_finite(to_core(gravity))) {
+        throw std::invalid_argument("World.gravity: must be finite");
+    }
     members_->require_possible();
     if (parts_ != nullptr) require_all_bodies();
     require_finite();
