@@ -12,6 +12,7 @@ const speeds = [1 / 1000, 1 / 300, 1 / 100, 1 / 30, 1 / 10, 1 / 4, 1 / 2, 1, 2, 
 
 function say(message) {
     $("message").textContent = message;
+    $("message").className = "";
     $("message").hidden = false;
 }
 
@@ -325,6 +326,7 @@ window.showRecording = (bytes, growing) => {
 };
 
 async function start() {
+    $("message").hidden = true; // that the script does not run
     if (document.getElementById("live")) return;
     try {
         const script = document.getElementById("recording");

@@ -154,6 +154,22 @@ test("two boxes that a joint bends are drawn as one bar, and as boxes once it br
     await page.close();
 });
 
+test("a file that is cut short says so, a whole one does not", async () => {
+    const whole = await readFile(file);
+    const cut = resolve(folder, "replay_short.html");
+    for (const share of [0.01, 0.1, 0.5, 0.9, 0.999]) {
+        await writeFile(cut, whole.subarray(0, share * whole.length));
+        const page = await browser.newPage();
+        await page.goto(`file://${cut}`);
+        await page.waitForSelector("#message", { state: "visible", timeout: 5000 });
+        assert.match(await page.textContent("#message"), /^This file is cut short/, `${share}`);
+        await page.close();
+    }
+    const page = await open();
+    assert.equal(await page.isVisible("#message"), false);
+    await page.close();
+});
+
 test("a page whose recording is damaged says so", async () => {
     const text = await readFile(file, "utf8");
     const cut = resolve(folder, "replay_cut.html");

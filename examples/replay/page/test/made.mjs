@@ -3,12 +3,15 @@
 // Recordings for tests, of functions of the time, laid down as packed.hpp does.
 import { gzipSync } from "node:zlib";
 
+const waves = Object.fromEntries(["kinetic", "plastic", "unexplained"].map((name, i) => [name, (t) => 50 + 40 * Math.sin(t + i)]));
+
 /**
- * @param bodies  [{ name, half, pose(t) }]: boxes, x y z and the turn w x y z
- * @param joints  [{ name, a, b, in_a, sample(t) }]
+ * @param bodies    [{ name, half, pose(t) }]: boxes, x y z and the turn w x y z
+ * @param joints    [{ name, a, b, in_a, turns, facts, sample(t) }]
+ * @param energies  { name: of a time }
  * @returns gzipped bytes
  */
-export function pack({ name, times, bodies, joints }) {
+export function pack({ name, times, bodies, joints, energies = waves, events = [] }) {
     const columns = [];
     const add = (of, fixed) => {
         const values = times.map(of);
@@ -25,8 +28,7 @@ export function pack({ name, times, bodies, joints }) {
         add((t) => sample(t).life ?? 0, [0, 1]);
         for (const each of ["force", "position"]) add((t) => sample(t)[each] ?? 0);
     }
-    const energies = ["kinetic", "plastic", "unexplained"];
-    energies.forEach((_, i) => add((t) => 50 + 40 * Math.sin(t + i)));
+    for (const energy of Object.values(energies)) add(energy);
     whole(() => 1);
     whole((_, i) => i);
     const low = Buffer.alloc(columns.length * times.length);
@@ -44,9 +46,9 @@ export function pack({ name, times, bodies, joints }) {
         });
     });
     const text = JSON.stringify({
-        name, about: "", engine: "none", times, energies, events: [],
+        name, about: "", engine: "none", times, energies: Object.keys(energies), events,
         bodies: bodies.map((body) => ({ name: body.name, moves: true, shapes: [{ kind: "box", size: body.half, pose: [0, 0, 0, 1, 0, 0, 0] }] })),
-        joints: joints.map(({ name, a, b, in_a }) => ({ name, a, b, in_a, turns: true, axis: "axis", facts: [] })),
+        joints: joints.map(({ name, a, b, in_a, turns = true, facts = [] }) => ({ name, a, b, in_a, turns, axis: "axis", facts })),
         columns: { low: columns.map((c) => c.low), step: columns.map((c) => c.step), order: columns.map(() => 1) },
     });
     const head = Buffer.alloc(12);
