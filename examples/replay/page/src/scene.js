@@ -198,7 +198,11 @@ export class Scene {
         const parts = ({ bodies, joints }) => JSON.stringify([bodies.map(({ name, shapes }) => [name, shapes]), joints.map(({ name }) => name)]);
         const same = this.recording && parts(recording) === parts(this.recording);
         this.recording = recording;
-        this.largestTravel = Math.max(1e-12, ...recording.joints.map((joint) => joint.plastic.reduce((a, b) => (b > a ? b : a), 0)));
+        this.largest = { rad: 0, m: 0 }; // plastic travel, of joints that turn and that slide
+        for (const { helper, rotates, plastic } of recording.joints) {
+            const unit = rotates ? "rad" : "m";
+            if (!helper) this.largest[unit] = plastic.reduce((a, b) => (b > a ? b : a), this.largest[unit]);
+        }
         if (same) return;
         for (const { geometry } of this.scene.children) geometry.dispose();
         this.scene.clear();
@@ -296,7 +300,8 @@ export class Scene {
 
     /** What a joint is coloured by, at a sample. */
     shareOf(joint, index, by) {
-        return by === "plastic" ? joint.plastic[index] / this.largestTravel : joint.utilisation[index];
+        if (joint.helper) return 0;
+        return by === "plastic" ? joint.plastic[index] / (this.largest[joint.rotates ? "rad" : "m"] || 1) : joint.utilisation[index];
     }
 
     colourOfJoint(joint, index, by) {

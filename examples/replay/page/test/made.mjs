@@ -9,9 +9,10 @@ const waves = Object.fromEntries(["kinetic", "plastic", "unexplained"].map((name
  * @param bodies    [{ name, half, pose(t) }]: boxes, x y z and the turn w x y z
  * @param joints    [{ name, a, b, in_a, turns, facts, sample(t) }]
  * @param energies  { name: of a time }
+ * @param hash      (time, number) of each sample's poses
  * @returns gzipped bytes
  */
-export function pack({ name, times, bodies, joints, energies = waves, events = [] }) {
+export function pack({ name, times, bodies, joints, energies = waves, events = [], hash = (_, i) => i }) {
     const columns = [];
     const add = (of, fixed) => {
         const values = times.map(of);
@@ -30,7 +31,7 @@ export function pack({ name, times, bodies, joints, energies = waves, events = [
     }
     for (const energy of Object.values(energies)) add(energy);
     whole(() => 1);
-    whole((_, i) => i);
+    whole(hash);
     const low = Buffer.alloc(columns.length * times.length);
     const high = Buffer.alloc(columns.length * times.length);
     columns.forEach((column, c) => {
