@@ -80,7 +80,8 @@ std::string charpy(const fs::path& folder) {
     for (const char* picture : {"energy.png", "rotation.png", "speed.png"}) {
         const fs::path file = left / picture;
         if (!fs::exists(folder / file)) continue;
-        text += fmt::format("<img src=\"{}\" alt=\"\" style=\"width:32%\">\n", file.generic_string());
+        text +=
+            fmt::format("<img src=\"{}\" alt=\"\" style=\"width:32%\">\n", file.generic_string());
     }
     return text;
 }
@@ -106,10 +107,10 @@ std::string text_of(const Shown& shown, const fs::path& folder) {
     }
     text += "<table><tr><th></th><th>came out</th><th>must come out</th></tr>\n";
     for (const Finding& f : run.findings()) {
-        text += fmt::format(
-            "<tr><td>{}</td><td class=\"n{}\">{:.6g} {}</td><td class=n>{}</td></tr>\n",
-            escaped(f.what), f.right() ? "" : " wrong", f.came_out, f.unit,
-            f.expected ? fmt::format("{:.6g}", *f.expected) : "");
+        text +=
+            fmt::format("<tr><td>{}</td><td class=\"n{}\">{:.6g} {}</td><td class=n>{}</td></tr>\n",
+                        escaped(f.what), f.right() ? "" : " wrong", f.came_out, f.unit,
+                        f.expected ? fmt::format("{:.6g}", *f.expected) : "");
     }
     return text + "</table>\n";
 }
@@ -122,7 +123,8 @@ void write_index(const std::vector<Shown>& all, const fs::path& folder) {
     const fs::path file = folder / "index.html";
     std::vector<Section> sections;
     if (fs::exists(file, none)) sections = sections_of(replay::read_file(file));
-    if (std::string text = charpy(folder); !text.empty()) put(sections, {"charpy", std::move(text)});
+    if (std::string text = charpy(folder); !text.empty())
+        put(sections, {"charpy", std::move(text)});
     for (const Shown& shown : all) {
         put(sections, {shown.run.scene() + '-' + shown.engine, text_of(shown, folder)});
     }
