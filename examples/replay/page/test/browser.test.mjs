@@ -198,6 +198,23 @@ test("two boxes that a joint bends are drawn as one bar, and as boxes once it br
     await page.close();
 });
 
+test("boxes that a joint holds at a corner are drawn without a gap", async () => {
+    const page = await openMade({
+        name: "corner", times: [0, 1],
+        bodies: [
+            { name: "lying", half: [0.9, 0.1, 0.1], pose: () => [0, 0, 0, 1, 0, 0, 0] },
+            { name: "standing", half: [0.1, 0.1, 0.9], pose: () => [1, 0, -1, 1, 0, 0, 0] },
+        ],
+        joints: [{ name: "joint", a: 0, b: 1, in_a: [1, 0, 0], sample: () => ({}) }],
+    });
+    const drawn = await page.evaluate(() => replay.scene.shapes.map(({ local }) => [local.elements[12], local.elements[14], local.elements[0], local.elements[10]]));
+    const near = (values, wanted) => values.forEach((value, k) => assert.ok(Math.abs(value - wanted[k]) < 1e-6, `${values} for ${wanted}`));
+    near(drawn[0], [0.1, 0, 1, 0.1]); // middle along x and z, half lengths along x and z
+    near(drawn[1], [0, 0.1, 0.1, 1]);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+});
+
 test("it opens on the joint that took most; what only guides makes no tick and no colour, and can be chosen", async () => {
     const page = await openMade(kinds);
     const shown = await page.evaluate(() => ({

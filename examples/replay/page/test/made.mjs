@@ -6,7 +6,7 @@ import { gzipSync } from "node:zlib";
 const waves = Object.fromEntries(["kinetic", "plastic", "unexplained"].map((name, i) => [name, (t) => 50 + 40 * Math.sin(t + i)]));
 
 /**
- * @param bodies    [{ name, half, pose(t) }]: boxes, x y z and the turn w x y z
+ * @param bodies    [{ name, half, offset, pose(t) }]: boxes, x y z and the turn w x y z
  * @param joints    [{ name, a, b, in_a, turns, facts, sample(t) }]
  * @param energies  { name: of a time }
  * @param hash      (time, number) of each sample's poses
@@ -48,7 +48,7 @@ export function pack({ name, times, bodies, joints, energies = waves, events = [
     });
     const text = JSON.stringify({
         name, about: "", engine: "none", times, energies: Object.keys(energies), events,
-        bodies: bodies.map((body) => ({ name: body.name, moves: true, shapes: [{ kind: "box", size: body.half, pose: [0, 0, 0, 1, 0, 0, 0] }] })),
+        bodies: bodies.map((body) => ({ name: body.name, moves: true, shapes: [{ kind: "box", size: body.half, pose: body.offset ?? [0, 0, 0, 1, 0, 0, 0] }] })),
         joints: joints.map(({ name, a, b, in_a, turns = true, facts = [] }) => ({ name, a, b, in_a, turns, axis: "axis", facts })),
         columns: { low: columns.map((c) => c.low), step: columns.map((c) => c.step), order: columns.map(() => 1) },
     });
