@@ -224,22 +224,33 @@ void Recorder::sample_energies(const SteppedWorld& world) {
     book("unexplained", ledger.unexplained());
 }
 
-/// What flowed most; where nothing did, the moment or, without moments, the force that was largest.
-const Recorder::Axis& Recorder::governing(const SeenJoint& joint) {
-    return *std::max_element(
-        joint.axes.begin(), joint.axes.end(), [](const Axis& a, const Axis& b) {
-            const auto rank = [](const Axis& axis) {
-                return std::tuple(axis.flowed, axis.turns && axis.largest > 0, axis.largest);
-            };
-            return rank(a) < rank(b);
-        });
+/// What flowed most, and what flowed a hundredth of that at least; where nothing did, the largest
+/// force. Among them a moment, the largest, where there are any.
+std::vector<Curve> Recorder::curves(const SeenJoint& joint) {
+    std::vector<const Axis*> order;
+    for (const Axis& axis : joint.axes) order.push_back(&axis);
+    std::stable_sort(order.begin(), order.end(), [](const Axis* a, const Axis* b) {
+        const auto rank = [](const Axis& axis) {
+            return std::tuple(axis.flowed, axis.turns && axis.largest > 0, axis.largest);
+        };
+        return rank(*a) > rank(*b);
+    });
+    std::vector<Curve> result;
+    bool moment = false;
+    for (const Axis* axis : order) {
+        const bool flowed = axis->flowed > 0.01 * order.front()->flowed;
+        const bool loaded = axis->turns && axis->largest > 0 && !moment;
+        if (!result.empty() && !flowed && !loaded) continue;
+        result.push_back({axis->name, axis->turns, axis->force, axis->position});
+        moment = moment || axis->turns;
+    }
+    return result;
 }
 
 Recording Recorder::finish() const {
     Recording result = recording_;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-        const Axis& axis = governing(joints_[i]);
-        result.samples[i].curve = {axis.name, axis.turns, axis.force, axis.position};
+        result.samples[i].curves = curves(joints_[i]);
     }
     check(result);
     return result;

@@ -58,7 +58,7 @@ class Recorder {
     [[nodiscard]] Recording finish() const;
 
   private:
-    /// Of one axis of a joint, while it is not known which stands for it.
+    /// Of one axis of a joint, while it is not known whether it is shown.
     struct Axis {
         std::string name;
         bool turns = true;
@@ -80,7 +80,7 @@ class Recorder {
     void sample_bodies();
     void sample_joint(std::size_t number);
     void sample_energies(const SteppedWorld& world);
-    [[nodiscard]] static const Axis& governing(const SeenJoint& joint);
+    [[nodiscard]] static std::vector<Curve> curves(const SeenJoint& joint);
 
     RecorderParameters parameters_;
     Recording recording_;

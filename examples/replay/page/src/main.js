@@ -42,6 +42,7 @@ class Replay {
         this.time = recording.times[0];
         this.end = recording.times[recording.times.length - 1];
         this.joint = foremost(recording.joints);
+        this.axis = 0;
         this.marks = recording.events.filter(({ joint }) => !recording.joints[joint]?.helper);
         this.shown = undefined;
         this.energy?.destroy();
@@ -59,11 +60,12 @@ class Replay {
     show(recording, growing = false) {
         this.growing = growing;
         const grown = recording.name === this.recording.name && recording.joints.length === this.recording.joints.length;
-        const { time, joint, end } = this;
+        const { time, joint, axis, end } = this;
         this.scene.show(recording);
         this.take(recording);
         this.legend();
-        this.setJoint(grown && joint >= 0 ? joint : this.joint);
+        if (grown && joint >= 0) this.setJoint(joint, axis);
+        else this.setJoint(this.joint);
         $("follow").value = String(this.scene.followed);
         this.setTime(grown && time < end ? time : this.end);
     }
@@ -132,6 +134,7 @@ class Replay {
         $("speed").addEventListener("change", () => this.setSpeed(Number($("speed").value)));
         $("colour").addEventListener("change", () => this.setColour($("colour").value));
         $("joint").addEventListener("change", () => this.setJoint(Number($("joint").value)));
+        $("axis").addEventListener("change", () => this.setJoint(this.joint, Number($("axis").value)));
         $("follow").addEventListener("change", () => this.setFollowed(Number($("follow").value)));
         $("reset").addEventListener("click", () => this.scene.reset());
         $("compare").addEventListener("change", () => this.compare($("compare").files[0]));
@@ -201,10 +204,15 @@ class Replay {
         this.remember();
     }
 
-    setJoint(joint) {
+    setJoint(joint, axis = 0) {
         this.joint = joint;
+        const axes = this.recording.joints[joint]?.axes ?? [];
+        this.axis = axes[axis] ? axis : 0;
         if (joint >= 0) $("joint").value = String(joint);
-        this.curve.show(joint);
+        $("axis").replaceChildren(...axes.map((each, i) => option(i, each.axis)));
+        $("axis").value = String(this.axis);
+        $("axis").hidden = axes.length < 2;
+        this.curve.show(axes[this.axis]);
         this.facts();
         this.remember();
     }
@@ -239,11 +247,12 @@ class Replay {
         if (!joint) return;
         const i = this.index();
         const state = joint.state[i];
+        const { force, turns } = joint.axes[this.axis];
         const words = state & broken ? "broken" : state & unreliable ? "unreliable" : state & flowed ? "has flowed" : "holds";
         const rows = [
             ["state", words],
             ["utilisation", joint.utilisation[i].toFixed(3)],
-            [joint.turns ? "moment" : "force", short(joint.force[i], joint.turns ? "N m" : "N")],
+            [turns ? "moment" : "force", short(force[i], turns ? "N m" : "N")],
             ["strength left", state & broken ? "none" : `${Math.max(0, 100 * (1 - joint.utilisation[i])).toFixed(1)} %`],
             ["plastic travel", short(joint.plastic[i], joint.rotates ? "rad" : "m")],
             ["life left", Number.isNaN(joint.life[i]) ? "without end" : `${(100 * (1 - joint.life[i])).toFixed(1)} % of plastic travel`],
@@ -280,10 +289,10 @@ class Replay {
         }
     }
 
-    /** The state is in the address: t, speed, joint, colour, what is followed, camera. */
+    /** The state is in the address: t, speed, joint, axis, colour, what is followed, camera. */
     remember() {
         const state = new URLSearchParams(location.hash.slice(1)); // others have words there too
-        const own = { t: this.time.toFixed(5), speed: this.speed, joint: this.joint, colour: this.colour, follow: this.scene.followed, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") };
+        const own = { t: this.time.toFixed(5), speed: this.speed, joint: this.joint, axis: this.axis, colour: this.colour, follow: this.scene.followed, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") };
         for (const [key, value] of Object.entries(own)) state.set(key, value);
         history.replaceState(null, "", `#${state}`);
     }
@@ -294,7 +303,7 @@ class Replay {
         this.scene.setFollowed(-1);
         this.setSpeed(speeds.find((each) => Math.abs(each - number("speed")) < 1e-9) ?? 1);
         this.setColour(state.get("colour") === "plastic" ? "plastic" : "utilisation");
-        this.setJoint(this.recording.joints[number("joint")] ? number("joint") : this.joint);
+        this.setJoint(this.recording.joints[number("joint")] ? number("joint") : this.joint, number("axis"));
         this.setTime(Number.isFinite(number("t")) ? number("t") : this.time);
         const camera = (state.get("camera") ?? "").split(",").map(Number);
         if (camera.length === 6 && camera.every(Number.isFinite)) this.scene.setPose(camera);

@@ -116,11 +116,11 @@ export class CurvePlot {
         this.plot?.destroy();
         this.plot = undefined;
     }
-    show(number) {
+    /** @param shown  an axis of a joint */
+    show(shown) {
         this.destroy();
-        const joint = this.recording.joints[number];
-        if (!joint) return;
-        const { force, position, turns } = joint;
+        if (!shown) return;
+        const { axis: name, force, position, turns } = shown;
         // a curve that goes back and forth: uPlot's own paths want x to increase
         const curve = {
             hooks: {
@@ -152,13 +152,13 @@ export class CurvePlot {
                 mode: 2, width: widthOf(this.target), height: 190, legend: { show: false }, cursor: { drag: { x: false, y: false }, points: { show: false } },
                 scales: { x: { time: false, range: range(position) }, y: { range: range(force) } },
                 series: [{}, { paths: () => null, facets: [{ scale: "x", auto: false }, { scale: "y", auto: false }] }],
-                axes: [axis(turns ? `${joint.axis}: rotation [rad]` : `${joint.axis}: travel [m]`, true), axis(turns ? "moment [N m]" : "force [N]", true)],
+                axes: [axis(turns ? `${name}: rotation [rad]` : `${name}: travel [m]`, true), axis(turns ? "moment [N m]" : "force [N]", true)],
                 plugins: [curve],
             },
             [null, [position, force]], this.target,
         );
         this.dot = overlay(this.plot, "dot");
-        this.number = number;
+        this.shown = shown;
         this.update();
         this.plot.over.addEventListener("click", () => {
             const { left, top } = this.plot.cursor;
@@ -174,7 +174,7 @@ export class CurvePlot {
     }
     update() {
         if (!this.plot) return;
-        const { force, position } = this.recording.joints[this.number];
+        const { force, position } = this.shown;
         const i = this.index();
         put(this.dot, this.plot.valToPos(position[i], "x"), this.plot.valToPos(force[i], "y"));
     }

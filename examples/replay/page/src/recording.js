@@ -4,7 +4,7 @@
 
 export class RecordingError extends Error {}
 
-const magic = "ductrec2";
+const magic = "ductrec3";
 const noNumber = 65535;
 
 /** Bytes of base64 text. */
@@ -98,7 +98,8 @@ function read(all, letters) {
         if (body.moves) body.columns = Array.from({ length: 7 }, () => columns.take());
     }
     for (const joint of text.joints) {
-        take(["utilisation", "plastic", "absorbed", "residual", "state", "life", "force", "position"], joint);
+        take(["utilisation", "plastic", "absorbed", "residual", "state", "life"], joint);
+        for (const axis of joint.axes) take(["force", "position"], axis);
     }
     judge(text.joints);
     text.energies = text.energies.map((name) => ({ name, values: columns.take() }));
@@ -119,7 +120,7 @@ function judge(joints) {
     const fact = (joint, name) => joint.facts.find(([word]) => word.startsWith(name))?.[1] ?? "";
     for (const joint of joints) {
         joint.helper = fact(joint, "section").startsWith("none");
-        joint.rotates = joint.turns || fact(joint, "capacity, ") !== "";
+        joint.rotates = joint.axes[0].turns || fact(joint, "capacity, ") !== "";
     }
     const took = (joint) => joint.absorbed.at(-1) || 0;
     const bears = (joint) => (joint.plastic.at(-1) > 0 ? took(joint) / joint.plastic.at(-1) : Infinity);

@@ -51,7 +51,7 @@ const kinds = {
             name: "hinge", facts: [["section", "box 100 x 100 x 4 mm"], ["material", "S355"], ["capacity", "51.5 kN m"]],
             sample: (t) => ({ utilisation: 0.75, plastic: 0.3 * t, absorbed: 15450 * t, state: 1, force: -51.5e3, position: 0.3 * t, life: t / 2 }),
         },
-        { name: "foot", sample: (t) => ({ utilisation: 1, plastic: 0.01 * t, absorbed: 300 * t, state: t > 0.45 ? 3 : 1 }) },
+        { name: "foot", axes: [{ axis: "axial", turns: false, sample: (t) => ({ force: 1e3 * t, position: 1e-3 * t }) }], sample: (t) => ({ utilisation: 1, plastic: 0.01 * t, absorbed: 300 * t, state: t > 0.45 ? 3 : 1 }) },
     ].map((joint, a) => ({ ...joint, a, b: -1, in_a: [0, 0, 0] })),
     events: events([-0.01, "yielded", 4, "foot"], [0.1, "yielded", 0, "road"], [0.2, "yielded", 1, "guide"], [0.3, "yielded", 3, "hinge"], [0.5, "broke", 4, "foot"], [0.7, "unreliable", 2, "slider"]),
     energies: {
@@ -306,6 +306,25 @@ test("a click on a joint shows what it is made of, what it bears and what is lef
     await page.mouse.click(slider.x, slider.y);
     assert.equal((await factsOn(page)).force, "-2 kN");
     assert.equal((await factsOn(page))["plastic travel"], "0.012 m");
+    await page.close();
+});
+
+test("of a joint with several axes each can be shown", async () => {
+    const page = await openMade(kinds);
+    assert.equal(await page.isVisible("#axis"), false);
+    await page.selectOption("#joint", { label: "foot" });
+    await page.evaluate(() => replay.setTime(0.4));
+    assert.equal((await factsOn(page)).moment, "0 N m");
+    const dot = () => page.$eval("#curve .dot", (mark) => new DOMMatrix(mark.style.transform).m41);
+    const before = await dot();
+    await page.selectOption("#axis", { label: "axial" });
+    assert.equal((await factsOn(page)).force, "400 N");
+    assert.notEqual(await dot(), before);
+    const again = await browser.newPage();
+    await again.goto(page.url());
+    await again.waitForFunction(() => window.replay);
+    assert.equal((await factsOn(again)).force, "400 N");
+    await again.close();
     await page.close();
 });
 
