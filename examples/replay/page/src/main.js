@@ -26,6 +26,7 @@ function option(value, text) {
 class Replay {
     constructor(recording) {
         this.playing = false;
+        this.chosen = false; // the joint, by whoever looks
         this.speed = 1;
         this.colour = "utilisation";
         this.drawn = 0;
@@ -54,7 +55,7 @@ class Replay {
     }
 
     /**
-     * Another recording, or this one where it has grown: then the joint stays, and whoever was at its end is.
+     * Another recording, or this one where it has grown: then a joint that was chosen stays, and whoever was at its end is.
      * `growing`: it will be shown for a moment only, as when it plays.
      */
     show(recording, growing = false) {
@@ -64,7 +65,8 @@ class Replay {
         this.scene.show(recording);
         this.take(recording);
         this.legend();
-        if (grown && joint >= 0) this.setJoint(joint, axis);
+        this.chosen &&= grown;
+        if (this.chosen) this.setJoint(joint, axis);
         else this.setJoint(this.joint);
         $("follow").value = String(this.scene.followed);
         this.setTime(grown && time < end ? time : this.end);
@@ -102,7 +104,7 @@ class Replay {
             if (!this.marks.includes(event)) button.className = "helper";
             button.textContent = `${event.time.toFixed(3)} s  ${event.name} ${event.kind}${event.energy > 0 ? `, ${short(event.energy, "J")}` : ""}`;
             button.addEventListener("click", () => {
-                this.setJoint(event.joint);
+                this.choose(event.joint);
                 this.setTime(event.time);
             });
             line.append(button);
@@ -133,8 +135,8 @@ class Replay {
         $("scrub").addEventListener("input", () => this.setTime(Number($("scrub").value)));
         $("speed").addEventListener("change", () => this.setSpeed(Number($("speed").value)));
         $("colour").addEventListener("change", () => this.setColour($("colour").value));
-        $("joint").addEventListener("change", () => this.setJoint(Number($("joint").value)));
-        $("axis").addEventListener("change", () => this.setJoint(this.joint, Number($("axis").value)));
+        $("joint").addEventListener("change", () => this.choose(Number($("joint").value)));
+        $("axis").addEventListener("change", () => this.choose(this.joint, Number($("axis").value)));
         $("follow").addEventListener("change", () => this.setFollowed(Number($("follow").value)));
         $("reset").addEventListener("click", () => this.scene.reset());
         $("compare").addEventListener("change", () => this.compare($("compare").files[0]));
@@ -144,7 +146,7 @@ class Replay {
         canvas.addEventListener("click", (event) => {
             if (Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > 4) return;
             const joint = this.scene.pick(event);
-            if (joint >= 0) this.setJoint(joint);
+            if (joint >= 0) this.choose(joint);
         });
         this.scene.controls.addEventListener("end", () => this.remember());
         addEventListener("hashchange", () => this.restore());
@@ -202,6 +204,11 @@ class Replay {
         this.legend();
         this.draw();
         this.remember();
+    }
+
+    choose(joint, axis) {
+        this.chosen = true;
+        this.setJoint(joint, axis);
     }
 
     setJoint(joint, axis = 0) {
@@ -303,7 +310,8 @@ class Replay {
         this.scene.setFollowed(-1);
         this.setSpeed(speeds.find((each) => Math.abs(each - number("speed")) < 1e-9) ?? 1);
         this.setColour(state.get("colour") === "plastic" ? "plastic" : "utilisation");
-        this.setJoint(this.recording.joints[number("joint")] ? number("joint") : this.joint, number("axis"));
+        if (this.recording.joints[number("joint")]) this.choose(number("joint"), number("axis"));
+        else this.setJoint(this.joint);
         this.setTime(Number.isFinite(number("t")) ? number("t") : this.time);
         const camera = (state.get("camera") ?? "").split(",").map(Number);
         if (camera.length === 6 && camera.every(Number.isFinite)) this.scene.setPose(camera);

@@ -5,9 +5,10 @@ import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { resolve } from "node:path";
 import test, { after, before } from "node:test";
+import { gunzipSync } from "node:zlib";
 
 import { launch, pixelAt, pixels } from "./browser.mjs";
-import { pageOf } from "./made.mjs";
+import { pack, pageOf } from "./made.mjs";
 import { brokenColour, colourOf } from "../src/colours.js";
 
 const folder = resolve(process.env.REPLAY_DIR ?? ".");
@@ -325,6 +326,24 @@ test("of a joint with several axes each can be shown", async () => {
     await again.waitForFunction(() => window.replay);
     assert.equal((await factsOn(again)).force, "400 N");
     await again.close();
+    await page.close();
+});
+
+test("while a recording grows it shows the joint that took most, or the one that was chosen", async () => {
+    const took = [(t) => 10 * t, (t) => (t < 0.5 ? 0 : 100 * t), () => 0];
+    const upTo = (end) => ({
+        name: "grows", times: [0, 0.2, 0.4, 0.6, 0.8].filter((t) => t <= end), bodies: kinds.bodies,
+        joints: took.map((absorbed, a) => ({ name: `${a}`, a, b: -1, in_a: [0, 0, 0], sample: (t) => ({ absorbed: absorbed(t), plastic: absorbed(t) / 100 }) })),
+    });
+    const page = await openMade(upTo(0.4));
+    const joint = async (end) => {
+        await page.evaluate((bytes) => showRecording(Uint8Array.from(bytes), true), [...gunzipSync(pack(upTo(end)))]);
+        return page.evaluate(() => replay.joint);
+    };
+    assert.equal(await joint(0.4), 0);
+    assert.equal(await joint(0.6), 1);
+    await page.selectOption("#joint", { label: "2" });
+    assert.equal(await joint(0.8), 2);
     await page.close();
 });
 
