@@ -76,7 +76,7 @@ export class EnergyPlot {
         }
         const { bands, lines } = stacked(recording.energies);
         // the highest first, so that lower ones are painted over it
-        const all = [...bands.toReversed(), ...lines];
+        const all = [...[...bands].reverse(), ...lines];
         const series = all.map(({ name }) => ({
             label: name,
             stroke: colours[name] ?? "#999",
