@@ -68,7 +68,7 @@ struct JointSamples {
     std::vector<double> absorbed;       ///< [J]
     std::vector<double> residual;       ///< certificate [m/s | rad/s]
     std::vector<std::uint8_t> state;    ///< JointState, added up
-    std::vector<double> life; ///< share that is used, 1: it breaks; not a number: without end [-]
+    std::vector<double> life;  ///< share that is used, 1: it breaks; not a number: without end [-]
     std::vector<Curve> curves; ///< of what took most plastic work first; one at least
 };
 

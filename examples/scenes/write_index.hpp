@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // One page that shows what the scenes left: for each its picture in the gallery, what must come out
-// beside what came out, what its World does not vouch for, and links to the replays. The Charpy test
-// is on it where run.sh left it.
+// beside what came out, what its World does not vouch for, and links to the replays. The Charpy
+// test is on it where run.sh left it.
 #pragma once
 
 #include <filesystem>
