@@ -114,12 +114,14 @@ Json text_of(const Body& body, const std::vector<Pose>& poses) {
 Json text_of(const Joint& joint, const JointSamples& samples) {
     Json facts = Json::array();
     for (const Fact& fact : joint.facts) facts.push_back({fact.first, fact.second});
+    Json axes = Json::array();
+    for (const Curve& curve : samples.curves)
+        axes.push_back({{"axis", curve.axis}, {"turns", curve.turns}});
     return {{"name", joint.name},
             {"a", joint.a},
             {"b", joint.b},
             {"in_a", joint.in_a},
-            {"axis", samples.curve.axis},
-            {"turns", samples.curve.turns},
+            {"axes", std::move(axes)},
             {"facts", std::move(facts)}};
 }
 
@@ -153,8 +155,10 @@ void add_columns(Columns& columns, const Recording& recording) {
             samples.state, [](std::uint8_t state) { return state; }, 0, 1);
         columns.add(
             samples.life, [](double v) { return v; }, 0, 1 / levels);
-        columns.add(samples.curve.force);
-        columns.add(samples.curve.position);
+        for (const Curve& curve : samples.curves) {
+            columns.add(curve.force);
+            columns.add(curve.position);
+        }
     }
     for (const auto& energy : recording.energies) columns.add(energy.second);
     columns.add(
@@ -181,7 +185,7 @@ std::string laid_down(const Recording& recording) {
     for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
     for (const Event& event : recording.events) text["events"].push_back(text_of(event));
     const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-    std::string bytes = "ductrec2";
+    std::string bytes = "ductrec3";
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(char(words.size() >> shift & 0xff));
     return bytes + words + columns.bytes();
 }

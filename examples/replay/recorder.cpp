@@ -115,6 +115,7 @@ void Recorder::look(const SteppedWorld& world) {
                                      .name = event.name,
                                      .energy = event.report.absorbed_energy});
     }
+    for (SeenJoint& seen : joints_) book_axes(seen);
     constexpr double round_off = 1e-9;
     if (world.time() < next_ - round_off) return;
     next_ = (std::floor(world.time() * parameters_.rate + 1e-6) + 1) / parameters_.rate;
@@ -173,23 +174,35 @@ void Recorder::sample_joint(std::size_t number) {
     samples.state.push_back(
         std::uint8_t((flows ? flowed : holds) | (queries.broken() ? broken : holds) |
                      (queries.outcome() == Outcome::unreliable ? unreliable : holds)));
-    const auto book = [](Axis& axis, double force, double position, double plastic) {
-        axis.flowed += std::abs(force * (plastic - axis.plastic));
-        axis.plastic = plastic;
-        axis.largest = std::max(axis.largest, std::abs(force));
-        axis.force.push_back(force);
-        axis.position.push_back(position);
-    };
+    for (Axis& axis : seen.axes) {
+        axis.force.push_back(axis.last_force);
+        axis.position.push_back(axis.last_position);
+    }
+}
+
+/// What broke in this step bears nothing any more: the force before it counts too.
+void Recorder::Axis::book(double now_force, double now_position, double offset) {
+    flowed += std::max(std::abs(now_force), std::abs(last_force)) * std::abs(offset - plastic);
+    largest = std::max(largest, std::abs(now_force));
+    last_force = now_force;
+    last_position = now_position;
+    plastic = offset;
+}
+
+/// In each step: a joint may flow and break between two samples.
+void Recorder::book_axes(SeenJoint& seen) {
+    if (seen.queries == nullptr) return;
+    const JointQueries& queries = *seen.queries;
     if (const auto* link = dynamic_cast<const LinkQueries*>(&queries)) {
         std::size_t at = 0;
         for (const JointAxis axis : link->plastic_axes()) {
-            book(seen.axes[at++], link->force(axis), link->position(axis),
-                 link->plastic_offset(axis));
+            seen.axes[at++].book(link->force(axis), link->position(axis),
+                                 link->plastic_offset(axis));
         }
     } else if (const auto* axis = dynamic_cast<const AxisQueries*>(&queries)) {
-        book(seen.axes[0], axis->reaction(), axis->position(), axis->plastic_offset());
+        seen.axes[0].book(axis->reaction(), axis->position(), axis->plastic_offset());
     } else {
-        book(seen.axes[0], 0, queries.plastic_travel(), queries.plastic_travel());
+        seen.axes[0].book(0, queries.plastic_travel(), queries.plastic_travel());
     }
 }
 
@@ -211,22 +224,33 @@ void Recorder::sample_energies(const SteppedWorld& world) {
     book("unexplained", ledger.unexplained());
 }
 
-/// What flowed most; where nothing did, the moment or, without moments, the force that was largest.
-const Recorder::Axis& Recorder::governing(const SeenJoint& joint) {
-    return *std::max_element(
-        joint.axes.begin(), joint.axes.end(), [](const Axis& a, const Axis& b) {
-            const auto rank = [](const Axis& axis) {
-                return std::tuple(axis.flowed, axis.turns && axis.largest > 0, axis.largest);
-            };
-            return rank(a) < rank(b);
-        });
+/// What flowed most, and what flowed a hundredth of that at least; where nothing did, the largest
+/// force. Among them a moment, the largest, where there are any.
+std::vector<Curve> Recorder::curves(const SeenJoint& joint) {
+    std::vector<const Axis*> order;
+    for (const Axis& axis : joint.axes) order.push_back(&axis);
+    std::stable_sort(order.begin(), order.end(), [](const Axis* a, const Axis* b) {
+        const auto rank = [](const Axis& axis) {
+            return std::tuple(axis.flowed, axis.turns && axis.largest > 0, axis.largest);
+        };
+        return rank(*a) > rank(*b);
+    });
+    std::vector<Curve> result;
+    bool moment = false;
+    for (const Axis* axis : order) {
+        const bool flowed = axis->flowed > 0.01 * order.front()->flowed;
+        const bool loaded = axis->turns && axis->largest > 0 && !moment;
+        if (!result.empty() && !flowed && !loaded) continue;
+        result.push_back({axis->name, axis->turns, axis->force, axis->position});
+        moment = moment || axis->turns;
+    }
+    return result;
 }
 
 Recording Recorder::finish() const {
     Recording result = recording_;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-        const Axis& axis = governing(joints_[i]);
-        result.samples[i].curve = {axis.name, axis.turns, axis.force, axis.position};
+        result.samples[i].curves = curves(joints_[i]);
     }
     check(result);
     return result;

@@ -58,14 +58,16 @@ class Recorder {
     [[nodiscard]] Recording finish() const;
 
   private:
-    /// Of one axis of a joint, while it is not known which stands for it.
+    /// Of one axis of a joint, while it is not known whether it is shown.
     struct Axis {
         std::string name;
         bool turns = true;
         std::vector<double> force, position;
         double flowed = 0;  ///< force × plastic travel so far [J]
-        double largest = 0; ///< force × travel of the axis [J]
-        double plastic = 0; ///< plastic offset in the last sample [m | rad]
+        double largest = 0; ///< force so far [N | N m]
+        // of the last step
+        double last_force = 0, last_position = 0, plastic = 0; ///< [N | N m], [m | rad]
+        void book(double now_force, double now_position, double offset);
     };
     struct SeenJoint {
         const JointQueries* queries;
@@ -73,11 +75,12 @@ class Recorder {
         std::vector<Axis> axes;
     };
 
+    void book_axes(SeenJoint& seen);
     void sample(const SteppedWorld& world);
     void sample_bodies();
     void sample_joint(std::size_t number);
     void sample_energies(const SteppedWorld& world);
-    [[nodiscard]] static const Axis& governing(const SeenJoint& joint);
+    [[nodiscard]] static std::vector<Curve> curves(const SeenJoint& joint);
 
     RecorderParameters parameters_;
     Recording recording_;

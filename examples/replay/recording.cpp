@@ -51,10 +51,14 @@ void check(const Recording& recording) {
         const std::string name = "joint \"" + joint.name + "\"";
         known(joint.a, name);
         known(joint.b, name);
-        for (const auto* column :
-             {&samples.utilisation, &samples.plastic_travel, &samples.absorbed, &samples.residual,
-              &samples.life, &samples.curve.force, &samples.curve.position}) {
+        for (const auto* column : {&samples.utilisation, &samples.plastic_travel, &samples.absorbed,
+                                   &samples.residual, &samples.life}) {
             full(column->size(), name);
+        }
+        if (samples.curves.empty()) fail(recording, name + " has no curve");
+        for (const Curve& curve : samples.curves) {
+            full(curve.force.size(), name);
+            full(curve.position.size(), name);
         }
         full(samples.state.size(), name);
     }

@@ -52,7 +52,7 @@ struct Joint {
     std::vector<Fact> facts;
 };
 
-/// One axis of a joint that stands for it: what flowed most, else what was loaded most.
+/// Of one axis of a joint.
 struct Curve {
     std::string axis;             ///< as JointAxis names it, or "axis"
     bool turns = true;            ///< a moment over an angle
@@ -68,8 +68,8 @@ struct JointSamples {
     std::vector<double> absorbed;       ///< [J]
     std::vector<double> residual;       ///< certificate [m/s | rad/s]
     std::vector<std::uint8_t> state;    ///< JointState, added up
-    std::vector<double> life; ///< share that is used, 1: it breaks; not a number: without end [-]
-    Curve curve;
+    std::vector<double> life;  ///< share that is used, 1: it breaks; not a number: without end [-]
+    std::vector<Curve> curves; ///< of what took most plastic work first; one at least
 };
 
 struct Event {

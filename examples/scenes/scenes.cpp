@@ -123,7 +123,7 @@ int main(int argc, char** argv) try {
         [](const CLI::App*, const CLI::Error& error) { return std::string(error.what()) + '\n'; });
     CLI11_PARSE(app, argc, argv);
 
-    if (!out.empty()) write_index({}, out); // sooner than after all of them
+    if (!out.empty()) write_index({}, out); // fails sooner than after all of them
     bool right = true;
     std::string costs =
         "scene,engine,frame_s,frames,median_ms,dearest_ms,replays,largest_html_B,largest_glb_B\n";

@@ -95,8 +95,8 @@ TEST_CASE("replay: what is recorded is what happened", "[replay]") {
     CHECK(bar.absorbed.back() == Approx(96).epsilon(1e-9));
     CHECK(bar.plastic_travel.back() == Approx(1.5).epsilon(1e-9));
     CHECK(bar.state.back() == (replay::flowed | replay::broken));
-    CHECK(std::abs(bar.curve.force[1]) == Approx(64));
-    CHECK(bar.curve.turns);
+    CHECK(std::abs(bar.curves.at(0).force[1]) == Approx(64));
+    CHECK(bar.curves.at(0).turns);
     REQUIRE(bar.life.size() == seen.times.size());
     CHECK(bar.life.back() == 1);
     CHECK(bar.life[3] == Approx(bar.plastic_travel[3] / 1.5));
@@ -121,8 +121,8 @@ TEST_CASE("replay: what is recorded is what happened", "[replay]") {
     replay::write_glb(seen, "replay_rotor.glb");
     nlohmann::json expected{{"times", seen.times},
                             {"absorbed", bar.absorbed},
-                            {"force", bar.curve.force},
-                            {"position", bar.curve.position},
+                            {"force", bar.curves.at(0).force},
+                            {"position", bar.curves.at(0).position},
                             {"broke", seen.events[1].time},
                             {"energies", nlohmann::json::object()},
                             {"turn", nlohmann::json::array()}};

@@ -21,16 +21,54 @@ function boxOf({ shapes }) {
     return off < 1e-9 ? size : undefined;
 }
 
-/** The end at which a point lies: the axis of the body and its sign; the longest of several. */
-function endAt(half, point) {
+const othersOf = (k) => [0, 1, 2].filter((each) => each !== k);
+const unit = (k) => [0, 1, 2].map((each) => (each === k ? 1 : 0));
+
+/**
+ * The end at which a point lies: the axis of the body and its sign; the longest of several.
+ * @param within  so far from it, by the axis
+ */
+function endAt(half, point, within = (k) => Math.max(0.1 * half[k], ...othersOf(k).map((each) => 0.5 * half[each]))) {
     let found;
     for (let k = 0; k < 3; ++k) {
-        const others = [0, 1, 2].filter((each) => each !== k);
-        const gap = Math.abs(point[k]) - half[k];
-        const section = Math.max(...others.map((each) => half[each]));
-        if (Math.abs(gap) > Math.max(0.1 * half[k], 0.5 * section)) continue;
+        const others = othersOf(k);
+        if (Math.abs(Math.abs(point[k]) - half[k]) > within(k)) continue;
         if (others.some((each) => Math.abs(point[each]) > 1.01 * half[each] + 1e-9)) continue;
         if (!found || half[k] > half[found.axis]) found = { axis: k, sign: Math.sign(point[k]) };
+    }
+    return found;
+}
+
+/**
+ * Of each body that is one box: `low` and `high` along its axes, drawn up to where joints hold it and, where it meets
+ * another at a corner, as far as the half of that one; else as it is. Undefined of another body.
+ */
+export function reaches({ bodies, joints }) {
+    const poses = bodies.map((body) => poseAt(body, start, new Float64Array(7)));
+    const boxes = bodies.map(({ shapes }) => (shapes.length === 1 && shapes[0].kind === "box" ? shapes[0] : undefined));
+    const found = boxes.map((box) => box && { low: box.size.map((v) => -v), high: [...box.size] });
+    const into = (pose, point) => turned(pose, point.map((v, k) => v - pose[k]), -1);
+    for (const { a, b, in_a, helper } of joints) {
+        if (a < 0 || helper) continue;
+        const place = turned(poses[a], in_a).map((v, k) => v + poses[a][k]);
+        const ends = [a, b].map((body) => {
+            if (!boxes[body]) return undefined;
+            const { pose, size } = boxes[body];
+            const thin = Math.min(...size);
+            const point = into(pose, into(poses[body], place));
+            const end = endAt(size, point, (k) => (size[k] > 1.01 * thin ? Math.max(0.1 * size[k], 1.5 * thin) : -1));
+            return end && { ...end, body, thin, at: Math.abs(point[end.axis]), along: turned(poses[body], turned(pose, unit(end.axis))) };
+        });
+        ends.forEach((end, i) => {
+            if (!end) return;
+            const other = ends[1 - i];
+            const corner = other && Math.abs(end.along.reduce((sum, v, k) => sum + v * other.along[k], 0)) < 0.99;
+            const { low, high } = found[end.body];
+            const { axis, sign } = end;
+            const to = end.at + (corner ? other.thin : 0);
+            if (sign > 0) high[axis] = Math.max(high[axis], to);
+            else low[axis] = Math.min(low[axis], -to);
+        });
     }
     return found;
 }
@@ -42,6 +80,7 @@ function endAt(half, point) {
  */
 export function chains({ bodies, joints }, holds = () => true) {
     const halves = bodies.map(boxOf);
+    const drawn = reaches({ bodies, joints });
     const poses = bodies.map((body) => poseAt(body, start, new Float64Array(7)));
     const links = bodies.map(() => []); // of each body: { axis, sign, to, joint, at }
     joints.forEach((joint, number) => {
@@ -53,8 +92,7 @@ export function chains({ bodies, joints }, holds = () => true) {
         if (!endA || !endB || endA.axis !== endB.axis || endA.sign === endB.sign) return;
         // one section, and axes that agree
         for (let k = 0; k < 3; ++k) {
-            const axis = [0, 1, 2].map((each) => (each === k ? 1 : 0));
-            const [u, v] = [turned(poses[a], axis), turned(poses[b], axis)];
+            const [u, v] = [turned(poses[a], unit(k)), turned(poses[b], unit(k))];
             if (u[0] * v[0] + u[1] * v[1] + u[2] * v[2] < 0.999) return;
             if (k !== endA.axis && Math.abs(halves[a][k] - halves[b][k]) > 1e-6 * halves[a][k]) return;
         }
@@ -78,7 +116,7 @@ export function chains({ bodies, joints }, holds = () => true) {
             const next = usable[body].find((link) => link !== entry && usable[link.to].some(({ joint }) => joint === link.joint));
             const { axis } = entry ?? next;
             const sign = next ? next.sign : -entry.sign;
-            const end = (link, side) => [0, 1, 2].map((k) => (k === axis ? link?.at[k] ?? side * halves[body][k] : 0));
+            const end = (link, side) => [0, 1, 2].map((k) => (k === axis ? link?.at[k] ?? drawn[body][side > 0 ? "high" : "low"][k] : 0));
             chain.push({ body, axis, sign, half: halves[body], entry: end(entry, -sign), exit: end(next, sign) });
             from = body;
             body = next ? next.to : -1;

@@ -4,7 +4,7 @@
 // a page that makes its recordings itself and calls `showRecording`.
 import { css, gradient, brokenColour, lostColour } from "./colours.js";
 import { CurvePlot, EnergyPlot, short } from "./plots.js";
-import { broken, decode, decodeLaidDown, firstDifference, flowed, fromBase64, ofPage, placeOf, RecordingError, unreliable } from "./recording.js";
+import { broken, decode, decodeLaidDown, firstDifference, flowed, foremost, fromBase64, ofPage, placeOf, RecordingError, unreliable } from "./recording.js";
 import { Scene } from "./scene.js";
 
 const $ = (id) => document.getElementById(id);
@@ -12,6 +12,7 @@ const speeds = [1 / 1000, 1 / 300, 1 / 100, 1 / 30, 1 / 10, 1 / 4, 1 / 2, 1, 2, 
 
 function say(message) {
     $("message").textContent = message;
+    $("message").className = "";
     $("message").hidden = false;
 }
 
@@ -25,6 +26,7 @@ function option(value, text) {
 class Replay {
     constructor(recording) {
         this.playing = false;
+        this.chosen = false; // the joint, by whoever looks
         this.speed = 1;
         this.colour = "utilisation";
         this.drawn = 0;
@@ -33,8 +35,6 @@ class Replay {
         this.take(recording);
         this.listen();
         this.restore();
-        this.setJoint(this.joint);
-        this.setTime(this.time);
         this.loop();
     }
 
@@ -42,8 +42,9 @@ class Replay {
         this.recording = recording;
         this.time = recording.times[0];
         this.end = recording.times[recording.times.length - 1];
-        const events = recording.events.find((event) => event.joint >= 0);
-        this.joint = events ? events.joint : recording.joints.length ? 0 : -1;
+        this.joint = foremost(recording.joints);
+        this.axis = 0;
+        this.marks = recording.events.filter(({ joint }) => !recording.joints[joint]?.helper);
         this.shown = undefined;
         this.energy?.destroy();
         this.curve?.destroy();
@@ -54,17 +55,19 @@ class Replay {
     }
 
     /**
-     * Another recording, or this one where it has grown: then the joint stays, and whoever was at its end is.
+     * Another recording, or this one where it has grown: then a joint that was chosen stays, and whoever was at its end is.
      * `growing`: it will be shown for a moment only, as when it plays.
      */
     show(recording, growing = false) {
         this.growing = growing;
         const grown = recording.name === this.recording.name && recording.joints.length === this.recording.joints.length;
-        const { time, joint, end } = this;
+        const { time, joint, axis, end } = this;
         this.scene.show(recording);
         this.take(recording);
         this.legend();
-        this.setJoint(grown && joint >= 0 ? joint : this.joint);
+        this.chosen &&= grown;
+        if (this.chosen) this.setJoint(joint, axis);
+        else this.setJoint(this.joint);
         $("follow").value = String(this.scene.followed);
         this.setTime(grown && time < end ? time : this.end);
     }
@@ -82,20 +85,26 @@ class Replay {
         for (const list of ["follow", "joint", "ticks", "events"]) $(list).textContent = "";
         $("follow").append(option(-1, "nothing"));
         recording.bodies.forEach((body, i) => body.moves && $("follow").append(option(i, body.name)));
-        recording.joints.forEach((joint, i) => $("joint").append(option(i, joint.name)));
+        const helpers = document.createElement("optgroup");
+        helpers.label = "what only guides";
+        recording.joints.forEach((joint, i) => (joint.helper ? helpers : $("joint")).append(option(i, joint.name)));
+        if (helpers.firstChild) $("joint").append(helpers);
         const start = recording.times[0];
         const span = this.end - start || 1;
-        for (const event of recording.events) {
+        for (const event of this.marks) {
             const tick = document.createElement("i");
             tick.className = event.kind;
             tick.title = `${event.name} ${event.kind}, ${event.time.toFixed(4)} s`;
-            tick.style.left = `${(100 * (event.time - start)) / span}%`;
+            tick.style.left = `${Math.max(0, (100 * (event.time - start)) / span)}%`;
             $("ticks").append(tick);
+        }
+        for (const event of recording.events) {
             const line = document.createElement("li");
             const button = document.createElement("button");
-            button.textContent = `${event.time.toFixed(3)} s  ${event.name} ${event.kind}${event.energy > 0 ? `, ${short(event.energy)}J` : ""}`;
+            if (!this.marks.includes(event)) button.className = "helper";
+            button.textContent = `${event.time.toFixed(3)} s  ${event.name} ${event.kind}${event.energy > 0 ? `, ${short(event.energy, "J")}` : ""}`;
             button.addEventListener("click", () => {
-                this.setJoint(event.joint);
+                this.choose(event.joint);
                 this.setTime(event.time);
             });
             line.append(button);
@@ -108,12 +117,15 @@ class Replay {
 
     legend() {
         const plastic = this.colour === "plastic";
-        const most = plastic ? `${short(this.scene.largestTravel)} rad or m` : "1 (flows)";
+        const travels = Object.entries(this.scene.largest).filter(([, most]) => most > 0).map(([unit, most]) => short(most, unit));
+        const ends = plastic ? travels : ["1 (flows)"];
+        const kinds = [...new Set(this.marks.map(({ kind }) => kind))]; // words of the library
         $("legend").innerHTML = `<div>${plastic ? "plastic travel" : "utilisation of strength"}</div>
-            <div class="bar" style="background:${gradient}"></div><div class="ends"><span>0</span><span></span></div>
+            <div class="bar" style="background:${gradient}"></div>
+            ${ends.map((end) => `<div class="ends"><span>0</span> <span>${end}</span></div>`).join("")}
             <span style="color:${css(brokenColour)}">&#9679;</span> broken
-            <span style="color:${css(lostColour)}">&#9679;</span> unreliable`;
-        $("legend").querySelector(".ends").lastChild.textContent = most;
+            <span style="color:${css(lostColour)}">&#9679;</span> unreliable
+            <div>${kinds.map((kind) => `<i class="${kind}"></i> ${kind}`).join(" ")}</div>`;
     }
 
     listen() {
@@ -123,8 +135,9 @@ class Replay {
         $("scrub").addEventListener("input", () => this.setTime(Number($("scrub").value)));
         $("speed").addEventListener("change", () => this.setSpeed(Number($("speed").value)));
         $("colour").addEventListener("change", () => this.setColour($("colour").value));
-        $("joint").addEventListener("change", () => this.setJoint(Number($("joint").value)));
-        $("follow").addEventListener("change", () => this.scene.setFollowed(Number($("follow").value)));
+        $("joint").addEventListener("change", () => this.choose(Number($("joint").value)));
+        $("axis").addEventListener("change", () => this.choose(this.joint, Number($("axis").value)));
+        $("follow").addEventListener("change", () => this.setFollowed(Number($("follow").value)));
         $("reset").addEventListener("click", () => this.scene.reset());
         $("compare").addEventListener("change", () => this.compare($("compare").files[0]));
         const canvas = this.scene.renderer.domElement;
@@ -133,17 +146,21 @@ class Replay {
         canvas.addEventListener("click", (event) => {
             if (Math.hypot(event.clientX - down.clientX, event.clientY - down.clientY) > 4) return;
             const joint = this.scene.pick(event);
-            if (joint >= 0) this.setJoint(joint);
+            if (joint >= 0) this.choose(joint);
         });
         this.scene.controls.addEventListener("end", () => this.remember());
+        addEventListener("hashchange", () => this.restore());
+        matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+            for (const { plot } of [this.energy, this.curve]) plot?.redraw(false, true);
+        });
         addEventListener("keydown", (event) => {
-            if (event.target.closest?.("select, input[type=file]")) return;
+            if (event.target.closest?.(`select, input[type=file]${event.key === " " ? ", button" : ""}`)) return;
             const keys = {
                 " ": () => this.play(!this.playing), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1),
                 Home: () => this.setTime(this.recording.times[0]), End: () => this.setTime(this.end),
                 r: () => this.scene.reset(), "+": () => this.faster(1), "-": () => this.faster(-1), n: () => this.nextEvent(),
             };
-            if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
+            if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
             event.preventDefault();
             keys[event.key]();
         });
@@ -155,7 +172,7 @@ class Replay {
     }
 
     nextEvent() {
-        const next = this.recording.events.find((event) => event.time > this.time + 1e-9);
+        const next = this.marks.find((event) => event.time > this.time + 1e-9);
         if (next) this.setTime(next.time);
     }
 
@@ -189,11 +206,27 @@ class Replay {
         this.remember();
     }
 
-    setJoint(joint) {
+    choose(joint, axis) {
+        this.chosen = true;
+        this.setJoint(joint, axis);
+    }
+
+    setJoint(joint, axis = 0) {
         this.joint = joint;
+        const axes = this.recording.joints[joint]?.axes ?? [];
+        this.axis = axes[axis] ? axis : 0;
         if (joint >= 0) $("joint").value = String(joint);
-        this.curve.show(joint);
+        $("axis").replaceChildren(...axes.map((each, i) => option(i, each.axis)));
+        $("axis").value = String(this.axis);
+        $("axis").hidden = axes.length < 2;
+        this.curve.show(axes[this.axis]);
         this.facts();
+        this.remember();
+    }
+
+    setFollowed(body) {
+        this.scene.setFollowed(body);
+        $("follow").value = String(body);
         this.remember();
     }
 
@@ -221,16 +254,16 @@ class Replay {
         if (!joint) return;
         const i = this.index();
         const state = joint.state[i];
+        const { force, turns } = joint.axes[this.axis];
         const words = state & broken ? "broken" : state & unreliable ? "unreliable" : state & flowed ? "has flowed" : "holds";
-        const unit = joint.turns ? ["N m", "rad"] : ["N", "m"];
         const rows = [
             ["state", words],
             ["utilisation", joint.utilisation[i].toFixed(3)],
-            [joint.turns ? "moment" : "force", `${short(joint.force[i])} ${unit[0]}`],
+            [turns ? "moment" : "force", short(force[i], turns ? "N m" : "N")],
             ["strength left", state & broken ? "none" : `${Math.max(0, 100 * (1 - joint.utilisation[i])).toFixed(1)} %`],
-            ["plastic travel", `${short(joint.plastic[i])} ${unit[1]}`],
+            ["plastic travel", short(joint.plastic[i], joint.rotates ? "rad" : "m")],
             ["life left", Number.isNaN(joint.life[i]) ? "without end" : `${(100 * (1 - joint.life[i])).toFixed(1)} % of plastic travel`],
-            ["absorbed", `${short(joint.absorbed[i])} J`],
+            ["absorbed", short(joint.absorbed[i], "J")],
             ["certificate", short(joint.residual[i])],
             ...joint.facts,
         ];
@@ -263,10 +296,10 @@ class Replay {
         }
     }
 
-    /** The state is in the address: t, speed, joint, colour, camera. */
+    /** The state is in the address: t, speed, joint, axis, colour, what is followed, camera. */
     remember() {
         const state = new URLSearchParams(location.hash.slice(1)); // others have words there too
-        const own = { t: this.time.toFixed(5), speed: this.speed, joint: this.joint, colour: this.colour, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") };
+        const own = { t: this.time.toFixed(5), speed: this.speed, joint: this.joint, axis: this.axis, colour: this.colour, follow: this.scene.followed, camera: this.scene.pose().map((v) => v.toFixed(3)).join(",") };
         for (const [key, value] of Object.entries(own)) state.set(key, value);
         history.replaceState(null, "", `#${state}`);
     }
@@ -274,17 +307,15 @@ class Replay {
     restore() {
         const state = new URLSearchParams(location.hash.slice(1));
         const number = (key) => (state.has(key) ? Number(state.get(key)) : NaN);
-        if (Number.isFinite(number("t"))) this.time = number("t");
-        if (this.recording.joints[number("joint")]) this.joint = number("joint");
+        this.scene.setFollowed(-1);
+        this.setSpeed(speeds.find((each) => Math.abs(each - number("speed")) < 1e-9) ?? 1);
+        this.setColour(state.get("colour") === "plastic" ? "plastic" : "utilisation");
+        if (this.recording.joints[number("joint")]) this.choose(number("joint"), number("axis"));
+        else this.setJoint(this.joint);
+        this.setTime(Number.isFinite(number("t")) ? number("t") : this.time);
         const camera = (state.get("camera") ?? "").split(",").map(Number);
         if (camera.length === 6 && camera.every(Number.isFinite)) this.scene.setPose(camera);
-        const speed = speeds.find((each) => Math.abs(each - number("speed")) < 1e-9);
-        const colour = state.get("colour") === "plastic" ? "plastic" : "utilisation";
-        this.speed = speed ?? 1;
-        $("speed").value = String(this.speed);
-        this.colour = colour;
-        $("colour").value = colour;
-        this.legend();
+        this.setFollowed(this.recording.bodies[number("follow")]?.moves ? number("follow") : -1);
     }
 
     /** Drawn coarser while it plays where frames take longer than 1/30 s, sharp when it stands. */
@@ -325,6 +356,7 @@ window.showRecording = (bytes, growing) => {
 };
 
 async function start() {
+    $("message").hidden = true; // that the script does not run
     if (document.getElementById("live")) return;
     try {
         const script = document.getElementById("recording");

@@ -5,21 +5,21 @@ import uPlot from "uplot";
 
 const colours = {
     kinetic: "#2f7ed8", potential: "#7aa6c2", elastic: "#2aa198", plastic: "#d33c3c", friction: "#b58900",
-    contact: "#cb6b16", joints: "#8a63b5", integration: "#8f8f8f", damping: "#5b8c5a", unexplained: "#e000a0",
+    contact: "#cb6b16", joints: "#8a63b5", integration: "#8f8f8f", damping: "#5b8c5a", members: "#6d4c41", vibration: "#00acc1",
+    sleep: "#9e9d24", supplied: "#5c6bc0", unexplained: "#e000a0",
 };
 
 const ink = () => getComputedStyle(document.body).color;
 const line = () => getComputedStyle(document.body).getPropertyValue("--line");
-const axis = (label) => ({ label, labelSize: 16, labelFont: "11px system-ui", font: "11px system-ui", stroke: ink, grid: { stroke: line }, ticks: { stroke: line }, size: 52 });
+const axis = (label, values) => ({ label, ...values && { values: (_, ticks) => ticks.map((tick) => short(tick)) }, labelSize: 16, labelFont: "11px system-ui", font: "11px system-ui", stroke: ink, grid: { stroke: line }, ticks: { stroke: line }, size: 52 });
 
-/** 12345.6 -> "12.3 k" */
-export function short(value) {
+/** 12345.6, "N m" -> "12.3 kN m" */
+export function short(value, unit = "") {
     if (!Number.isFinite(value)) return "-";
     const size = Math.abs(value);
-    for (const [by, unit] of [[1e9, "G"], [1e6, "M"], [1e3, "k"]]) {
-        if (size >= by) return `${Number((value / by).toPrecision(3))} ${unit}`;
-    }
-    return size === 0 || size >= 1e-3 ? `${Number(value.toPrecision(3))}` : value.toExponential(1);
+    const [by, prefix] = [[1e9, "G"], [1e6, "M"], [1e3, "k"]].find(([by]) => size >= by) ?? [1, ""];
+    const digits = size === 0 || size >= 1e-3 ? Number((value / by).toPrecision(3)) : value.toExponential(1);
+    return `${digits} ${prefix}${unit}`.trimEnd();
 }
 
 function widthOf(target) {
@@ -45,48 +45,52 @@ function put(mark, x, y) {
     mark.style.transform = `translate(${x}px, ${y}px)`;
 }
 
-/** Where each energy ends when all are stacked; what is negative is drawn as nothing. */
+/**
+ * Where each energy that there is ends when all are stacked, what is negative below zero; the potential one from the
+ * least that it comes to. What was supplied, so much less, is the upper edge less the lower one: a line of its own.
+ */
 export function stacked(energies) {
-    const shown = energies.filter(({ name }) => name !== "supplied" && name !== "unexplained");
-    const count = shown.length ? shown[0].values.length : 0;
-    const top = new Float64Array(count);
-    return shown.map(({ name, values }) => {
-        const base = name === "potential" ? values.reduce((a, b) => (b < a ? b : a), Infinity) : 0;
-        for (let i = 0; i < count; ++i) top[i] += Math.max(0, values[i] - base);
-        return { name, values: Array.from(top) };
-    });
+    const potential = energies.find(({ name }) => name === "potential")?.values ?? [0];
+    const base = potential.reduce((a, b) => (b < a ? b : a));
+    const lines = ["supplied", "unexplained"];
+    const [above, below] = [[], []];
+    const shown = energies.filter(({ name, values }) => !lines.includes(name) && values.some((v) => v !== 0));
+    const bands = shown.map(({ name, values }) => ({
+        name, values: Array.from(values, (v, i) => {
+            const own = name === "potential" ? v - base : v;
+            const edge = own < 0 ? below : above;
+            return (edge[i] = (edge[i] ?? 0) + own);
+        }),
+    }));
+    const rest = energies.filter(({ name }) => lines.includes(name));
+    return { bands, lines: rest.map(({ name, values }) => ({ name, values: Array.from(values, (v) => (name === "supplied" ? v - base : v)) })) };
 }
 
 export class EnergyPlot {
     constructor(target, recording, { time, setTime }) {
         this.time = time;
         target.textContent = "";
-        const bands = stacked(recording.energies);
-        const unexplained = recording.energies.find(({ name }) => name === "unexplained");
-        if (bands.length === 0) {
+        if (recording.energies.length === 0) {
             target.textContent = "no ledger was kept";
             return;
         }
+        const { bands, lines } = stacked(recording.energies);
         // the highest first, so that lower ones are painted over it
-        const order = bands.map((_, i) => bands.length - 1 - i);
-        const series = order.map((i) => ({
-            label: bands[i].name,
-            stroke: colours[bands[i].name] ?? "#999",
-            fill: colours[bands[i].name] ?? "#999",
-            width: 1,
+        const all = [...[...bands].reverse(), ...lines];
+        const series = all.map(({ name }) => ({
+            label: name,
+            stroke: colours[name] ?? "#999",
+            ...(bands.some((band) => band.name === name) ? { fill: colours[name] ?? "#999", width: 1 } : { width: 2 }),
+            ...name === "supplied" && { dash: [6, 4] },
             points: { show: false },
-            value: (_, __, ___, at) => (at == null ? "" : `${short(recording.energies.find((e) => e.name === bands[i].name).values[at])} J`),
+            value: (_, __, ___, at) => (at == null ? "" : short(recording.energies.find((e) => e.name === name).values[at], "J")),
         }));
-        const data = [Array.from(recording.times), ...order.map((i) => bands[i].values)];
-        if (unexplained) {
-            series.push({ label: "unexplained", stroke: colours.unexplained, width: 2, points: { show: false }, value: (_, v) => (v == null ? "" : `${short(v)} J`) });
-            data.push(Array.from(unexplained.values));
-        }
+        const data = [Array.from(recording.times), ...all.map(({ values }) => values)];
         this.plot = new uPlot(
             {
                 width: widthOf(target), height: 210, cursor: { drag: { x: false, y: false } }, scales: { x: { time: false } },
                 series: [{ label: "time", value: (_, v) => (v == null ? "" : `${v.toFixed(3)} s`) }, ...series],
-                axes: [axis("time [s]"), { ...axis("energy [J]"), values: (_, ticks) => ticks.map(short) }],
+                axes: [axis("time [s]"), axis("energy [J]", true)],
             },
             data, target,
         );
@@ -112,11 +116,11 @@ export class CurvePlot {
         this.plot?.destroy();
         this.plot = undefined;
     }
-    show(number) {
+    /** @param shown  an axis of a joint */
+    show(shown) {
         this.destroy();
-        const joint = this.recording.joints[number];
-        if (!joint) return;
-        const { force, position, turns } = joint;
+        if (!shown) return;
+        const { axis: name, force, position, turns } = shown;
         // a curve that goes back and forth: uPlot's own paths want x to increase
         const curve = {
             hooks: {
@@ -148,16 +152,13 @@ export class CurvePlot {
                 mode: 2, width: widthOf(this.target), height: 190, legend: { show: false }, cursor: { drag: { x: false, y: false }, points: { show: false } },
                 scales: { x: { time: false, range: range(position) }, y: { range: range(force) } },
                 series: [{}, { paths: () => null, facets: [{ scale: "x", auto: false }, { scale: "y", auto: false }] }],
-                axes: [
-                    { ...axis(turns ? `${joint.axis}: rotation [rad]` : `${joint.axis}: travel [m]`), values: (_, ticks) => ticks.map(short) },
-                    { ...axis(turns ? "moment [N m]" : "force [N]"), values: (_, ticks) => ticks.map(short) },
-                ],
+                axes: [axis(turns ? `${name}: rotation [rad]` : `${name}: travel [m]`, true), axis(turns ? "moment [N m]" : "force [N]", true)],
                 plugins: [curve],
             },
             [null, [position, force]], this.target,
         );
         this.dot = overlay(this.plot, "dot");
-        this.number = number;
+        this.shown = shown;
         this.update();
         this.plot.over.addEventListener("click", () => {
             const { left, top } = this.plot.cursor;
@@ -173,7 +174,7 @@ export class CurvePlot {
     }
     update() {
         if (!this.plot) return;
-        const { force, position } = this.recording.joints[this.number];
+        const { force, position } = this.shown;
         const i = this.index();
         put(this.dot, this.plot.valToPos(position[i], "x"), this.plot.valToPos(force[i], "y"));
     }

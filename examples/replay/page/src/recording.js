@@ -4,7 +4,7 @@
 
 export class RecordingError extends Error {}
 
-const magic = "ductrec2";
+const magic = "ductrec3";
 const noNumber = 65535;
 
 /** Bytes of base64 text. */
@@ -98,8 +98,10 @@ function read(all, letters) {
         if (body.moves) body.columns = Array.from({ length: 7 }, () => columns.take());
     }
     for (const joint of text.joints) {
-        take(["utilisation", "plastic", "absorbed", "residual", "state", "life", "force", "position"], joint);
+        take(["utilisation", "plastic", "absorbed", "residual", "state", "life"], joint);
+        for (const axis of joint.axes) take(["force", "position"], axis);
     }
+    judge(text.joints);
     text.energies = text.energies.map((name) => ({ name, values: columns.take() }));
     const low = columns.take();
     const high = columns.take();
@@ -107,6 +109,34 @@ function read(all, letters) {
     text.times = Float64Array.from(text.times);
     delete text.columns;
     return text;
+}
+
+/**
+ * Tells of each joint whether it only guides or drives what is shown (`helper`): it says that its section is none, or
+ * what it flows at and what it took are nothing beside the others'. And whether its plastic travel is an angle
+ * (`rotates`): of one with several axes it is an equivalent one, of its law, which is told in bending.
+ */
+function judge(joints) {
+    const fact = (joint, name) => joint.facts.find(([word]) => word.startsWith(name))?.[1] ?? "";
+    for (const joint of joints) {
+        joint.helper = fact(joint, "section").startsWith("none");
+        joint.rotates = joint.axes[0].turns || fact(joint, "capacity, ") !== "";
+    }
+    const took = (joint) => joint.absorbed.at(-1) || 0;
+    const bears = (joint) => (joint.plastic.at(-1) > 0 ? took(joint) / joint.plastic.at(-1) : Infinity);
+    const shown = joints.filter((joint) => !joint.helper && bears(joint) < Infinity);
+    const nothing = (of) => 1e-3 * Math.max(0, ...shown.map(of));
+    const [weak, little] = [nothing(bears), nothing(took)];
+    for (const joint of shown) joint.helper = bears(joint) < weak && took(joint) < little;
+}
+
+/** The joint that took most or, where none took any, was loaded most; none of the helpers where there are others. -1: there is none. */
+export function foremost(joints) {
+    const largest = (values) => values.reduce((a, b) => (b > a ? b : a), 0);
+    const rank = (joint) => [joint.helper ? 0 : 1, joint.absorbed.at(-1) || 0, largest(joint.utilisation)];
+    const ranks = joints.map(rank);
+    const over = (a, b) => a[0] - b[0] || a[1] - b[1] || a[2] - b[2];
+    return ranks.reduce((best, each, i) => (best < 0 || over(each, ranks[best]) > 0 ? i : best), -1);
 }
 
 /** Sample before `time` and the share of the way to the next one. */

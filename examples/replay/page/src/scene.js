@@ -7,7 +7,7 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
-import { chains } from "./chains.js";
+import { chains, reaches } from "./chains.js";
 import { brokenColour, colourOf, lostColour, stillColour } from "./colours.js";
 import { broken, placeOf, poseAt, unreliable } from "./recording.js";
 
@@ -198,7 +198,11 @@ export class Scene {
         const parts = ({ bodies, joints }) => JSON.stringify([bodies.map(({ name, shapes }) => [name, shapes]), joints.map(({ name }) => name)]);
         const same = this.recording && parts(recording) === parts(this.recording);
         this.recording = recording;
-        this.largestTravel = Math.max(1e-12, ...recording.joints.map((joint) => joint.plastic.reduce((a, b) => (b > a ? b : a), 0)));
+        this.largest = { rad: 0, m: 0 }; // plastic travel, of joints that turn and that slide
+        for (const { helper, rotates, plastic } of recording.joints) {
+            const unit = rotates ? "rad" : "m";
+            if (!helper) this.largest[unit] = plastic.reduce((a, b) => (b > a ? b : a), this.largest[unit]);
+        }
         if (same) return;
         for (const { geometry } of this.scene.children) geometry.dispose();
         this.scene.clear();
@@ -259,14 +263,16 @@ export class Scene {
         this.texture = new three.DataTexture(this.places, 3 * perRow, this.places.length / 12 / perRow, three.RGBAFormat, three.FloatType);
         this.shapes = [];
         const drawn = [];
+        const reach = reaches(this.recording);
+        const middle = new three.Matrix4();
         bodies.forEach((body, index) => {
             for (const shape of body.shapes) {
                 const { pose } = shape;
-                const local = new three.Matrix4().compose(
-                    new three.Vector3(pose[0], pose[1], pose[2]),
-                    new three.Quaternion(pose[4], pose[5], pose[6], pose[3]),
-                    new three.Vector3(...scaleOf(shape)),
-                );
+                const size = scaleOf(shape);
+                const { low, high } = reach[index] ?? { low: size.map((v) => -v), high: size };
+                const local = new three.Matrix4().compose(point.fromArray(pose), turn.set(pose[4], pose[5], pose[6], pose[3]), at.set(1, 1, 1));
+                at.fromArray(high).sub(point.fromArray(low)).divideScalar(2); // half lengths
+                local.multiply(middle.compose(point.add(at), turn.identity(), at));
                 const geometry = geometries[shape.kind]().applyMatrix4(local);
                 geometry.deleteAttribute("uv");
                 const count = geometry.attributes.position.count;
@@ -296,7 +302,8 @@ export class Scene {
 
     /** What a joint is coloured by, at a sample. */
     shareOf(joint, index, by) {
-        return by === "plastic" ? joint.plastic[index] / this.largestTravel : joint.utilisation[index];
+        if (joint.helper) return 0;
+        return by === "plastic" ? joint.plastic[index] / (this.largest[joint.rotates ? "rad" : "m"] || 1) : joint.utilisation[index];
     }
 
     colourOfJoint(joint, index, by) {

@@ -3,12 +3,16 @@
 // Recordings for tests, of functions of the time, laid down as packed.hpp does.
 import { gzipSync } from "node:zlib";
 
+const waves = Object.fromEntries(["kinetic", "plastic", "unexplained"].map((name, i) => [name, (t) => 50 + 40 * Math.sin(t + i)]));
+
 /**
- * @param bodies  [{ name, half, pose(t) }]: boxes, x y z and the turn w x y z
- * @param joints  [{ name, a, b, in_a, sample(t) }]
+ * @param bodies    [{ name, half, offset, pose(t) }]: boxes, x y z and the turn w x y z
+ * @param joints    [{ name, a, b, in_a, turns, facts, sample(t), axes: [{ axis, turns, sample(t) }] }], `axes`: those beside the first
+ * @param energies  { name: of a time }
+ * @param hash      (time, number) of each sample's poses
  * @returns gzipped bytes
  */
-export function pack({ name, times, bodies, joints }) {
+export function pack({ name, times, bodies, joints, energies = waves, events = [], hash = (_, i) => i }) {
     const columns = [];
     const add = (of, fixed) => {
         const values = times.map(of);
@@ -19,16 +23,15 @@ export function pack({ name, times, bodies, joints }) {
     for (const { pose } of bodies) {
         for (let k = 0; k < 7; ++k) add((t) => pose(t)[k], k > 2 ? [-1, 1] : undefined);
     }
-    for (const { sample } of joints) {
+    for (const { sample, axes = [] } of joints) {
         for (const each of ["utilisation", "plastic", "absorbed", "residual"]) add((t) => sample(t)[each] ?? 0);
         whole((t) => sample(t).state ?? 0);
         add((t) => sample(t).life ?? 0, [0, 1]);
-        for (const each of ["force", "position"]) add((t) => sample(t)[each] ?? 0);
+        for (const of of [sample, ...axes.map((axis) => axis.sample)]) for (const each of ["force", "position"]) add((t) => of(t)[each] ?? 0);
     }
-    const energies = ["kinetic", "plastic", "unexplained"];
-    energies.forEach((_, i) => add((t) => 50 + 40 * Math.sin(t + i)));
+    for (const energy of Object.values(energies)) add(energy);
     whole(() => 1);
-    whole((_, i) => i);
+    whole(hash);
     const low = Buffer.alloc(columns.length * times.length);
     const high = Buffer.alloc(columns.length * times.length);
     columns.forEach((column, c) => {
@@ -44,13 +47,13 @@ export function pack({ name, times, bodies, joints }) {
         });
     });
     const text = JSON.stringify({
-        name, about: "", engine: "none", times, energies, events: [],
-        bodies: bodies.map((body) => ({ name: body.name, moves: true, shapes: [{ kind: "box", size: body.half, pose: [0, 0, 0, 1, 0, 0, 0] }] })),
-        joints: joints.map(({ name, a, b, in_a }) => ({ name, a, b, in_a, turns: true, axis: "axis", facts: [] })),
+        name, about: "", engine: "none", times, energies: Object.keys(energies), events,
+        bodies: bodies.map((body) => ({ name: body.name, moves: true, shapes: [{ kind: "box", size: body.half, pose: body.offset ?? [0, 0, 0, 1, 0, 0, 0] }] })),
+        joints: joints.map(({ name, a, b, in_a, turns = true, facts = [], axes = [] }) => ({ name, a, b, in_a, facts, axes: [{ axis: "axis", turns }, ...axes.map(({ axis, turns }) => ({ axis, turns }))] })),
         columns: { low: columns.map((c) => c.low), step: columns.map((c) => c.step), order: columns.map(() => 1) },
     });
     const head = Buffer.alloc(12);
-    head.write("ductrec2");
+    head.write("ductrec3");
     head.writeUInt32LE(Buffer.byteLength(text), 8);
     return gzipSync(Buffer.concat([head, Buffer.from(text), low, high]));
 }

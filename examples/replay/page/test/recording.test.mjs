@@ -10,7 +10,7 @@ import { gunzipSync, gzipSync } from "node:zlib";
 import validator from "gltf-validator";
 
 import { pack } from "./made.mjs";
-import { chains } from "../src/chains.js";
+import { chains, reaches } from "../src/chains.js";
 import { decode, firstDifference, ofPage, placeOf, poseAt, RecordingError } from "../src/recording.js";
 
 const folder = process.env.REPLAY_DIR ?? ".";
@@ -30,8 +30,9 @@ function near(values, wanted) {
 test("columns are those of the run", () => {
     near(Array.from(recording.times), expected.times);
     near(recording.joints[0].absorbed, expected.absorbed);
-    near(recording.joints[0].force, expected.force);
-    near(recording.joints[0].position, expected.position);
+    const [axis] = recording.joints[0].axes;
+    near(axis.force, expected.force);
+    near(axis.position, expected.position);
     for (const { name, values } of recording.energies) near(values, expected.energies[name]);
     assert.equal(recording.joints[0].state.at(-1), 3);
     assert.equal(recording.bodies[1].shapes[0].kind, "plane");
@@ -54,7 +55,7 @@ test("a recording that is damaged, cut short or none is refused in words", async
     for (const length of [4, 10, 200, laidDown.length - 1]) {
         await assert.rejects(decode(gzipSync(laidDown.subarray(0, length))), RecordingError);
     }
-    const foreign = Buffer.concat([Buffer.from("ductrec2"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
+    const foreign = Buffer.concat([Buffer.from("ductrec3"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
     await assert.rejects(decode(gzipSync(foreign)), RecordingError);
 });
 
@@ -89,6 +90,22 @@ test("another section, a bend or a joint aside is no bar", async () => {
     for (const other of [{ bodies }, { bodies: turned }, { joints: { 0: { in_a: [0, 0.05, 0] } } }]) {
         assert.deepEqual(chains(await decode(pack(row(2, other)))), []);
     }
+});
+
+test("a box is drawn up to where joints hold it, at a corner as far as the other's half, and a thin side is no end", async () => {
+    const upright = { half: [0.05, 0.06, 0.97], pose: () => [0.5, 0, -1, 1, 0, 0, 0] };
+    const [lying, standing] = reaches(await decode(pack(row(2, { bodies: { 1: upright }, joints: { 0: { in_a: [0, 0, 1] } } }))));
+    assert.deepEqual(lying, { low: [-0.49, -0.05, -0.04], high: [0.55, 0.05, 0.04] });
+    assert.deepEqual(standing, { low: [-0.05, -0.06, -0.97], high: [0.05, 0.06, 1.04] });
+    const thicker = { half: [0.48, 0.1, 0.08] };
+    const [thin, thick] = reaches(await decode(pack(row(2, { bodies: { 1: thicker } }))));
+    assert.deepEqual([thin.high[0], thick.low[0]], [0.5, -0.5]);
+    const slab = { half: [0.6, 0.5, 0.1], pose: () => [0, 0, 0.26, 1, 0, 0, 0] };
+    const [, below] = reaches(await decode(pack(row(2, { bodies: { 1: slab }, joints: { 0: { in_a: [0, 0, -0.15] } } }))));
+    assert.deepEqual(below, { low: [-0.6, -0.5, -0.1], high: [0.6, 0.5, 0.1] });
+    const turned = { half: [0.3, 0.04, 0.05], offset: [0.2, 0, 0, 0, 0, 0, 1], pose: () => [1, 0, 0, 1, 0, 0, 0] };
+    const [, off] = reaches(await decode(pack(row(2, { bodies: { 1: turned }, joints: { 0: { in_a: [-0.12, 0, 0] } } }))));
+    assert.ok(Math.abs(off.high[0] - 0.32) < 1e-3, `${off.high}`);
 });
 
 test("the glb is valid glTF, of a body that went to infinity too", async () => {
