@@ -187,6 +187,7 @@ class Fence final : public Scene {
         }
         stage.describe([](const std::string& joint) {
             if (joint == "bumper") return Stage::Facts{{"section", "none: it holds the nose"}};
+            if (joint == "road") return Stage::Facts{{"section", "none: it guides the vehicle"}};
             return Stage::Facts{{"section", "rectangle 3 m high, 2 m thick"},
                                 {"material", "concrete with 1 % of steel: 2 MPa"}};
         });

@@ -102,7 +102,11 @@ class Plate final : public Scene {
 
     static Cast build(Stage& stage, const Case& of) {
         Cast cast;
-        stage.describe({{"section", "strip of a plate of 10 mm"}, {"material", "steel, 355 MPa"}});
+        stage.describe([](const std::string& joint) {
+            if (!joint.starts_with("joint")) return Stage::Facts{{"section", "none: a support"}};
+            return Stage::Facts{{"section", "strip of a plate of 10 mm"},
+                                {"material", "steel, 355 MPa"}};
+        });
         const int n = of.parts;
         const double a = side / n, gap = 5e-4;
         const double bending = per_length * a;

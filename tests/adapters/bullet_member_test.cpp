@@ -19,6 +19,21 @@ using namespace ductile::test;
 using bullet::World;
 using bullet::WorldParameters;
 
+TEST_CASE("two members that one joint would hold are told what joins members", "[bullet][member]") {
+    Rig rig;
+    bullet::World world(rig.engine, {.warn = {}});
+    const auto one = bar_of(rig, free_bar(), false), other = bar_of(rig, free_bar(), false);
+    one->attach(0, [&](btRigidBody& piece, const btTransform& at) {
+        return std::make_unique<btPoint2PointConstraint>(piece, *other->pieces().front(),
+                                                         at.getOrigin(), btVector3(0, 0, 0));
+    });
+    world.add(*one);
+    CHECK(message_of([&] {
+              world.add(*other);
+              world.step(1.0 / 60);
+          }).find("joined are one StructureInTime") != std::string::npos);
+}
+
 TEST_CASE("a scene whose members stay whole is bit for bit the one without the library",
           "[bullet][member]") {
     const auto run = [](bool with_members) {
@@ -338,6 +353,10 @@ TEST_CASE("what a member cannot be made of is said, and nothing is changed", "[b
     CHECK(message_of([&] {
               member.apply_force({0, NAN, 0}, 0.5);
           }) == "Member.apply_force.force = nan N: must be finite");
+    CHECK(message_of([&] {
+              member.apply_force({0, btScalar(rough ? 1e30 : 1e160), 0}, 0.5);
+          }) == (rough ? "nothing thrown"
+                       : "Member.apply_force.force = 1e+160 N: must be at most 1e100"));
     btPoint2PointConstraint pin(moving, {0, 0, 0});
     rig.engine.addConstraint(&pin);
     CHECK(message_of([&] { world.add(member); }).find("Member::attach") != std::string::npos);

@@ -125,6 +125,12 @@ DUCTILE_INLINE void Member::require_attached(const btTypedConstraint& constraint
     for (const Attachment& held : attachments_) {
         if (held.constraint.get() == &constraint) return;
     }
+    if (Member::of(&constraint.getRigidBodyA()) != nullptr &&
+        Member::of(&constraint.getRigidBodyB()) != nullptr) {
+        throw std::invalid_argument(
+            "Member.attach.maker: must not hold a body of another member, as that comes and goes: "
+            "members that are joined are one StructureInTime");
+    }
     throw std::invalid_argument(
         "World.add.member: no constraint of the world may hold its body but by Member::attach, as "
         "Bullet's constraints cannot change their bodies");
