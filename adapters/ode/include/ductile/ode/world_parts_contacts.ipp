@@ -51,6 +51,8 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     if (of_.maker) of_.maker->make(of_.bodies);
     closing_.look(of_.contacts, of_.joints, of_.members->bodies());
 } catch (...) {
+    of_.contacts.clear();
+    if (of_.maker) of_.maker->clear();
     if (moved != nullptr) moved->put_poses_back();
     if (moved == &snapshot_) of_.meter.put_back();
     drop_forces();
