@@ -172,6 +172,26 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
     }
 }
 
+TEST_CASE("Frames: what slides on its face stays on it until it strikes", "[frame]") {
+    constexpr double speed = 7.8, g = 9.81, friction = 0.28, height = 0.12, duration = 0.1;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.friction = friction;
+        rig.set_gravity(g);
+        dCreatePlane(rig.engine.space, 0, 1, 0, 0);
+        const dBodyID plank =
+            rig.body(80, V3(2, 4, 3), {0, height, 0}, rig.box(0.3, height, 0.25), 1, ~0ul);
+        dBodySetLinearVel(plank, speed, 0, dReal(-0.2));
+        rig.slider(rig.body(1, V3(1, 1, 1), {5, 5, 5}), {0, 1, 0}, 100);
+        rig.run(duration, frame);
+        CHECK(dBodyGetLinearVel(plank)[0] ==
+              Approx(speed - friction * g * rig.world.time()).epsilon(2e-3));
+        CHECK(dBodyGetPosition(plank)[1] == Approx(height).margin(2.5e-4));
+        CHECK(std::abs(dBodyGetRotation(plank)[4]) < 1e-3); // of its length [rad]
+    }
+}
+
 TEST_CASE("Frames: a vehicle against a lamp post, by ODE's own contact", "[frame]") {
     // bench/scenes/lamp_post.hpp has the closed form: M θ = E₁ + m_p g (L/2)(1 - cos θ)
     constexpr double vehicle = 1000, speed = 10, bumper = 0.6, post = 60, length = 5;
