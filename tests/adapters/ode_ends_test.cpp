@@ -289,6 +289,62 @@ TEST_CASE("what makes no joint in ODE is refused in words", "[ode][ends]") {
           "World.add.joint: must be one between bodies of this world");
 }
 
+TEST_CASE("what does not belong to a World of ODE is refused in words", "[ode][ends]") {
+    Engine engine, other;
+    ode::World world(engine.id);
+    const dBodyID a = engine.rotor(10), b = engine.rotor(0), foreign = other.rotor(0);
+    CHECK(test::message_of([&] { world.add(foreign); }) ==
+          "World.add.body: must be a body of this world");
+    const auto motor_of = [](dWorldID id, dBodyID first, dBodyID second) {
+        const dJointID hinge = dJointCreateHinge(id, nullptr);
+        dJointAttach(hinge, first, second);
+        dJointSetHingeAxis(hinge, 0, 0, 1);
+        return ode::hinge_axis(hinge);
+    };
+    ode::PlasticMotor<> far(motor_of(other.id, nullptr, foreign), joint(64));
+    const std::string of_others = "World.add.joint: must be one between bodies of this world";
+    CHECK(test::message_of([&] { world.add(far); }) == of_others);
+    ode::PlasticHinge late(engine.id, b, nullptr, {}, joint(64));
+    dBodyDestroy(b);
+    CHECK(test::message_of([&] { world.add(late); }) == of_others);
+
+    const ode::MotorAxis axis = motor_of(engine.id, a, nullptr);
+    ode::PlasticMotor<> one(axis, joint(64)), again(axis, joint(32));
+    world.add(one);
+    CHECK(test::message_of([&] { world.add(again); }) ==
+          "World.add.joint: must be the only one of that axis of ODE's joint");
+    for (int i = 0; i < 600; ++i) world.step(1e-3);
+    CHECK(one.absorbed_energy() == Approx(100));
+}
+
+TEST_CASE("a world that is not finite is refused before ODE ends the process", "[ode][ends]") {
+    constexpr auto nan = dReal(std::numeric_limits<double>::quiet_NaN());
+    for (const double tolerance : {0.0, 0.01}) {
+        CAPTURE(tolerance);
+        Engine engine;
+        const dBodyID body = engine.rotor(0);
+        ode::World world(engine.id, ode::WorldParameters{.tolerance = tolerance, .warn = nullptr});
+        world.add(body);
+        ode::PlasticHinge hinge(engine.id, body, nullptr, {.axis = {0, 0, 1}}, joint(64));
+        world.add(hinge);
+        const auto refused = [&] { return test::message_of([&] { world.step(1e-2); }); };
+        dWorldSetGravity(engine.id, 0, nan, 0);
+        CHECK(refused() ==
+              "World.step: the gravity of the world must be finite, as ODE would end the process");
+        dWorldSetGravity(engine.id, 0, 0, 0);
+        for (const dReal bad : {nan, dReal(1.5)}) {
+            dBodySetLinearDamping(body, bad);
+            CHECK(refused().starts_with("World.step: the damping of body 0 = "));
+            dBodySetLinearDamping(body, 0);
+        }
+        dBodySetAngularVel(body, 0, 0, dReal(1e300));
+        CHECK(refused().starts_with("World.step: the spin of body 0 must be finite"));
+        dBodySetAngularVel(body, 0, 0, 0);
+        CHECK(refused() == "nothing thrown");
+        CHECK(world.time() == 1e-2);
+    }
+}
+
 TEST_CASE("a body that is not finite is refused before ODE ends the process", "[ode][ends]") {
     const double tolerance = GENERATE(0.0, 0.01);
     const double bad = GENERATE(std::nan(""), std::numeric_limits<double>::infinity());

@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "adapters/crushed_head.hpp"
@@ -168,6 +169,26 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
             }
             CHECK(solves <= 24); // at rest: two a frame
         }
+    }
+}
+
+TEST_CASE("Frames: what slides on its face stays on it until it strikes", "[frame]") {
+    constexpr double speed = 7.8, g = 9.81, friction = 0.28, height = 0.12, duration = 0.1;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.friction = friction;
+        rig.set_gravity(g);
+        dCreatePlane(rig.engine.space, 0, 1, 0, 0);
+        const dBodyID plank =
+            rig.body(80, V3(2, 4, 3), {0, height, 0}, rig.box(0.3, height, 0.25), 1, ~0ul);
+        dBodySetLinearVel(plank, speed, 0, dReal(-0.2));
+        rig.slider(rig.body(1, V3(1, 1, 1), {5, 5, 5}), {0, 1, 0}, 100);
+        rig.run(duration, frame);
+        CHECK(dBodyGetLinearVel(plank)[0] ==
+              Approx(speed - friction * g * rig.world.time()).epsilon(2e-3));
+        CHECK(dBodyGetPosition(plank)[1] == Approx(height).margin(2.5e-4));
+        CHECK(std::abs(dBodyGetRotation(plank)[4]) < 1e-3); // of its length [rad]
     }
 }
 
@@ -598,6 +619,98 @@ TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
     CHECK_THAT(message_of([&] { rig.world.on_contacts({}, [] {}); }), Contains("group = null"));
     CHECK_THAT(message_of([&] { rig.world.on_contacts({.group = rig.engine.contacts}, {}); }),
                Contains("on_contacts.make"));
+}
+
+TEST_CASE("Frames: what makes no contact is refused by the step, whose callback ends", "[frame]") {
+    using Catch::Matchers::Contains;
+    constexpr auto nan = dReal(std::numeric_limits<double>::quiet_NaN());
+    constexpr auto infinity = dReal(std::numeric_limits<double>::infinity());
+    struct Wrong {
+        const char* said;
+        int mode;
+        void (*make)(dContact&);
+    };
+    const Wrong wrongs[] = {
+        {"geom.normal", 0, [](dContact& contact) { contact.geom.normal[1] = nan; }},
+        {"geom.normal", 0, [](dContact& contact) { contact.geom.normal[1] = 0; }},
+        {"geom.pos", 0, [](dContact& contact) { contact.geom.pos[2] = infinity; }},
+        {"geom.depth = nan", 0, [](dContact& contact) { contact.geom.depth = nan; }},
+        {"fdir1", dContactFDir1, [](dContact& contact) { contact.fdir1[0] = nan; }},
+        {"surface.mu = nan", 0, [](dContact& contact) { contact.surface.mu = nan; }},
+        {"surface.bounce", dContactBounce, [](dContact& contact) { contact.surface.bounce = nan; }},
+        {"surface.soft_cfm = inf", dContactSoftCFM,
+         [](dContact& contact) { contact.surface.soft_cfm = infinity; }},
+        {"surface.motion1", dContactMotion1,
+         [](dContact& contact) { contact.surface.motion1 = nan; }},
+        {"surface.slip2", dContactSlip2, [](dContact& contact) { contact.surface.slip2 = nan; }},
+    };
+    for (const double tolerance : {0.0, 0.01}) {
+        for (const Wrong& wrong : wrongs) {
+            CAPTURE(tolerance, wrong.said);
+            Rig rig({.tolerance = tolerance, .rest_damping = 0, .warn = {}});
+            const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0.09, 0}, rig.sphere(0.1), 1, 1);
+            rig.slider(body, {0, 1, 0}, 1);
+            const dGeomID floor = dCreatePlane(rig.engine.space, 0, 1, 0, 0);
+            struct Scene {
+                Rig& rig;
+                const Wrong& wrong;
+                bool right = false;
+            } scene{rig, wrong};
+            rig.world.on_contacts(
+                {.space = rig.engine.space, .group = rig.engine.contacts}, [&rig, &scene] {
+                    dSpaceCollide(rig.engine.space, &scene, [](void* data, dGeomID a, dGeomID b) {
+                        const auto& [of, what, right] = *static_cast<Scene*>(data);
+                        dContact contact{};
+                        if (dCollide(a, b, 1, &contact.geom, int(sizeof(dContact))) == 0) return;
+                        contact.surface.mode = what.mode;
+                        if (!right) what.make(contact);
+                        const dJointID joint =
+                            dJointCreateContact(of.engine.id, of.engine.contacts, &contact);
+                        dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
+                        of.world.add_contact(joint, contact);
+                    });
+                });
+            CHECK_THAT(message_of([&] { rig.world.step(0.01); }),
+                       Contains(std::string("World.add_contact.") + wrong.said));
+            CHECK(rig.world.time() == 0);
+            CHECK(dBodyGetPosition(body)[1] == dReal(0.09));
+            dGeomDestroy(floor); // no space is locked
+            scene.right = true;
+            CHECK_NOTHROW(rig.world.step(0.01));
+        }
+    }
+}
+
+TEST_CASE("Frames: contacts that cannot be put back, or made, are refused", "[frame]") {
+    using Catch::Matchers::Contains;
+    Rig rig;
+    const dBodyID body = rig.body(1, V3(1, 1, 1), {0, 0.1, 0}, rig.sphere(0.1), 1, 1);
+    rig.slider(body, {0, 1, 0}, 1);
+    const dBodyID unknown = dBodyCreate(rig.engine.id);
+    bool meets = true;
+    rig.world.on_contacts({.group = rig.engine.contacts}, [&] {
+        dContact contact{};
+        contact.geom.normal[1] = 1;
+        const dJointID joint = dJointCreateContact(rig.engine.id, rig.engine.contacts, &contact);
+        dJointAttach(joint, body, meets ? unknown : nullptr);
+        rig.world.add_contact(joint, contact);
+    });
+    CHECK_THAT(message_of([&] { rig.world.step(0.01); }), Contains("must have been added"));
+    meets = false;
+    CHECK_NOTHROW(rig.world.step(0.01));
+    dBodySetPosition(body, 0, dReal(1e9), 0);
+    CHECK_THAT(message_of([&] { rig.world.step(0.01); }), Contains("must be <= 1e8"));
+    dBodySetPosition(body, 0, dReal(0.1), 0);
+    rig.world.on_contacts({.group = rig.engine.contacts}, [&] {
+        const dJointID ball = dJointCreateBall(rig.engine.id, rig.engine.contacts);
+        rig.world.add_contact(ball, {});
+    });
+    CHECK_THAT(message_of([&] { rig.world.step(0.01); }), Contains("must be a contact joint"));
+    rig.world.on_contacts({.group = rig.engine.contacts}, [&] { rig.world.step(0.01); });
+    CHECK_THROWS_WITH(rig.world.step(0.01), Contains("within a step"));
+    rig.world.on_contacts({.group = rig.engine.contacts},
+                          [&] { rig.world.on_contacts({.group = rig.engine.contacts}, [] {}); });
+    CHECK_THROWS_WITH(rig.world.step(0.01), Contains("while contacts are made"));
 }
 
 TEST_CASE("Frames: figures of balls on a post", "[.][figures]") {

@@ -256,6 +256,23 @@ TEST_CASE("a joint that was removed is told of no more, also where a listener do
     CHECK(rig.world().events()[0].name == "post again");
 }
 
+TEST_CASE("a step within a step is refused", "[world]") {
+    WorldRig rig(false);
+    rig.hinge(rotor(rig, none, 10), nullptr, none, joint(64), "post");
+    std::string said;
+    rig.world().on_event([&](const JointEvent<double>&) {
+        try {
+            rig.world().step(1e-2);
+        } catch (const std::logic_error& error) {
+            said = error.what();
+        }
+    });
+    rig.world().step(1e-2);
+    CHECK(said == "World.step: must not be called within a step, as by a callback");
+    CHECK(rig.world().time() == 1e-2);
+    CHECK_NOTHROW(rig.world().step(1e-2));
+}
+
 TEST_CASE("joints without a name are told by their number", "[world]") {
     WorldRig rig(false);
     rig.hinge(rotor(rig, none, 10), nullptr, none, joint(64), "");

@@ -46,6 +46,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
+    take(start_);
     if (report.scale == 0) {
         for (IslandRow& row : island.rows) row.impulse = 0;
         for (IslandBlock& block : island.blocks) {
@@ -56,7 +57,6 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         finish(report);
         return report;
     }
-    take(start_);
     if (!polished(report)) fall_back(report);
     finish(report);
     return report;

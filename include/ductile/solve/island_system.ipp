@@ -55,7 +55,7 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         row.metric = row.own + row.compliance;
         const double size =
             std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
-        if (row.own != 0 && !(size <= scale_)) scale_ = size;
+        if (row.own != 0 && !(size <= scale_) && !std::isnan(scale_)) scale_ = size;
     }
     for (const IslandBlock& block : island.blocks) {
         if (block.kind == BlockKind::contact) make_isotropic(block);

@@ -29,7 +29,8 @@ class SteppedWorld : private JointKeeper {
 
     /// One step of `dt` > 0 [s]; a frame, where the world has a tolerance.
     /// @throws std::invalid_argument where the step is not finite or not positive, or not one that
-    /// this engine can do (of its own World). The world stays as it was.
+    /// this engine can do (of its own World), std::logic_error within a step. The world stays as it
+    /// was.
     void step(double dt);
 
     // ---- frames with a tolerance

@@ -18,6 +18,10 @@ namespace ductile {
 
 DUCTILE_INLINE void SteppedWorld::step(double dt) {
     check::positive("World.step.dt", dt, "s");
+    if (stepping_) {
+        throw std::logic_error("World.step: must not be called within a step, as by a callback");
+    }
+    const Stepping guard(stepping_);
     supervisor_.open();
     look_at_structures();
     if (frames_) {
@@ -55,10 +59,7 @@ DUCTILE_INLINE void SteppedWorld::joint_stepped() {
 }
 DUCTILE_INLINE void SteppedWorld::go(double dt, double end) {
     require_possible(dt);
-    {
-        const Stepping guard(stepping_);
-        do_step(dt);
-    }
+    do_step(dt);
     supervisor_.look(end);
     look_at_structures();
     (void)tell_of_ledger();
@@ -67,11 +68,8 @@ DUCTILE_INLINE void SteppedWorld::go(double dt, double end) {
 }
 DUCTILE_INLINE void SteppedWorld::do_frame(double length, double end) {
     require_possible(length);
-    {
-        const Stepping guard(stepping_);
-        frames_->frame(begin_frame(length), length);
-        end_frame();
-    }
+    frames_->frame(begin_frame(length), length);
+    end_frame();
     frames_->count_unreliable(supervisor_.watch().unreliable());
     supervisor_.set_time(end);
     if (const Ledger<double>* kept = kept_ledger()) {

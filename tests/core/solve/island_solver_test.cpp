@@ -426,6 +426,10 @@ TEST_CASE("What is not finite gets no impulse and is not called solved", "[solve
             CHECK(island.bodies[0].velocity.isZero());
         }
     }
+    Island idle = one_row(2, 0, 4); // nothing is asked for
+    idle.rows.push_back(idle.rows[0]);
+    idle.rows[0].compliance = nan;
+    CHECK_FALSE(IslandSolver().solve(idle).solved);
 }
 
 TEST_CASE("A locked axis does not move and pushes nobody", "[solve]") {

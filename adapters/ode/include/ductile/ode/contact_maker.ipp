@@ -6,6 +6,8 @@
 #include <stdexcept>
 
 #include "ductile/ode/contact_maker.hpp"
+#include "ductile/ode/convert.hpp"
+#include "ductile/vocabulary/check.hpp"
 
 namespace ductile::ode {
 
@@ -43,6 +45,14 @@ DUCTILE_INLINE ContactMaker::ContactMaker(const ContactParameters& parameters,
 }
 
 DUCTILE_INLINE void ContactMaker::make(std::span<const dBodyID> bodies) {
+    constexpr double farthest = 1e8; // ODE's hash spaces end the process from 2.7e8 m on
+    for (dBodyID body : bodies) {
+        const double far = norm(to_core(dBodyGetPosition(body)));
+        if (!(far <= farthest)) {
+            check::fail("World.step: how far away a body is", far, "m",
+                        "<= 1e8, as ODE would end the process");
+        }
+    }
     clear();
     put_in_order(bodies);
     struct AtWork {
@@ -50,7 +60,12 @@ DUCTILE_INLINE void ContactMaker::make(std::span<const dBodyID> bodies) {
         ~AtWork() { flag = false; }
     } const at_work{making_};
     making_ = true;
-    make_();
+    try {
+        make_();
+    } catch (...) {
+        clear(); // no step begins with contacts
+        throw;
+    }
 }
 
 /// Geoms that are clean come to the front of their spaces as they are told that they moved.

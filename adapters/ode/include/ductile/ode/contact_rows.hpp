@@ -25,6 +25,12 @@ struct NamedContact {
     [[nodiscard]] bool slides_only() const { return (contact.surface.mode & dContactRolling) == 0; }
 };
 
+/// What ODE, built with its assertions, would end the process by, and what no island can be solved
+/// with.
+/// @throws std::invalid_argument where the joint is no contact, or it was made of numbers that are
+/// not finite or a normal that is not of unit length.
+void require_contact(dJointID joint, const dContact& contact);
+
 class ContactRows {
   public:
     /// Adds the rows for a step of `dt` [s].

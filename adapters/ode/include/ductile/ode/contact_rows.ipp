@@ -4,11 +4,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/vocabulary/check.hpp"
 
 namespace ductile::ode {
 
@@ -45,6 +49,43 @@ DUCTILE_INLINE std::array<Vector3<double>, 2> friction_directions(const dContact
 }
 
 } // namespace detail
+
+DUCTILE_INLINE void require_contact(dJointID joint, const dContact& contact) {
+    if (joint == nullptr || dJointGetType(joint) != dJointTypeContact) {
+        throw std::invalid_argument("World.add_contact.joint: must be a contact joint");
+    }
+    const dContactGeom& geom = contact.geom;
+    const dSurfaceParameters& surface = contact.surface;
+    const Vector3<double> normal = to_core(geom.normal);
+    if (!(std::abs(norm(normal) - 1) < 1e-2)) {
+        throw std::invalid_argument("World.add_contact.geom.normal: must be of unit length");
+    }
+    if (!is_finite(to_core(geom.pos))) {
+        throw std::invalid_argument("World.add_contact.geom.pos: must be finite [m]");
+    }
+    if ((surface.mode & dContactFDir1) != 0 && !is_finite(to_core(contact.fdir1))) {
+        throw std::invalid_argument("World.add_contact.fdir1: must be finite");
+    }
+    const auto require = [&surface](int flag, const char* name, dReal value, bool unlimited) {
+        if (flag != 0 && (surface.mode & flag) == 0) return;
+        if (std::isfinite(value) || (unlimited && value > 0)) return;
+        check::fail(std::string("World.add_contact.") + name, value, "",
+                    unlimited ? "a number (infinity: no limit)" : "finite");
+    };
+    require(0, "geom.depth", geom.depth, false);
+    require(0, "surface.mu", surface.mu, true);
+    require(dContactMu2, "surface.mu2", surface.mu2, true);
+    require(dContactRolling, "surface.rho", surface.rho, true);
+    require(dContactBounce, "surface.bounce", surface.bounce, false);
+    require(dContactBounce, "surface.bounce_vel", surface.bounce_vel, true);
+    require(dContactSoftERP, "surface.soft_erp", surface.soft_erp, false);
+    require(dContactSoftCFM, "surface.soft_cfm", surface.soft_cfm, false);
+    require(dContactMotion1, "surface.motion1", surface.motion1, false);
+    require(dContactMotion2, "surface.motion2", surface.motion2, false);
+    require(dContactMotionN, "surface.motionN", surface.motionN, false);
+    require(dContactSlip1, "surface.slip1", surface.slip1, false);
+    require(dContactSlip2, "surface.slip2", surface.slip2, false);
+}
 
 DUCTILE_INLINE void ContactRows::add_row(solve::Island& island, const IslandSeat& a,
                                          const IslandSeat& b, const Vector3<double>& along,

@@ -76,6 +76,8 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     [[nodiscard]] virtual dJointID id() const = 0;
     /// Also once it is broken and its joint attached to nothing.
     [[nodiscard]] virtual AttachedBodies bodies() const = 0;
+    /// Which motor of ODE's joint it rules; -1: that joint is its own.
+    [[nodiscard]] virtual int motor() const noexcept { return -1; }
     /// Null: its rows are a joint's of ODE.
     [[nodiscard]] virtual IslandRows* island_rows() noexcept { return nullptr; }
 

@@ -89,6 +89,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// ODE's joint.
     [[nodiscard]] dJointID id() const override { return row_.joint(); }
     [[nodiscard]] AttachedBodies bodies() const override { return row_.bodies(); }
+    [[nodiscard]] int motor() const noexcept override { return row_.number(); }
 
     /// @throws std::logic_error where somebody set a stop on the axis since it was taken over.
     DUCTILE_INLINE void check() const override;

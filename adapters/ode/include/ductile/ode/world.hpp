@@ -16,8 +16,10 @@
 // those with a PlasticMotor.
 //
 // A step throws what a constraint's check() throws, and std::invalid_argument where a body that was
-// added, or has a plastic joint, is not finite in pose, velocity or force: ODE, built with its
-// assertions, would end the process. Nothing has changed then.
+// added, or has a plastic joint, is not finite in pose, velocity or force, or the gravity is not, a
+// body's damping is more than its whole speed, a contact was named with what is none: ODE, built
+// with its assertions, would end the process. Nothing has changed then, and contacts are to be
+// named anew.
 //
 // on_contacts: who makes the contacts of a step, so that they need not be made before it.
 //
@@ -56,6 +58,7 @@
 #include "ductile/ode/held_forces.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/joint_report.hpp"
 #include "ductile/world/stepped_world.hpp"
@@ -98,7 +101,8 @@ class World final : public SteppedWorld {
     [[nodiscard]] dWorldID id() const noexcept { return world_; }
 
     /// Steps a joint and looks after it, until it ends. An empty `name`: "joint" and its number.
-    /// @throws std::invalid_argument where it is here already, or of another world.
+    /// @throws std::invalid_argument where it is here already, or of another world, a body of it
+    /// was destroyed, or another one rules that axis of a joint of ODE's.
     void add(PlasticConstraint& joint, std::string name = {});
     /// What is not here is left alone.
     void remove(PlasticConstraint& joint);
@@ -116,7 +120,7 @@ class World final : public SteppedWorld {
     void remove(Divisible& member);
 
     /// Tells of a dynamic body: ODE does not say which a world has.
-    /// @throws std::invalid_argument where it is null or here already.
+    /// @throws std::invalid_argument where it is null, here already, or of another world.
     void add(dBodyID body);
     /// To be called before the body is destroyed.
     void remove(dBodyID body);
@@ -125,14 +129,15 @@ class World final : public SteppedWorld {
     /// that a plastic joint holds together, until that breaks, or of a member that hang together,
     /// or of one and what a joint of ODE's holds to it, is disabled, as it would fight their rows;
     /// where `between_joined` that of a joint is not, as where a gap between them may close. Of a
-    /// motor the hinge is the user's, and so is this.
+    /// motor the hinge is the user's, and so is this. What is no contact, or not finite, the step
+    /// refuses: ODE's spaces would stay locked where their callback throws.
     /// @throws std::logic_error where the world has a tolerance and it is not called by what
     /// on_contacts was given.
     void add_contact(dJointID joint, const dContact& contact, bool between_joined = false);
     /// From now on `make` is called for the contacts of each step, part, and look for gaps; it
     /// makes their joints in the group and names them by add_contact. The group is emptied around
     /// that.
-    /// @throws std::invalid_argument as ContactMaker.
+    /// @throws std::invalid_argument as ContactMaker, std::logic_error where contacts are made now.
     void on_contacts(const ContactParameters& parameters, std::function<void()> make);
 
   private:
@@ -173,6 +178,7 @@ class World final : public SteppedWorld {
     /// geoms.
     void require_all_bodies();
     void require_finite();
+    void require_contacts();
 
     dWorldID world_;
     Solver solver_;
@@ -181,7 +187,9 @@ class World final : public SteppedWorld {
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
+    AddressBook known_;                  ///< all bodies of the frame
     std::vector<NamedContact> contacts_; ///< of the coming step
+    std::string refused_;                ///< why one of them is
     std::unique_ptr<IslandSolver> islands_;
     std::unique_ptr<Divisibles> members_;
     std::unique_ptr<WorldSnapshot> snapshot_; ///< of a step, while there are members

@@ -24,22 +24,30 @@ namespace ductile::ode {
 
 namespace detail {
 
+[[nodiscard]] DUCTILE_INLINE bool are_finite(const dReal* values, int count) {
+    double sum = 0; // of what is not finite it is not
+    for (int i = 0; i < count; ++i) sum += double(values[i]) * double(values[i]);
+    return std::isfinite(sum);
+}
+
 /// What of a body is not finite; null: nothing.
 [[nodiscard]] DUCTILE_INLINE const char* not_finite(dBodyID body) {
     if (body == nullptr) return nullptr;
-    const auto finite = [](const dReal* values, int count) {
-        dReal sum = 0; // of what is not finite it is not
-        for (int i = 0; i < count; ++i) sum += values[i];
-        return std::isfinite(sum);
-    };
-    if (!finite(dBodyGetPosition(body), 3)) return "position";
-    if (!finite(dBodyGetQuaternion(body), 4)) return "orientation";
-    if (!finite(dBodyGetLinearVel(body), 3)) return "velocity";
-    if (!finite(dBodyGetAngularVel(body), 3)) return "spin";
-    if (!finite(dBodyGetForce(body), 3)) return "force";
-    if (!finite(dBodyGetTorque(body), 3)) return "torque";
+    if (!are_finite(dBodyGetPosition(body), 3)) return "position";
+    if (!are_finite(dBodyGetQuaternion(body), 4)) return "orientation";
+    if (!are_finite(dBodyGetLinearVel(body), 3)) return "velocity";
+    if (!are_finite(dBodyGetAngularVel(body), 3)) return "spin";
+    if (!are_finite(dBodyGetForce(body), 3)) return "force";
+    if (!are_finite(dBodyGetTorque(body), 3)) return "torque";
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    if (!are_finite(&mass.mass, 1) || !are_finite(mass.I, 12)) return "mass";
     return nullptr;
 }
+
+inline constexpr const char* add_all_bodies =
+    "World.tolerance: every body that moves must have been added, also where only a joint, a "
+    "contact or a geom holds it";
 
 } // namespace detail
 
@@ -95,9 +103,18 @@ DUCTILE_INLINE World::~World() {
 }
 
 DUCTILE_INLINE void World::add(PlasticConstraint& joint, std::string name) {
-    const dBodyID body = dJointGetBody(joint.id(), 0);
-    if (body != nullptr && dBodyGetWorld(body) != world_) {
+    const dBodyID body = attached_bodies(joint.id()).a;
+    const bool broken = joint.queries().broken();
+    if (body != nullptr ? dBodyGetWorld(body) != world_ : !broken) {
         throw std::invalid_argument("World.add.joint: must be one between bodies of this world");
+    }
+    const auto rules_it = [&joint](const PlasticConstraint* other) {
+        return other != &joint && other->motor() == joint.motor() && other->id() == joint.id() &&
+               !other->queries().broken();
+    };
+    if (joint.motor() >= 0 && std::any_of(plastic_.begin(), plastic_.end(), rules_it)) {
+        throw std::invalid_argument(
+            "World.add.joint: must be the only one of that axis of ODE's joint");
     }
     supervisor().add(&joint, std::move(name), [&joint] { return joint.queries().report(); });
     take_in(joint);
@@ -140,10 +157,14 @@ DUCTILE_INLINE void World::remove(SteppedConstraint& constraint) {
 
 DUCTILE_INLINE void World::add(dBodyID body) {
     if (body == nullptr) throw std::invalid_argument("World.add.body = null: must be a body");
+    if (dBodyGetWorld(body) != world_) {
+        throw std::invalid_argument("World.add.body: must be a body of this world");
+    }
     if (std::find(bodies_.begin(), bodies_.end(), body) != bodies_.end()) {
         throw std::invalid_argument("World.add.body: must not be in the world already");
     }
     bodies_.push_back(body);
+    known_.enter(body);
     if (meter_) meter_->add(body);
     members_->body_came(body);
 }
@@ -175,6 +196,12 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
             "World.add_contact: in a world with a tolerance contacts are made by what on_contacts "
             "was given, as each part of a step needs its own");
     }
+    try {
+        require_contact(joint, contact);
+    } catch (const std::invalid_argument& error) {
+        if (refused_.empty()) refused_ = error.what();
+        return;
+    }
     const dBodyID a = dJointGetBody(joint, 0), b = dJointGetBody(joint, 1);
     if (members_->hang_together(a, b) ||
         (!between_joined && (are_joined(a, b) || members_->hold(a, b)))) {
@@ -182,15 +209,30 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
         return;
     }
     contacts_.push_back({.joint = joint, .contact = contact});
+    const auto stranger = [this](dBodyID body) { return body != nullptr && !known_.has(body); };
+    if (parts_ != nullptr && (stranger(a) || stranger(b))) refused_ = detail::add_all_bodies;
+}
+DUCTILE_INLINE void World::require_contacts() {
+    if (!refused_.empty()) throw std::invalid_argument(std::exchange(refused_, {}));
 }
 DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
                                        std::function<void()> make) {
+    if (maker_ && maker_->is_making()) {
+        throw std::logic_error("World.on_contacts: must not be called while contacts are made");
+    }
+    if (make) {
+        make = [this, makes = std::move(make)] {
+            refused_.clear();
+            makes();
+            require_contacts();
+        };
+    }
     maker_.emplace(parameters, std::move(make));
 }
 
 // ---- what SteppedWorld asks of ODE
 
-DUCTILE_INLINE void World::require_possible(double) {
+DUCTILE_INLINE void World::require_possible(double) try {
     for (const SteppedConstraint* constraint : constraints_) constraint->check();
     dVector3 gravity;
     dWorldGetGravity(world_, gravity);
@@ -200,15 +242,30 @@ DUCTILE_INLINE void World::require_possible(double) {
     members_->require_possible();
     if (parts_ != nullptr) require_all_bodies();
     require_finite();
+    require_contacts();
+} catch (...) {
+    contacts_.clear(); // the program empties their group
+    refused_.clear();
+    throw;
 }
 DUCTILE_INLINE void World::require_finite() {
     const auto refuse = [](const std::string& owner, const char* what) {
         throw std::invalid_argument("World.step: the " + std::string(what) + " of " + owner +
                                     " must be finite, as ODE would end the process");
     };
+    dVector3 gravity;
+    dWorldGetGravity(world_, gravity);
+    if (!detail::are_finite(gravity, 3)) refuse("the world", "gravity");
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (const char* what = detail::not_finite(bodies_[i])) {
             refuse("body " + std::to_string(i), what);
+        }
+        for (const dReal damping :
+             {dBodyGetLinearDamping(bodies_[i]), dBodyGetAngularDamping(bodies_[i])}) {
+            if (!(std::abs(damping) <= 1)) {
+                check::fail("World.step: the damping of body " + std::to_string(i), damping, "",
+                            "in [-1, 1]");
+            }
         }
     }
     for (const PlasticConstraint* joint : plastic_) {
@@ -222,7 +279,10 @@ DUCTILE_INLINE void World::require_finite() {
     }
 }
 DUCTILE_INLINE void World::do_step(double dt) {
-    if (maker_) maker_->make(bodies_);
+    if (maker_) {
+        contacts_.clear(); // of a step that threw
+        maker_->make(bodies_);
+    }
     if (!members_->empty()) {
         step_with_members(dt);
         return;
@@ -364,13 +424,12 @@ DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
 }
 
 DUCTILE_INLINE void World::require_all_bodies() {
-    AddressBook known;
-    for (dBodyID body : bodies_) known.enter(body);
-    const auto require = [&known](dBodyID body) {
-        if (body == nullptr || known.has(body)) return;
-        throw std::invalid_argument(
-            "World.tolerance: every body that moves must have been added, also where only a joint "
-            "or a geom holds it");
+    known_.clear();
+    for (dBodyID body : bodies_) known_.enter(body);
+    const auto require = [this](dBodyID body) {
+        if (body != nullptr && !known_.has(body)) {
+            throw std::invalid_argument(detail::add_all_bodies);
+        }
     };
     for (dBodyID body : bodies_) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {

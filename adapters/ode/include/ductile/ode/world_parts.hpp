@@ -131,8 +131,9 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
-    /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s].
-    [[nodiscard]] double closes(const NamedContact& named, double h) const;
+    /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s]. What slides and is
+    /// not `plastic` is closed too, or loses its contacts by a micrometre and falls for the part.
+    [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;
     /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
     [[nodiscard]] double turned(const NamedContact& named, double h) const;
     /// Contacts begin with what the nearest one of their bodies bore in the last part.

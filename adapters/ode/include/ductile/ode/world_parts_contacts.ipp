@@ -51,6 +51,8 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     if (of_.maker) of_.maker->make(of_.bodies);
     closing_.look(of_.contacts, of_.joints, of_.members->bodies());
 } catch (...) {
+    of_.contacts.clear();
+    if (of_.maker) of_.maker->clear();
     if (moved != nullptr) moved->put_poses_back();
     if (moved == &snapshot_) of_.meter.put_back();
     drop_forces();
@@ -64,15 +66,17 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         dSurfaceParameters& surface = named.contact.surface;
         const auto [a, b, reversed] = attached_bodies(named.joint);
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
-        if (!plastic && (surface.mode & (dContactSoftERP | dContactSoftCFM)) == 0) continue;
+        const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
+        const double closing = blow ? 0 : closes(named, h, plastic);
+        if (!plastic && !own && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
         surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
         if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
-        if (!blow && plastic) {
+        if (!blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
-            surface.motionN += dReal(turned(named, h) - closes(named, h));
+            surface.motionN += dReal((plastic ? turned(named, h) : 0) - closing);
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -82,11 +86,11 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     }
 }
 
-DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h) const {
+DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bool plastic) const {
     const ContactClosing it(named);
     const auto depth = double(named.contact.geom.depth);
     // what a blow stopped closes no more, although that strikes a little early
-    const double left = it.closes() ? 2 * (it.depth() - depth) / h : 0;
+    const double left = plastic && it.closes() ? 2 * (it.depth() - depth) / h : 0;
     const bool known = depth > closed_depth / 2;
     const double to = known ? 0 : std::clamp(2 * (closed_depth - depth) / h, 0.0, it.sinks);
     return std::max(left, to);
