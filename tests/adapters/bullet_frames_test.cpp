@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Frames with a tolerance in Bullet, on problems with known answers: World({.tolerance = 0.01}).
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <btBulletDynamicsCommon.h>
 
 #include <catch2/catch.hpp>
@@ -504,6 +505,104 @@ TEST_CASE("Frames: balls on a post of five hinges take the same at any frame", "
             CHECK(rig.world->run().believed());
             for (auto& hinge : hinges) rig.world->remove(*hinge);
         }
+    }
+}
+
+namespace {
+
+/// What is about a ball that flies at a post, and about that.
+enum class Around {
+    nothing,
+    sensor,
+    moving_sensor,
+    ghost,
+    left_out,  ///< by the user's callback of near pairs
+    continuous ///< nothing; the ball has Bullet's continuous collision
+};
+struct Flight {
+    double work, place; ///< that the post took [J], of the ball [m]
+    std::size_t solves;
+    bool believed;
+};
+
+[[nodiscard]] Flight fly(Around around, double frame) {
+    constexpr int out = 7;
+    Rig rig;
+    btRigidBody& post = rig.body(
+        12, btVector3(btScalar(0.3), btScalar(0.3), btScalar(0.01)), {0, 0, btScalar(0.5)},
+        std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(0.05), btScalar(0.5))), 1,
+        -1);
+    btRigidBody& ball = rig.body(20, btVector3(btScalar(0.08), btScalar(0.08), btScalar(0.08)),
+                                 {btScalar(-1.51), 0, btScalar(0.9)}, nullptr, 1, -1);
+    ball.setLinearVelocity({10, 0, 0});
+    btGhostObject ghost;
+    if (around == Around::sensor || around == Around::moving_sensor || around == Around::left_out) {
+        const bool moves = around == Around::moving_sensor;
+        btRigidBody& room = rig.body(moves ? 5 : 0, btVector3(1, 1, 1) * (moves ? 1 : 0),
+                                     {btScalar(0.7), 0, btScalar(0.5)}, box(0.5, 1, 1), 1, -1);
+        room.setUserIndex(out);
+        if (around == Around::left_out) {
+            rig.dispatcher.setNearCallback([](btBroadphasePair& pair, btCollisionDispatcher& by,
+                                              const btDispatcherInfo& info) {
+                for (const btBroadphaseProxy* proxy : {pair.m_pProxy0, pair.m_pProxy1}) {
+                    const auto* object = static_cast<btCollisionObject*>(proxy->m_clientObject);
+                    if (object->getUserIndex() == out) return;
+                }
+                btCollisionDispatcher::defaultNearCallback(pair, by, info);
+            });
+        } else {
+            room.setCollisionFlags(room.getCollisionFlags() |
+                                   btCollisionObject::CF_NO_CONTACT_RESPONSE);
+        }
+    } else if (around == Around::ghost) {
+        rig.shapes.push_back(box(0.5, 1, 1));
+        ghost.setCollisionShape(rig.shapes.back().get());
+        ghost.setWorldTransform(at({btScalar(0.7), 0, btScalar(0.5)}));
+        ghost.setCollisionFlags(ghost.getCollisionFlags() |
+                                btCollisionObject::CF_NO_CONTACT_RESPONSE);
+        rig.engine.addCollisionObject(&ghost);
+    } else if (around == Around::continuous) {
+        ball.setCcdMotionThreshold(btScalar(0.05));
+        ball.setCcdSweptSphereRadius(btScalar(0.04));
+    }
+    Hinge hinge(post, along({0, 1, 0}, {0, 0, btScalar(-0.5)}), law(500));
+    rig.world->add(hinge);
+    rig.run(0.3, frame);
+    const RunReport& run = rig.world->run();
+    const Flight flight{hinge.absorbed_energy(), double(ball.getCenterOfMassPosition().x()),
+                        run.parts + run.rejected + run.blows, run.believed()};
+    rig.world->remove(hinge);
+    if (around == Around::ghost) rig.engine.removeCollisionObject(&ghost);
+    return flight;
+}
+
+} // namespace
+
+TEST_CASE("Frames: what does not push is no blow, and costs nothing", "[frame]") {
+    for (const double frame : all_frames) {
+        const Flight alone = fly(Around::nothing, frame);
+        CHECK(alone.work > 100);
+        CHECK(alone.believed);
+        for (const Around around :
+             {Around::sensor, Around::moving_sensor, Around::ghost, Around::left_out}) {
+            CAPTURE(frame, int(around));
+            const Flight flight = fly(around, frame);
+            CHECK(flight.work == alone.work);
+            CHECK(flight.place == alone.place);
+            CHECK(flight.solves == alone.solves);
+            CHECK(flight.believed);
+        }
+    }
+}
+
+TEST_CASE("Frames: continuous collision puts nobody ahead of his way", "[frame]") {
+    // it tells of who it stopped beyond the middle of a part that he did not move
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        const Flight usual = fly(Around::nothing, frame), swept = fly(Around::continuous, frame);
+        CHECK(swept.work == Approx(usual.work).epsilon(1e-5));
+        CHECK(swept.place == Approx(usual.place).epsilon(1e-5));
+        CHECK(swept.believed);
     }
 }
 

@@ -219,9 +219,10 @@ DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld&
     btDispatcher& dispatcher = *world.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
         const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-        if (manifold.getNumContacts() == 0) continue;
-        groups.hold(*manifold.getBody0());
-        groups.hold(*manifold.getBody1());
+        const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+        if (manifold.getNumContacts() == 0 || !dispatcher.needsResponse(&a, &b)) continue;
+        groups.hold(a);
+        groups.hold(b);
     }
     std::erase_if(slow, [&groups](const btRigidBody* body) { return groups.is_held(*body); });
     falling_ = std::move(slow);

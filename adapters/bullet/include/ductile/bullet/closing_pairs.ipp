@@ -4,8 +4,10 @@
 // part of closing_contacts.ipp.
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
 #include <algorithm>
 #include <tuple>
@@ -69,6 +71,28 @@ inline constexpr btScalar near_margin = btScalar(1e-3);
         inside = inside && leaf.Mins()[k] <= low[k] - reach && leaf.Maxs()[k] >= high[k] + reach;
     }
     return inside;
+}
+
+/// Whether Bullet would make contacts of the two, and let these push: sensors do not, nor what the
+/// user's own callback of near pairs leaves out. That is asked with a pair that is in no list.
+[[nodiscard]] DUCTILE_INLINE bool may_push(btDiscreteDynamicsWorld& world, btCollisionObject& a,
+                                           btCollisionObject& b) {
+    btBroadphaseProxy &of_a = *a.getBroadphaseHandle(), &of_b = *b.getBroadphaseHandle();
+    btDispatcher& dispatcher = *world.getDispatcher();
+    if (!world.getPairCache()->needsBroadphaseCollision(&of_a, &of_b) ||
+        !dispatcher.needsCollision(&a, &b) || !dispatcher.needsResponse(&a, &b)) {
+        return false;
+    }
+    auto* own = dynamic_cast<btCollisionDispatcher*>(&dispatcher);
+    if (own == nullptr || own->getNearCallback() == &btCollisionDispatcher::defaultNearCallback) {
+        return true;
+    }
+    btBroadphasePair pair(of_a, of_b);
+    own->getNearCallback()(pair, *own, world.getDispatchInfo());
+    if (pair.m_algorithm == nullptr) return false;
+    pair.m_algorithm->~btCollisionAlgorithm();
+    own->freeCollisionAlgorithm(pair.m_algorithm);
+    return true;
 }
 
 } // namespace detail
@@ -181,11 +205,7 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
     for (int k = 0; k < 3; ++k) {
         meet = meet && from[k] - reach <= high[k] && to[k] + reach >= low[k];
     }
-    if (!meet || !world.getPairCache()->needsBroadphaseCollision(body->getBroadphaseHandle(),
-                                                                 other->getBroadphaseHandle())) {
-        return;
-    }
-    if (!world.getDispatcher()->needsCollision(body, other)) return;
+    if (!meet || !detail::may_push(world, *body, *other)) return;
     if (scope_ != nullptr && mate != nullptr && detail::pushed(*other) != nullptr &&
         !scope_->has(*other)) {
         foreign_.push_back(mate); // where it is now is not where it was

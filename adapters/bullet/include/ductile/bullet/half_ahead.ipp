@@ -34,6 +34,16 @@ struct ActionArray : btDiscreteDynamicsWorld {
     return off.length2() > rounded * rounded * (from.getOrigin().length2() + way.length2());
 }
 
+/// Of the way of a tick of `h` [s] from `from`, how much the body went: all, unless Bullet's
+/// continuous collision stopped it, which then says that it went none.
+[[nodiscard]] DUCTILE_INLINE btScalar share_gone(const btRigidBody& body, const btTransform& from,
+                                                 btScalar h) {
+    if (!(body.getHitFraction() < 1)) return 1;
+    const btVector3 way = body.getLinearVelocity() * h;
+    const btScalar gone = way.dot(body.getCenterOfMassPosition() - from.getOrigin());
+    return gone > 0 ? std::min(gone / way.length2(), btScalar(1)) : btScalar(0);
+}
+
 } // namespace detail
 
 DUCTILE_INLINE HalfAhead::HalfAhead(btDiscreteDynamicsWorld& world) : world_(world) {
@@ -80,7 +90,8 @@ DUCTILE_INLINE void HalfAhead::finish(std::span<btRigidBody* const> bodies, btSc
         if (body == nullptr) continue;
         const btTransform& here = body->getCenterOfMassTransform();
         const bool known = i < middles_.size() && middles_[i].body == body;
-        const btScalar hit = known ? body->getHitFraction() : btScalar(1);
+        const btScalar hit =
+            known ? detail::share_gone(*body, middles_[i].transform, h) : btScalar(1);
         const btScalar share = std::min(btScalar(0.5), hit);
         if (known && !detail::was_pushed(*body, middles_[i].transform, hit * h)) {
             body->setCenterOfMassTransform(detail::moved(*body, middles_[i].transform, share * h));
