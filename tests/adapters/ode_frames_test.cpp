@@ -4,6 +4,7 @@
 #include <ode/ode.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -72,6 +73,14 @@ struct Rig {
         rig.engine.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
             rig.world.add_contact(joint, contact);
         });
+    }
+
+    static void near_in_spaces(void* data, dGeomID a, dGeomID b) {
+        if (dGeomIsSpace(a) != 0 || dGeomIsSpace(b) != 0) {
+            dSpaceCollide2(a, b, data, &Rig::near_in_spaces);
+        } else {
+            near(data, a, b);
+        }
     }
 
     dBodyID body(double mass, const V3& inertia, const V3& at, dGeomID shape = nullptr,
@@ -169,6 +178,70 @@ TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests",
             }
             CHECK(solves <= 24); // at rest: two a frame
         }
+    }
+}
+
+TEST_CASE("Frames: a mesh that is one face is met as a box is, on ground that is a mesh",
+          "[frame]") {
+    constexpr double mass = 500, head_mass = 50, height = 1, strength = 30e3, g = 9.81;
+    const double crush = crush_of_head(mass, head_mass, height, strength, g);
+    constexpr std::array<float, 12> corners{-1, 0, -1, 1, 0, -1, 1, 0, 1, -1, 0, 1};
+    constexpr std::array<dTriIndex, 6> faces{0, 2, 1, 0, 3, 2};
+    const dTriMeshDataID data = dGeomTriMeshDataCreate();
+    dGeomTriMeshDataBuildSingle(data, corners.data(), 3 * sizeof(float), 4, faces.data(), 6,
+                                3 * sizeof(dTriIndex));
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        rig.set_gravity(g);
+        const auto mesh = [&] {
+            return dCreateTriMesh(rig.engine.space, data, nullptr, nullptr, nullptr);
+        };
+        const dBodyID head = rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, mesh(), 1, 2);
+        dGeomSetPosition(mesh(), 0, dReal(-0.5), 0);
+        rig.body(mass, V3(50, 50, 50), {0, 0.1 + height, 0}, rig.sphere(0.1), 2, 1);
+        const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+        rig.run(1, frame);
+        CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(5e-3));
+        CHECK(rig.world.run().believed());
+        CHECK(rig.world.run().worst_frame < 100);
+    }
+    dGeomTriMeshDataDestroy(data);
+}
+
+TEST_CASE("Frames: geoms in a space of any kind are met alike", "[frame]") {
+    constexpr double mass = 500, head_mass = 50, height = 1, strength = 30e3, g = 9.81;
+    const double crush = crush_of_head(mass, head_mass, height, strength, g);
+    const dVector3 centre{0, 0, 0}, extents{8, 8, 8};
+    for (const int kind : {0, 1, 2}) {
+        CAPTURE(kind);
+        Rig rig;
+        rig.set_gravity(g);
+        const dSpaceID outer = kind == 0   ? dQuadTreeSpaceCreate(nullptr, centre, extents, 4)
+                               : kind == 1 ? dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ)
+                                           : dHashSpaceCreate(nullptr);
+        const dSpaceID inner =
+            kind == 2 ? dQuadTreeSpaceCreate(outer, centre, extents, 4) : nullptr;
+        const auto in = [&](dSpaceID space, dGeomID geom) {
+            dSpaceRemove(rig.engine.space, geom);
+            dSpaceAdd(space, geom);
+        };
+        const dGeomID plate = rig.box(0.5, 0.1, 0.5), ball = rig.sphere(0.1);
+        const dBodyID head = rig.body(head_mass, V3(5, 5, 5), {0, 0, 0}, plate, 1, 2);
+        rig.body(mass, V3(50, 50, 50), {0, 0.2 + height, 0}, ball, 2, 1);
+        in(outer, ball);
+        in(inner != nullptr ? inner : outer, plate);
+        rig.world.on_contacts({.space = outer, .group = rig.engine.contacts},
+                              [&] { dSpaceCollide(outer, &rig, &Rig::near_in_spaces); });
+        const Slider& slider = rig.slider(head, {0, 1, 0}, strength);
+        rig.run(1, 1.0 / 60);
+        CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(5e-3));
+        CHECK(rig.world.run().believed());
+        const dGeomID stray = dCreateSphere(inner != nullptr ? inner : outer, 1);
+        dGeomSetBody(stray, dBodyCreate(rig.engine.id));
+        CHECK_THAT(message_of([&] { rig.world.step(0.01); }),
+                   Catch::Matchers::Contains("must have been added"));
+        dSpaceDestroy(outer);
     }
 }
 

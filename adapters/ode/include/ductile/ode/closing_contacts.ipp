@@ -65,10 +65,16 @@ namespace detail {
         case dHeightfieldClass:
             return std::numeric_limits<double>::infinity();
         default: {
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            // of ground, and of a face alone, there is no telling from the other side
+            const bool ground =
+                dGeomGetClass(geom) == dTriMeshClass && dGeomGetBody(geom) == nullptr;
+            if (ground) return infinity;
             std::array<dReal, 6> bounds{};
             dGeomGetAABB(geom, bounds.data());
-            return double(
+            const auto least = double(
                 std::min({bounds[1] - bounds[0], bounds[3] - bounds[2], bounds[5] - bounds[4]}));
+            return least > closed_depth ? least : infinity;
         }
     }
 }

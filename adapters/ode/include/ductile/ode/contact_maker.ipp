@@ -13,8 +13,23 @@ namespace ductile::ode {
 
 namespace detail {
 
+/// ODE ends the process where it is asked for one by its number: those that a plane might touch,
+/// which is everywhere as it lies askew.
+[[nodiscard]] DUCTILE_INLINE std::vector<dGeomID> geoms_of_quadtree(dSpaceID space) {
+    std::vector<dGeomID> geoms;
+    const dGeomID everywhere = dCreatePlane(nullptr, 1, 1, 1, 0);
+    dSpaceCollide2(
+        everywhere, reinterpret_cast<dGeomID>(space), &geoms, [](void* data, dGeomID a, dGeomID b) {
+            const bool first = dGeomGetClass(a) != dPlaneClass || dGeomGetSpace(a) != nullptr;
+            static_cast<std::vector<dGeomID>*>(data)->push_back(first ? a : b);
+        });
+    dGeomDestroy(everywhere);
+    return geoms;
+}
+
 [[nodiscard]] DUCTILE_INLINE std::vector<dGeomID> geoms_of(dSpaceID space) {
     std::vector<dGeomID> geoms;
+    if (dSpaceGetClass(space) == dQuadTreeSpaceClass) return geoms_of_quadtree(space);
     const int count = dSpaceGetNumGeoms(space);
     geoms.reserve(std::size_t(count));
     for (int i = 0; i < count; ++i) geoms.push_back(dSpaceGetGeom(space, i));
