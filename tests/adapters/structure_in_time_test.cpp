@@ -564,6 +564,12 @@ TEST_CASE("what cannot be one body until it yields is refused", "[structure][mem
     scene.frame->remove("column 00");
     CHECK(message_of([&] { (void)scene.frame->body_of("column 00"); }) ==
           "Structure.body = column 00: must be one that was not removed");
+    CHECK(message_of([&] { scene.frame->remove("column 00"); }) ==
+          "Structure.remove.member = column 00: must be one that was not removed");
+    // finite, but its square is none: it stood, with no word
+    CHECK(message_of([&] {
+              scene.frame->apply("column 01", 0.5, {0, 1e160, 0});
+          }) == "Structure.apply.force = (0, 1e+160, 0): must be at most 1e+100 in size");
     // a joint of the library's cannot go to another body
     InTime held(in_frames({.elastic = false}));
     held.rig.connect(

@@ -232,9 +232,7 @@ class DividedMember {
     }
     /// @throws std::invalid_argument where the place is beyond the ends, the force not finite.
     [[nodiscard]] Force force_at(const Vector3<double>& force, double place) const {
-        if (!are_finite(norm(force))) {
-            check::fail("Member.apply_force.force", norm(force), "N", "finite");
-        }
+        check::finite("Member.apply_force.force", norm(force), "N");
         return {force, description().on_axis("Member.apply_force.place", place)};
     }
     /// Of its forces, as a piece that is at `pose` has them in a step of `dt` [s].

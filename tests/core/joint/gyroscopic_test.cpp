@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/joint/gyroscopic.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 using namespace ductile;
@@ -31,9 +33,11 @@ TEST_CASE("A body that spins about a principal axis, or cannot turn, has no gyro
         gyroscopic_rest(Vector3<double>(0, 0, 0), inertia, Vector3<double>(1, 2, 3), 0.03)));
 }
 
-TEST_CASE("What turns about a principal axis does not wobble, what is next to one does", "[joint]") {
+TEST_CASE("What turns about a principal axis does not wobble, what is next to one does",
+          "[joint]") {
     const Matrix3<double> inertia = Vector3<double>(0.8, 1.4, 0.7).asDiagonal();
     CHECK_FALSE(wobbles(inertia, Vector3<double>(0, 7, 0)));
-    CHECK_FALSE(wobbles(Matrix3<double>(3 * Matrix3<double>::Identity()), Vector3<double>(1, 2, 3)));
+    CHECK_FALSE(
+        wobbles(Matrix3<double>(3 * Matrix3<double>::Identity()), Vector3<double>(1, 2, 3)));
     CHECK(wobbles(inertia, Vector3<double>(1e-6, 7, 0)));
 }
