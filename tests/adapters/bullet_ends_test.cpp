@@ -415,6 +415,7 @@ TEST_CASE("what makes no joint is refused in words", "[bullet][ends]") {
           std::string::npos);
     CHECK(refused(a, b, at(std::nan("")), at(-0.5)) ==
           "JointConstraint.frame_in_a.origin: must be finite [m]");
+    CHECK(refused(a, b, at(1e160), at(-0.5)).find("JointConstraint.frame_in_a.origin") == 0);
     const btTransform flat(btMatrix3x3(1, 0, 0, 1, 0, 0, 0, 0, 1), {-0.5, 0, 0});
     CHECK(refused(a, b, at(0.5), flat) ==
           "JointConstraint.frame_in_b.axes: must be three orthonormal columns, right-handed");
@@ -425,6 +426,35 @@ TEST_CASE("what makes no joint is refused in words", "[bullet][ends]") {
     btTransform sloppy = at(-0.48);
     sloppy.setRotation(btQuaternion(btVector3(0, 1, 0), btScalar(0.05)));
     CHECK(refused(a, b, at(0.5), sloppy) == "nothing thrown");
+}
+
+TEST_CASE("a state that no joint comes to is not restored", "[bullet][ends]") {
+    BulletWorld world("si");
+    Halves halves(world.world());
+    const btTransform in_a = Halves::pivot(0), in_b = Halves::pivot(1);
+    const double bad = GENERATE(std::nan(""), HUGE_VAL, 1e300);
+    const auto refused = [&](const std::string& field, const auto& restore) {
+        CHECK(message_of(restore).find("restore." + field + " = ") == 0);
+    };
+    SECTION("of one axis of Bullet's own") {
+        btHingeConstraint own(halves[0], halves[1], in_a, in_b);
+        bullet::PlasticMotor motor(own, joint(64));
+        const auto whole = motor.joint().state();
+        refused("position", [&] { motor.restore(whole, bad); });
+        auto spoiled = whole;
+        spoiled.plastic_offset = bad;
+        refused("state.plastic_offset", [&] { motor.restore(spoiled, 0); });
+        CHECK(motor.joint().state() == whole);
+        CHECK(motor.position() == 0);
+    }
+    SECTION("of six rows") {
+        Hinge hinge(halves[0], halves[1], in_a, in_b, joint(64));
+        const auto whole = hinge.state();
+        auto spoiled = whole;
+        spoiled.joint.plastic_travel = bad;
+        refused("state.plastic_travel", [&] { hinge.restore(spoiled); });
+        CHECK(hinge.state() == whole);
+    }
 }
 
 TEST_CASE("a body that is in no world is missed at the first step", "[bullet][ends]") {

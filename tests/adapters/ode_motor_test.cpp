@@ -455,6 +455,12 @@ TEST_CASE("an axis that cannot be plastic is refused by name", "[ode][motor]") {
         } end{euler};
         (void)ode::angular_motor_axis(euler, 0);
     });
+    SECTION("what no joint comes to") {
+        auto& motor = rig.motor(made.axis, joint(40));
+        const auto state = motor.joint().state();
+        refused("restore.position = nan", [&] { motor.restore(state, std::nan("")); });
+        CHECK(motor.position() == 0);
+    }
     SECTION("a stop set before") {
         dJointSetHingeParam(made.id, dParamHiStop, 0.5);
         refused("dParamHiStop", [&] { rig.motor(made.axis, joint(40)); });

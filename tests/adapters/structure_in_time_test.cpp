@@ -566,9 +566,9 @@ TEST_CASE("what moves a structure and it is not told of is said, or refused",
     InTime scene(in_frames({.weights = 0}), model);
     CHECK(message_of([&] {
               scene.frame->apply(b, {0, 0, 1e160});
-          }).find("at most 1e100") != std::string::npos);
+          }).find("at most 1e+100") != std::string::npos);
     CHECK(message_of([&] { scene.frame->scale_weights(1e160); }) ==
-          "Structure.scale_weights.factor = 1e+160: must be at most 1e100");
+          "Structure.scale_weights.factor = 1e+160: must be at most 1e+100 in size");
     StructureRig::set_mass(scene.frame->bodies().front(), 1e6);
     CHECK_THROWS_WITH(scene.rig.step(dt),
                       Catch::Contains("StructureInTime.bodies: must move as they did"));
@@ -593,6 +593,12 @@ TEST_CASE("what cannot be one body until it yields is refused", "[structure][mem
     scene.frame->remove("column 00");
     CHECK(message_of([&] { (void)scene.frame->body_of("column 00"); }) ==
           "Structure.body = column 00: must be one that was not removed");
+    CHECK(message_of([&] { scene.frame->remove("column 00"); }) ==
+          "Structure.remove.member = column 00: must be one that was not removed");
+    // finite, but its square is none: it stood, with no word
+    CHECK(message_of([&] {
+              scene.frame->apply("column 01", 0.5, {0, 1e160, 0});
+          }) == "Structure.apply.force = (0, 1e+160, 0): must be at most 1e+100 in size");
     // a joint of the library's cannot go to another body
     InTime held(in_frames({.elastic = false}));
     held.rig.connect(

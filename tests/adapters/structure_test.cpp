@@ -265,7 +265,8 @@ TEST_CASE("Weights are scaled, joints cut and members removed; what is gone is t
     portal->remove("left"); // with the node, and the beam's first piece falls
     CHECK_FALSE(portal->has_body(portal->plan().body("left")));
     CHECK_FALSE(portal->has_joint(portal->plan().joint("beam", start)));
-    portal->remove("left");
+    CHECK(message_of([&] { portal->remove("left"); }) ==
+          "Structure.remove.member = left: must be one that was not removed");
     rig.run(0.5, dt);
     CHECK(portal->sag("beam", 0) == Approx(g * 0.25 / 2).epsilon(0.1));
     CHECK(message_of([&] { (void)portal->body("left"); }) ==
@@ -281,6 +282,8 @@ TEST_CASE("Weights are scaled, joints cut and members removed; what is gone is t
           }) == "Structure.apply.force = (nan, 0, 0): must be finite");
     CHECK(message_of([&] { portal->scale_weights(INFINITY); }) ==
           "Structure.scale_weights.factor = inf: must be finite");
+    CHECK(message_of([&] { portal->scale_weights(1e160); }) ==
+          "Structure.scale_weights.factor = 1e+160: must be at most 1e+100 in size");
 }
 
 TEST_CASE("A structure leaves its world as it found it", "[structure]") {

@@ -241,12 +241,8 @@ class DividedMember {
     }
     /// @throws std::invalid_argument where the place is beyond the ends, the force not finite.
     [[nodiscard]] Force force_at(const Vector3<double>& force, double place) const {
-        constexpr double most = 1e100; // a step squares it
-        const double largest = is_finite(force) ? force.cwiseAbs().maxCoeff() : norm(force);
-        if (!(largest <= most)) {
-            check::fail("Member.apply_force.force", largest, "N",
-                        std::isfinite(largest) ? "at most 1e100" : "finite");
-        }
+        check::finite("Member.apply_force.force",
+                      is_finite(force) ? double(force.cwiseAbs().maxCoeff()) : norm(force), "N");
         return {force, description().on_axis("Member.apply_force.place", place)};
     }
     /// Of its forces, as a piece that is at `pose` has them in a step of `dt` [s].

@@ -167,10 +167,10 @@ class Member {
 struct BeamParameters {
     double length = std::numeric_limits<double>::quiet_NaN(); ///< [m], > 0
     int segments = 32; ///< equal, >= 1, beside one that is held
-    /// Of the last segment, >= 0: into a half and what is halved again. A contact takes of a blow
-    /// what the segment that it meets takes, x/(1 + x) with x = μ s/(2 G) at an end and μ s/G
+    /// Of the last segment, in [0, 10]: into a half and what is halved again. A contact takes of a
+    /// blow what the segment that it meets takes, x/(1 + x) with x = μ s/(2 G) at an end and μ s/G
     /// within the span, of a striker of mass G: 3 % of P13a's with 32 equal ones, 0.3 % with 4
-    /// halvings. At most 40.
+    /// halvings.
     int halvings = 0;
     bool clamped = false; ///< at its start
     /// A section at its end too, before a stub of 1e-6 of its length: for a joint that keeps the
@@ -218,10 +218,10 @@ requires std::same_as<typename T::Scalar, double>
     if (parameters.segments < 1) {
         check::fail("Beam.segments", double(parameters.segments), "", "1 or more");
     }
-    constexpr int most_halvings = 40; // to 1e-12 of a segment
+    constexpr int most_halvings = 10;
     if (parameters.halvings < 0 || parameters.halvings > most_halvings) {
         check::fail("Beam.halvings", double(parameters.halvings), "",
-                    "0 to " + std::to_string(most_halvings));
+                    "in [0, " + std::to_string(most_halvings) + "]");
     }
     const double area = section.area(), x = section.second_moment(SectionAxis::x) / area,
                  y = section.second_moment(SectionAxis::y) / area;

@@ -64,7 +64,7 @@ class BuiltStructure {
     void apply(NodeId node, const Vector3<double>& force);
     void apply(std::string_view member, double share, const Vector3<double>& force);
     /// Takes away a member with its joints and those of all that hung on it.
-    /// @throws std::invalid_argument where there is no such member.
+    /// @throws std::invalid_argument where there is no such member, or it was removed.
     void remove(std::string_view member);
     /// Takes away the joint at an end, or that of a number from the start; nothing where it is
     /// gone.
@@ -73,7 +73,7 @@ class BuiltStructure {
     void cut(std::string_view member, std::size_t number);
     /// From now on gravity is `factor` times that at which the structure was made, for all that the
     /// engine's world holds.
-    /// @throws std::invalid_argument where it is not finite.
+    /// @throws std::invalid_argument where it is not finite, or beyond check::reach.
     void scale_weights(double factor);
 
   protected:

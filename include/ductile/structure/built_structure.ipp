@@ -173,6 +173,9 @@ DUCTILE_INLINE void BuiltStructure::cut(std::string_view member, std::size_t num
 
 DUCTILE_INLINE void BuiltStructure::remove(std::string_view member) {
     const PlanMember& of = plan_.members[plan_.member(member)];
+    if (!body_there_[of.first_body]) {
+        detail::refuse("Structure.remove.member", of.name, "one that was not removed");
+    }
     const auto goes = [&of](std::size_t body) {
         return body >= of.first_body && body < of.first_body + of.bodies;
     };
@@ -190,12 +193,7 @@ DUCTILE_INLINE void BuiltStructure::remove(std::string_view member) {
 }
 
 DUCTILE_INLINE void BuiltStructure::scale_weights(double factor) {
-    constexpr double most = 1e100; // a step squares it
-    if (!(std::abs(factor) <= most)) {
-        check::fail("Structure.scale_weights.factor", factor, "",
-                    std::isfinite(factor) ? "at most 1e100" : "finite");
-    }
-    set_gravity(factor);
+    set_gravity(check::finite("Structure.scale_weights.factor", factor, ""));
     wake();
 }
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
@@ -30,14 +31,17 @@ namespace ductile::detail {
     throw std::invalid_argument(field + " = " + value + ": must be " + range);
 }
 
-/// Finite, and not zero where that is asked for.
+/// Finite and of a size within check::reach, and not zero where that is asked for.
 inline void require_vector(const std::string& field, const Vector3<double>& v, bool has_direction) {
-    constexpr double most = 1e100; // a step squares it
-    if (is_finite(v) && !(has_direction && is_zero(v))) {
-        if (!(v.cwiseAbs().maxCoeff() > most)) return;
-        refuse(field, text(v), "at most 1e100 in each component");
+    if (!is_finite(v) || (has_direction && is_zero(v))) {
+        refuse(field, text(v), has_direction ? "finite and not zero" : "finite");
     }
-    refuse(field, text(v), has_direction ? "finite and not zero" : "finite");
+    constexpr double most = check::reach<double>;
+    const double size = v.cwiseAbs().maxCoeff();
+    if (size > most) refuse(field, text(v), "at most " + number_text(most, 3) + " in size");
+    if (has_direction && size < 1 / most) {
+        refuse(field, text(v), "at least " + number_text(1 / most, 3) + " in size");
+    }
 }
 
 } // namespace ductile::detail

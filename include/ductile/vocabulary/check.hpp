@@ -16,8 +16,8 @@
 
 namespace ductile::check {
 
-/// @throws std::invalid_argument "field = value unit: must be range", without a trailing blank where
-/// the unit is empty.
+/// @throws std::invalid_argument "field = value unit: must be range", without a trailing blank
+/// where the unit is empty.
 template <std::floating_point Scalar>
 [[noreturn]] void fail(std::string_view field, Scalar value, std::string_view unit,
                        std::string_view range) {
@@ -27,10 +27,19 @@ template <std::floating_point Scalar>
     throw std::invalid_argument(message.append(": must be ").append(range));
 }
 
-/// Finite and greater than zero.
+/// The largest size that a quantity may have, and one over the smallest: in double its square is a
+/// number too, in float joints say where a product is none.
 template <std::floating_point Scalar>
-Scalar positive(std::string_view field, Scalar value, std::string_view unit) {
-    if (!(value > 0) || !std::isfinite(value)) fail(field, value, unit, "finite and > 0");
+inline constexpr auto reach = Scalar(std::numeric_limits<Scalar>::digits10 > 10 ? 1e100 : 1e30);
+
+/// Finite, and no larger than `reach`.
+template <std::floating_point Scalar>
+Scalar finite(std::string_view field, Scalar value, std::string_view unit) {
+    if (!std::isfinite(value)) fail(field, value, unit, "finite");
+    const Scalar most = reach<Scalar>;
+    if (std::abs(value) > most) {
+        fail(field, value, unit, "at most " + number_text(most, 3) + " in size");
+    }
     return value;
 }
 
@@ -38,21 +47,31 @@ Scalar positive(std::string_view field, Scalar value, std::string_view unit) {
 template <std::floating_point Scalar>
 Scalar non_negative(std::string_view field, Scalar value, std::string_view unit) {
     if (!(value >= 0) || !std::isfinite(value)) fail(field, value, unit, "finite and >= 0");
-    return value;
+    return finite(field, value, unit);
+}
+
+/// Finite and greater than zero.
+template <std::floating_point Scalar>
+Scalar positive(std::string_view field, Scalar value, std::string_view unit) {
+    if (!(value > 0) || !std::isfinite(value)) fail(field, value, unit, "finite and > 0");
+    const Scalar least = 1 / reach<Scalar>;
+    if (value < least) fail(field, value, unit, "at least " + number_text(least, 3));
+    return finite(field, value, unit);
 }
 
 /// Greater than zero; infinity is allowed and means "no limit".
 template <std::floating_point Scalar>
 Scalar positive_or_infinite(std::string_view field, Scalar value, std::string_view unit) {
     if (!(value > 0)) fail(field, value, unit, "> 0 (infinity: no limit)");
-    return value;
+    return std::isinf(value) ? value : positive(field, value, unit);
 }
 
 /// lower < value < upper, or lower <= value <= upper where `closed`.
 template <std::floating_point Scalar>
 Scalar between(std::string_view field, Scalar value, Scalar lower, Scalar upper,
                std::string_view unit, bool closed = false) {
-    const bool inside = closed ? (value >= lower && value <= upper) : (value > lower && value < upper);
+    const bool inside =
+        closed ? (value >= lower && value <= upper) : (value > lower && value < upper);
     if (!inside) {
         constexpr int digits = std::numeric_limits<Scalar>::digits10;
         std::string range(closed ? "in [" : "in (");

@@ -8,6 +8,8 @@
 
 #include "ductile/joint/axis_joint.hpp"
 #include "ductile/joint/usual_joints.hpp"
+#include "ductile/vocabulary/check.hpp"
+#include "ductile/world/joint_checks.hpp"
 
 namespace ductile {
 
@@ -31,7 +33,10 @@ class AxisConstraint : private AxisJointOwner<Joint>, public Constraint {
     }
     /// Goes on from `state` at `position` [m | rad], both as saved; the bodies have to be put back
     /// too, before or after.
+    /// @throws std::invalid_argument where one is none that a joint can come to.
     void restore(const State& state, double position) {
+        require_state(state);
+        check::finite("restore.position", position, "m or rad");
         AxisJointOwner<Joint>::axis_joint.restore(state);
         this->restored(position);
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -25,6 +26,7 @@ inline const JointFrame<double>& require_frame(const std::string& field,
     if (!is_finite(frame.origin)) {
         throw std::invalid_argument(field + ".origin: must be finite [m]");
     }
+    check::finite(field + ".origin", norm(frame.origin), "m");
     const Matrix3<double> products = transposed_times(frame.axes, frame.axes);
     bool orthonormal = true;
     for (int i = 0; i < 3; ++i) {
@@ -39,6 +41,21 @@ inline const JointFrame<double>& require_frame(const std::string& field,
                                     ".axes: must be three orthonormal columns, right-handed");
     }
     return frame;
+}
+
+/// A joint's state that somebody gives it, of one axis or more.
+/// @throws std::invalid_argument where it is none that a joint can come to.
+template <class State>
+void require_state(const State& state) {
+    check::non_negative("restore.state.plastic_travel", state.plastic_travel, "m or rad");
+    check::finite("restore.state.plastic_work", state.plastic_work, "J");
+    if constexpr (std::floating_point<decltype(state.plastic_offset)>) {
+        check::finite("restore.state.plastic_offset", state.plastic_offset, "m or rad");
+    } else {
+        for (const double offset : state.plastic_offset) {
+            check::finite("restore.state.plastic_offset", offset, "m or rad");
+        }
+    }
 }
 
 /// Whether the rigid axes of the bodies have to meet where these are.

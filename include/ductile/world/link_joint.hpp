@@ -8,6 +8,7 @@
 
 #include "ductile/joint/link.hpp"
 #include "ductile/joint/usual_joints.hpp"
+#include "ductile/world/joint_checks.hpp"
 
 namespace ductile {
 
@@ -39,7 +40,9 @@ class LinkJoint : private LinkOwner<Joint>, public Constraint {
     /// To be called when the bodies are back where they were. Also mends a broken joint where
     /// `state` is from before the break, and breaks it where it is from after. Forces, outcome and
     /// residuals of the last step are not restored.
+    /// @throws std::invalid_argument where it is none that a joint can come to.
     void restore(const State& state) {
+        require_state(state.joint);
         const bool was_broken = LinkOwner<Joint>::link.broken();
         LinkOwner<Joint>::link.restore(state);
         this->restored(was_broken);

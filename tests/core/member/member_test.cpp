@@ -222,7 +222,9 @@ TEST_CASE("a beam is finer towards an end that is struck, and as heavy and long"
     CHECK(finer.length() == Approx(2).epsilon(1e-15));
     CHECK(finer.mass() == Approx(equal.mass()).epsilon(1e-14));
     CHECK(message_of([&] { (void)beam(section, steel, {.length = 2, .halvings = -1}); }) ==
-          "Beam.halvings = -1: must be 0 to 40");
+          "Beam.halvings = -1: must be in [0, 10]");
+    CHECK(message_of([&] { (void)beam(section, steel, {.length = 2, .halvings = 60}); }) ==
+          "Beam.halvings = 60: must be in [0, 10]");
     const Rectangle<double> millimetres({.width = 64, .height = 4});
     CHECK(message_of([&] { (void)beam(millimetres, steel, {.length = 2}); }) ==
           "Beam.length = 2 m: must be more than its section's radius of gyration, 18.5 m");

@@ -334,8 +334,13 @@ TEST_CASE("What is wrong is named with its value and what it may be", "[structur
     CHECK(message_of([&] {
               (void)model.node({0, INFINITY, 0});
           }) == "StructureModel.node.at = (0, inf, 0): must be finite");
+    CHECK(message_of([&] {
+              (void)model.node({0, 1e160, 0});
+          }) == "StructureModel.node.at = (0, 1e+160, 0): must be at most 1e+100 in size");
     CHECK(message_of([] { StructureModel flat({.up = V3(0, 0, 0)}); }) ==
           "StructureModel.up = (0, 0, 0): must be finite and not zero");
+    CHECK(message_of([] { StructureModel flat({.up = V3(0, 0, 1e-300)}); }) ==
+          "StructureModel.up = (0, 0, 1e-300): must be at least 1e-100 in size");
     CHECK(message_of([&] { model.support(NodeId{9}); }) ==
           "StructureModel.support.node = node 9: must be a node of this model, which has 3");
     CHECK(message_of([&] { model.mass(a, -1); }) ==
