@@ -606,6 +606,35 @@ TEST_CASE("Frames: continuous collision puts nobody ahead of his way", "[frame]"
     }
 }
 
+TEST_CASE("Frames: what is driven strikes where nothing else moves", "[frame]") {
+    // a ball of 0.1 m at x on the face of a post that is turned by q: z sin q - x cos q = 0.15 m
+    constexpr double strength = 500, speed = 2, start = -0.31, height = 0.7, time = 0.4;
+    constexpr double x = start + speed * time, away = 0.15;
+    const double turn = std::asin(away / std::hypot(x, height)) + std::atan2(x, height);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        btRigidBody& post = rig.body(
+            12, btVector3(1, 1, btScalar(0.01)), {0, 0, btScalar(0.5)},
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(0.05), btScalar(0.5))),
+            1, -1);
+        btRigidBody& ball =
+            rig.body(0, {0, 0, 0}, {btScalar(start), 0, btScalar(height)}, nullptr, 1, -1);
+        ball.setCollisionFlags(ball.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+        Hinge hinge(post, along({0, 1, 0}, {0, 0, btScalar(-0.5)}), law(strength));
+        rig.world->add(hinge);
+        while (rig.world->time() < time - 1e-9) {
+            const double end = rig.world->time() + frame;
+            ball.setWorldTransform(at({btScalar(start + speed * end), 0, btScalar(height)}));
+            rig.world->step(frame);
+        }
+        CHECK(hinge.absorbed_energy() == Approx(strength * turn).epsilon(0.01));
+        CHECK(rig.world->run().believed());
+        CHECK(rig.world->run().worst_frame < 60);
+        rig.world->remove(hinge);
+    }
+}
+
 TEST_CASE("Frames: a spinning ball slides or rolls on a head that gives way", "[frame]") {
     // No gravity, so the normal impulses of blow and flow add up to m v_n whatever the frame. With
     // the solid ball's 7/2 m of slip, friction takes mu m v_n or what it takes to roll, 2/7 m v_t.

@@ -118,6 +118,54 @@ TEST_CASE("halves of a member meet from the break on, neighbours do not before",
     CHECK(lowest > 1.3);
 }
 
+TEST_CASE("a member that is struck by what is driven takes what a heavy ball gives it",
+          "[bullet][member]") {
+    const Rectangle<double> section({.width = 0.05, .height = 0.05});
+    const ductile::Member of =
+        beam(section, Material<double>(s355<double>()), {.length = 2, .segments = 8});
+    constexpr double speed = 5;
+    const auto absorbed = [&](bool driven, double frame) {
+        Rig rig;
+        World world(rig.engine, {.tolerance = 0.01, .warn = {}});
+        const MemberPiece whole = make_piece(of, straight(of), {0, 7});
+        auto* box =
+            rig.shape(std::make_unique<btBoxShape>(btVector3(btScalar(0.025), btScalar(0.025), 1)));
+        btRigidBody& body = rig.body(
+            of.mass(),
+            {btScalar(whole.inertia[0]), btScalar(whole.inertia[1]), btScalar(whole.inertia[2])},
+            {0, 0, 1}, box, usual, everything);
+        auto* round = rig.shape(std::make_unique<btSphereShape>(btScalar(0.1)));
+        const auto side = btScalar(driven ? 0 : 1e3);
+        btRigidBody& ball = rig.body(driven ? 0 : 1e5, {side, side, side}, {0, btScalar(0.2), 1},
+                                     round, usual, everything);
+        if (driven) {
+            ball.setCollisionFlags(ball.getCollisionFlags() |
+                                   btCollisionObject::CF_KINEMATIC_OBJECT);
+        } else {
+            ball.setLinearVelocity({0, btScalar(-speed), 0});
+        }
+        bullet::Member member(body, of, btTransform(btMatrix3x3::getIdentity(), {0, 0, -1}),
+                              {0.025, 0.025});
+        world.add(member);
+        while (world.time() < 0.2 - 1e-9) {
+            if (driven) {
+                btTransform there = here;
+                there.setOrigin({0, btScalar(0.2 - speed * (world.time() + frame)), 1});
+                ball.setWorldTransform(there);
+            }
+            world.step(frame);
+        }
+        CHECK(world.run().believed());
+        return member.absorbed_energy();
+    };
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        CAPTURE(frame);
+        const double by_ball = absorbed(false, frame);
+        CHECK(by_ball > 300);
+        CHECK(absorbed(true, frame) == Approx(by_ball).epsilon(rough ? 0.02 : 5e-3));
+    }
+}
+
 TEST_CASE("no address of a piece stays behind it", "[bullet][member]") {
     const int of_ground = btTypedConstraint::getFixedBody().getNumObjectsWithoutCollision();
     BallOnPost scene(heavy_post(), 100, 2);

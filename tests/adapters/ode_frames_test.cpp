@@ -505,6 +505,27 @@ TEST_CASE("Frames: what contacts bring in is said, what a driven body brings is 
     CHECK(run.believed() == !(overlap && !driven));
 }
 
+TEST_CASE("Frames: what is driven pushes, and its work is none of the contact's", "[frame]") {
+    // a ball of 0.1 m at x on the face of a post that is turned by q: y sin q - x cos q = 0.15 m
+    constexpr double strength = 500, speed = 2, start = -0.31, height = 0.7, time = 0.4;
+    constexpr double x = start + speed * time, away = 0.15;
+    const double turn = std::asin(away / std::hypot(x, height)) + std::atan2(x, height);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const dBodyID post =
+            rig.body(12, {1, 0.01, 1}, {0, 0.5, 0}, rig.box(0.05, 0.5, 0.05), 1, 2);
+        const dBodyID ball = rig.body(1, {1, 1, 1}, {start, height, 0}, rig.sphere(0.1), 2, 1);
+        dBodySetKinematic(ball);
+        dBodySetLinearVel(ball, dReal(speed), 0, 0);
+        const Hinge& hinge = rig.hinge(post, nullptr, {0, 0, 0}, strength);
+        rig.run(time, frame);
+        CHECK(hinge.absorbed_energy() == Approx(strength * turn).epsilon(0.01));
+        CHECK(rig.world.run().believed());
+        CHECK(rig.world.run().worst_frame < 60);
+    }
+}
+
 TEST_CASE("Frames: damping is that of frames, however many parts they have", "[frame]") {
     // ODE takes a share of the velocity in each step; the ball meets nothing, the rotor yields
     const auto left = [](double tolerance) {

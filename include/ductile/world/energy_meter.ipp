@@ -326,8 +326,9 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
 DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     const Vector3<double> twice = difference(velocity_sum(contact.a, contact.point_a),
                                              velocity_sum(contact.b, contact.point_b));
-    contact.taken = -dot(contact.normal, twice) / 2;
-    add(Account::contact, contact.taken);
+    const double taken = -dot(contact.normal, twice) / 2;
+    contact.taken = taken - dot(contact.normal, contact.driven_velocity);
+    add(Account::contact, taken);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
     if (contact.driven) return;
     book_pair({contact.a, contact.b}, is_plastic(contact.a) || is_plastic(contact.b),

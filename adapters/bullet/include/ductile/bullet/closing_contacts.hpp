@@ -46,6 +46,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/bullet/driven_ways.hpp"
 #include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/frame/part_engine.hpp"
@@ -64,8 +65,9 @@ class ShapeReach;
 
 class ClosingContactsFinder {
   public:
-    explicit ClosingContactsFinder(const std::unique_ptr<Divisibles>& members)
-        : members_(members) {}
+    /// `driven`: those who go their way over the frame, for Bullet mostly static ones.
+    ClosingContactsFinder(const std::unique_ptr<Divisibles>& members, const DrivenWays& driven)
+        : members_(members), driven_(driven) {}
 
     /// From now on it looks at these alone, and at what is static beside them; null: at all again.
     void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
@@ -133,6 +135,7 @@ class ClosingContactsFinder {
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
     [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);
     const std::unique_ptr<Divisibles>& members_;
+    const DrivenWays& driven_;
     std::vector<const btRigidBody*> joined_;  ///< bodies of plastic joints, sorted
     std::vector<const btRigidBody*> falling_; ///< what nothing holds, and just begins to, sorted
     std::vector<int> islands_;                ///< sorted

@@ -240,13 +240,15 @@ DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamics
                                                         btScalar h) const -> Fastest {
     btScalar speed = 0, inverse_mass = SIMD_INFINITY;
     detail::ShapeReach reach;
-    for (const btRigidBody* each : bodies(world)) {
-        const btRigidBody& body = *each;
-        if (body.getInvMass() > 0) inverse_mass = std::min(inverse_mass, body.getInvMass());
-        if (!body.isActive()) continue;
+    const auto see = [&](const btRigidBody& body) {
         speed =
             std::max(speed, body.getLinearVelocity().length() + detail::turning_speed(body, reach));
+    };
+    for (const btRigidBody* body : bodies(world)) {
+        if (body->getInvMass() > 0) inverse_mass = std::min(inverse_mass, body->getInvMass());
+        if (body->isActive()) see(*body);
     }
+    driven_.each(see);
     for (const btRigidBody* body : falling_) {
         speed = std::max(speed, 2 * h * body->getGravity().length());
     }

@@ -128,7 +128,7 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         const double most = double(way / h + fastest);
         const bool counts = most * most > 2 * double(body->getInvMass()) * least;
         if (counts && is_struck_on(*body)) struck.push_back(body);
-        if (has_leaves && !body->isStaticObject() && !detail::stays_in_leaf(*body, way)) {
+        if (has_leaves && !stands(*body) && !detail::stays_in_leaf(*body, way)) {
             far.push_back(body);
         }
     }

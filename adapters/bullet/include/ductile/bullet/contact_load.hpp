@@ -73,11 +73,12 @@ struct ContactLoad {
     const auto velocities = [&](const btCollisionObject& object) {
         const btRigidBody* body = btRigidBody::upcast(&object);
         std::pair<btVector3, btVector3> result{{0, 0, 0}, {0, 0, 0}};
-        if (body == nullptr || body->isStaticObject()) return result;
-        const BodyBefore& was = before[std::size_t(object.getWorldArrayIndex())];
+        if (body == nullptr || stands(*body)) return result;
         const btVector3 arm = load.at - body->getCenterOfMassPosition();
+        result.first = result.second = body->getVelocityInLocalPoint(arm);
+        if (body->isKinematicObject()) return result;
+        const BodyBefore& was = before[std::size_t(object.getWorldArrayIndex())];
         result.first = was.velocity + was.spin.cross(arm);
-        result.second = body->getVelocityInLocalPoint(arm);
         return result;
     };
     const auto [a_before, a_after] = velocities(*manifold.getBody0());
@@ -103,7 +104,7 @@ namespace detail {
     };
     double speed = 0, mass = 0, most = 0;
     for (const btRigidBody* body : {a, b}) {
-        if (body == nullptr || body->isStaticObject()) continue;
+        if (body == nullptr || stands(*body)) continue;
         mass = std::max(mass, double(body->getMass()));
         most += double(body->getLinearVelocity().length2()) +
                 arm * arm * double(body->getAngularVelocity().length2());

@@ -45,9 +45,13 @@ namespace ductile::bullet {
     return btTransform(axes, to_bullet(frame.origin));
 }
 
-/// Static: at rest, whatever it was told.
+/// It is static: at rest, whatever it was told. A kinematic one mostly has that flag, too.
+[[nodiscard]] inline bool stands(const btCollisionObject& body) noexcept {
+    return body.isStaticObject() && !body.isKinematicObject();
+}
+
 [[nodiscard]] inline ContactBody contact_body(const btRigidBody& body) noexcept {
-    if (body.isStaticObject()) return {};
+    if (stands(body)) return {};
     return {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
 }
 

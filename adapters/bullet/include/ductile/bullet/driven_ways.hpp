@@ -29,6 +29,11 @@ class DrivenWays {
     /// they have at `then`; as those of the interpolation with the ones they had at `begun`.
     void place(btScalar time, btScalar begun, btScalar then);
     [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
+    /// Calls `see(body)` for each.
+    template <class See>
+    void each(const See& see) const {
+        for (const Way& way : ways_) see(*way.body);
+    }
 
   private:
     struct Way {

@@ -19,6 +19,14 @@ namespace ductile::bullet {
 
 namespace detail {
 
+/// Of a point of a kinematic body, else none [m/s].
+[[nodiscard]] DUCTILE_INLINE Vector3<double> driven_velocity(const btCollisionObject& object,
+                                                             const Vector3<double>& point) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    if (body == nullptr || !body->isKinematicObject()) return Vector3<double>::Zero();
+    return contact_body(*body).at(difference(point, to_core(body->getCenterOfMassPosition())));
+}
+
 /// May bring energy in by itself, as a motor or a spring does.
 [[nodiscard]] DUCTILE_INLINE bool drives(btTypedConstraint& constraint) {
     const auto axes_drive = [](btGeneric6DofSpring2Constraint& axes) {
@@ -176,12 +184,18 @@ DUCTILE_INLINE void EnergyMeter::list_contacts_of(const btPersistentManifold& ma
         // the second one is zero where only one direction was solved (front_solver.hpp)
         const btVector3 lateral = point.m_appliedImpulseLateral1 * point.m_lateralFrictionDir1 +
                                   point.m_appliedImpulseLateral2 * point.m_lateralFrictionDir2;
-        contacts.push_back(
-            {btRigidBody::upcast(manifold.getBody0()), btRigidBody::upcast(manifold.getBody1()),
-             to_core(point.getPositionWorldOnA()), to_core(point.getPositionWorldOnB()),
-             scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
-             to_core(lateral),
-             manifold.getBody0()->isKinematicObject() || manifold.getBody1()->isKinematicObject()});
+        const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
+        MeteredContact& contact = contacts.emplace_back();
+        contact = {btRigidBody::upcast(&a),
+                   btRigidBody::upcast(&b),
+                   to_core(point.getPositionWorldOnA()),
+                   to_core(point.getPositionWorldOnB()),
+                   scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
+                   to_core(lateral),
+                   a.isKinematicObject() || b.isKinematicObject()};
+        if (!contact.driven) continue;
+        contact.driven_velocity = difference(detail::driven_velocity(a, contact.point_a),
+                                             detail::driven_velocity(b, contact.point_b));
     }
 }
 

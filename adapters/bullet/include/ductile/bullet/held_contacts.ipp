@@ -20,8 +20,7 @@ namespace detail {
 
 [[nodiscard]] DUCTILE_INLINE ContactBody contact_body(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    if (body == nullptr || body->isStaticObject()) return {};
-    return {to_core(body->getLinearVelocity()), to_core(body->getAngularVelocity())};
+    return body != nullptr ? bullet::contact_body(*body) : ContactBody();
 }
 
 /// Solved `ago` [s] ago, since when the bodies went straight on.

@@ -103,7 +103,7 @@ DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold&
       accept_(std::move(accept)),
       half_ahead_(world),
       islands_(MeetingIslands::enter(world)),
-      closing_(members),
+      closing_(members, ways_),
       keeps_ledger_(keeps_ledger),
       pairs_were_sorted_(world.getDispatchInfo().m_deterministicOverlappingPairs) {
     world_.getDispatchInfo().m_deterministicOverlappingPairs = true;
