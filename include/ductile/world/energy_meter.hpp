@@ -86,7 +86,8 @@ struct MeteredContact {
     Vector3<double> normal{0, 0, 0};     ///< impulse on A [N s]
     Vector3<double> tangential{0, 0, 0}; ///< [N s]
     bool driven = false;                 ///< by a body whose motion is prescribed
-    /// Of points of such bodies, A's less B's [m/s]: what these give is no work of the contact.
+    /// Of points of such bodies that are not in the list of bodies, A's less B's [m/s]: what these
+    /// give is no work of the contact.
     Vector3<double> driven_velocity{0, 0, 0};
     double taken = 0; ///< what the normal force took, once it is booked [J]
 };

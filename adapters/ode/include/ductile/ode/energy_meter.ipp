@@ -21,12 +21,6 @@ namespace detail {
     return dot(velocity, velocity) + dot(spin, spin) > 0;
 }
 
-/// Of a point of a body that is driven, else none [m/s].
-[[nodiscard]] DUCTILE_INLINE Vector3<double> driven_velocity(dBodyID body,
-                                                             const Vector3<double>& point) {
-    return DrivenPair::is_driven(body) ? velocity_at(body, point) : Vector3<double>::Zero();
-}
-
 } // namespace detail
 
 DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
@@ -136,10 +130,8 @@ DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
         const Vector3<double> normal = to_core(contact->normal);
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
         const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
-        contacts.push_back(
-            {a, b, point, point, pressed, difference(impulse, pressed),
-             detail::drives(a) || detail::drives(b),
-             difference(detail::driven_velocity(a, point), detail::driven_velocity(b, point))});
+        contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed),
+                            detail::drives(a) || detail::drives(b)});
     }
 }
 
