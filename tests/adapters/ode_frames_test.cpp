@@ -43,6 +43,7 @@ struct Rig {
     World world;
     double friction = 0, bounce = -1;
     bool soft = false; ///< contacts have their own ERP and CFM
+    double cfm = 1e-9;
     std::vector<std::unique_ptr<ode::PlasticConstraint>> joints;
 
     explicit Rig(const WorldParameters& parameters = {.tolerance = 0.01,
@@ -68,7 +69,7 @@ struct Rig {
         if (rig.soft) {
             surface.mode |= dContactSoftERP | dContactSoftCFM;
             surface.soft_erp = dReal(0.8);
-            surface.soft_cfm = dReal(1e-9);
+            surface.soft_cfm = dReal(rig.cfm);
         }
         rig.engine.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
             rig.world.add_contact(joint, contact);
@@ -495,6 +496,24 @@ TEST_CASE("Frames: a contact's own ERP and compliance do not throw things about"
             CHECK(slider.absorbed_energy() == Approx(strength * crush).epsilon(5e-3));
             CHECK(rig.world.run().believed());
         }
+    }
+}
+
+TEST_CASE("Frames: of a contact that gives way where it strikes a World says so once", "[frame]") {
+    for (const double cfm : {1e-8, 1e-4}) {
+        CAPTURE(cfm);
+        int said = 0;
+        Rig rig({.tolerance = 0.01, .rest_damping = 0, .warn = [&said](const std::string& line) {
+                     said += line.find("CFM") != std::string::npos ? 1 : 0;
+                 }});
+        rig.soft = true;
+        rig.cfm = cfm;
+        rig.set_gravity(9.81);
+        const dBodyID head = rig.body(50, V3(5, 5, 5), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+        rig.body(100, V3(1, 1, 1), {0, 0.5, 0}, rig.sphere(0.1), 2, 1);
+        rig.slider(head, {0, 1, 0}, 5e3);
+        rig.run(0.5, 1.0 / 60);
+        CHECK(said == (cfm > 1e-6 ? 1 : 0));
     }
 }
 

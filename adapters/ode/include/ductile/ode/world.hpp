@@ -177,6 +177,7 @@ class World final : public SteppedWorld {
     /// A body that is not known would not be put back: of joints, also ODE's own, of contacts, of
     /// geoms.
     void require_all_bodies();
+    void require_known(dBodyID body) const;
     void require_finite();
     void require_contacts();
 

@@ -22,35 +22,6 @@
 
 namespace ductile::ode {
 
-namespace detail {
-
-[[nodiscard]] DUCTILE_INLINE bool are_finite(const dReal* values, int count) {
-    double sum = 0; // of what is not finite it is not
-    for (int i = 0; i < count; ++i) sum += double(values[i]) * double(values[i]);
-    return std::isfinite(sum);
-}
-
-/// What of a body is not finite; null: nothing.
-[[nodiscard]] DUCTILE_INLINE const char* not_finite(dBodyID body) {
-    if (body == nullptr) return nullptr;
-    if (!are_finite(dBodyGetPosition(body), 3)) return "position";
-    if (!are_finite(dBodyGetQuaternion(body), 4)) return "orientation";
-    if (!are_finite(dBodyGetLinearVel(body), 3)) return "velocity";
-    if (!are_finite(dBodyGetAngularVel(body), 3)) return "spin";
-    if (!are_finite(dBodyGetForce(body), 3)) return "force";
-    if (!are_finite(dBodyGetTorque(body), 3)) return "torque";
-    dMass mass;
-    dBodyGetMass(body, &mass);
-    if (!are_finite(&mass.mass, 1) || !are_finite(mass.I, 12)) return "mass";
-    return nullptr;
-}
-
-inline constexpr const char* add_all_bodies =
-    "World.tolerance: every body that moves must have been added, also where only a joint, a "
-    "contact or a geom holds it";
-
-} // namespace detail
-
 DUCTILE_INLINE World::World(dWorldID world, WorldParameters parameters)
     : SteppedWorld(std::move(parameters.warn)),
       world_(world),
@@ -91,6 +62,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
                 tell_of_members(); // what opened did so as the part began
                 part_stands(h);
             },
+        .say = [this](const std::string& line) { supervisor().say(line); },
     });
 }
 DUCTILE_INLINE World::World(dWorldID world, Solver solver)
@@ -198,6 +170,7 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
     }
     try {
         require_contact(joint, contact);
+        for (const int side : {0, 1}) require_known(dJointGetBody(joint, side));
     } catch (const std::invalid_argument& error) {
         if (refused_.empty()) refused_ = error.what();
         return;
@@ -209,11 +182,6 @@ DUCTILE_INLINE void World::add_contact(dJointID joint, const dContact& contact,
         return;
     }
     contacts_.push_back({.joint = joint, .contact = contact});
-    const auto stranger = [this](dBodyID body) { return body != nullptr && !known_.has(body); };
-    if (parts_ != nullptr && (stranger(a) || stranger(b))) refused_ = detail::add_all_bodies;
-}
-DUCTILE_INLINE void World::require_contacts() {
-    if (!refused_.empty()) throw std::invalid_argument(std::exchange(refused_, {}));
 }
 DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
                                        std::function<void()> make) {
@@ -232,52 +200,6 @@ DUCTILE_INLINE void World::on_contacts(const ContactParameters& parameters,
 
 // ---- what SteppedWorld asks of ODE
 
-DUCTILE_INLINE void World::require_possible(double) try {
-    for (const SteppedConstraint* constraint : constraints_) constraint->check();
-    dVector3 gravity;
-    dWorldGetGravity(world_, gravity);
-    if (!members_->empty() && !is_finite(to_core(gravity))) {
-        throw std::invalid_argument("World.gravity: must be finite");
-    }
-    members_->require_possible();
-    if (parts_ != nullptr) require_all_bodies();
-    require_finite();
-    require_contacts();
-} catch (...) {
-    contacts_.clear(); // the program empties their group
-    refused_.clear();
-    throw;
-}
-DUCTILE_INLINE void World::require_finite() {
-    const auto refuse = [](const std::string& owner, const char* what) {
-        throw std::invalid_argument("World.step: the " + std::string(what) + " of " + owner +
-                                    " must be finite, as ODE would end the process");
-    };
-    dVector3 gravity;
-    dWorldGetGravity(world_, gravity);
-    if (!detail::are_finite(gravity, 3)) refuse("the world", "gravity");
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        if (const char* what = detail::not_finite(bodies_[i])) {
-            refuse("body " + std::to_string(i), what);
-        }
-        for (const dReal damping :
-             {dBodyGetLinearDamping(bodies_[i]), dBodyGetAngularDamping(bodies_[i])}) {
-            if (!(std::abs(damping) <= 1)) {
-                check::fail("World.step: the damping of body " + std::to_string(i), damping, "",
-                            "in [-1, 1]");
-            }
-        }
-    }
-    for (const PlasticConstraint* joint : plastic_) {
-        for (const int side : {0, 1}) {
-            if (const char* what = detail::not_finite(dJointGetBody(joint->id(), side))) {
-                const std::size_t number = supervisor().number(joint);
-                const bool known = number != Watch<double>::nobody; // no joint of a member
-                refuse("a body of \"" + (known ? watch().name(number) : "a member") + "\"", what);
-            }
-        }
-    }
-}
 DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) {
         contacts_.clear(); // of a step that threw
@@ -423,32 +345,6 @@ DUCTILE_INLINE std::vector<std::size_t> World::islands() const {
     return result;
 }
 
-DUCTILE_INLINE void World::require_all_bodies() {
-    known_.clear();
-    for (dBodyID body : bodies_) known_.enter(body);
-    const auto require = [this](dBodyID body) {
-        if (body != nullptr && !known_.has(body)) {
-            throw std::invalid_argument(detail::add_all_bodies);
-        }
-    };
-    for (dBodyID body : bodies_) {
-        for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
-            const dJointID joint = dBodyGetJoint(body, i);
-            if (dJointGetType(joint) == dJointTypeContact) {
-                throw std::logic_error(
-                    "World.step: there are contacts before the step: in a world with a tolerance "
-                    "they are made by what on_contacts was given");
-            }
-            for (const int side : {0, 1}) require(dJointGetBody(joint, side));
-        }
-    }
-    for (const PlasticConstraint* joint : plastic_) {
-        for (const int side : {0, 1}) require(dJointGetBody(joint->id(), side));
-    }
-    if (!maker_) return;
-    for (dGeomID geom : maker_->geoms()) {
-        if (dGeomIsEnabled(geom) != 0) require(dGeomGetBody(geom));
-    }
-}
-
 } // namespace ductile::ode
+
+#include "ductile/ode/world_checks.ipp" // IWYU pragma: keep

@@ -25,6 +25,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,7 @@ class WorldParts final : public PartEngine {
         std::function<void(double)> book;  ///< it is what the joints did [s]
         std::function<std::size_t(const PlasticConstraint&)> number;
         std::function<void(double)> accept; ///< a part of this length stands [s]
+        std::function<void(const std::string&)> say = [](const std::string&) {};
     };
 
     explicit WorldParts(Parts parts) : of_(std::move(parts)) {}
@@ -131,6 +133,9 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
+    /// Says once of a contact that strikes a plastic island and gives way by its CFM: it is taken
+    /// for a hard one.
+    void tell_of_soft(const NamedContact& named);
     /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s]. What slides and is
     /// not `plastic` is closed too, or loses its contacts by a micrometre and falls for the part.
     [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;
@@ -162,6 +167,7 @@ class WorldParts final : public PartEngine {
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double touching_ = 0;                                    ///< of what touches [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
+    bool told_of_soft_ = false;
     PartMotion motion_;
 };
 

@@ -11,6 +11,7 @@
 
 #include "ductile/joint/gyroscopic.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
 
@@ -68,6 +69,7 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
         const double closing = blow ? 0 : closes(named, h, plastic);
+        if (plastic && !told_of_soft_) tell_of_soft(named);
         if (!plastic && !own && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
@@ -84,6 +86,21 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         dJointSetFeedback(named.joint, dJointGetFeedback(old));
         dJointDisable(old);
     }
+}
+
+DUCTILE_INLINE void WorldParts::tell_of_soft(const NamedContact& named) {
+    constexpr double hard = 1e-3; // of what yields in the frame: it sinks in as what is closed may
+    const dSurfaceParameters& surface = named.contact.surface;
+    const bool own = (surface.mode & dContactSoftCFM) != 0;
+    const auto cfm = double(own ? surface.soft_cfm : dWorldGetCFM(of_.world));
+    const ContactClosing it(named);
+    const double most = hard * length_ * it.yields;
+    if (!(cfm > most) || !(it.speed * std::abs(it.speed) > 2 * it.yields * apart_)) return;
+    told_of_soft_ = true;
+    of_.say("ductile: a contact of a CFM of " + number_text(cfm, 3) +
+            " s/kg gives way, and is taken for a hard one: what it strikes may take far too much "
+            "or too little; hard is one of at most " +
+            number_text(most, 3));
 }
 
 DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bool plastic) const {
