@@ -364,8 +364,10 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     report_.error += error;
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, error, h);
     remember(motion, h);
-    // a kick from elsewhere: what it accelerated by says nothing of the forces that follow
-    if (h <= engine.shortest_part() && judged.of_rows > judged.allowed) forget_accelerations();
+    // a kick, or what closes the rest of a gap: it says nothing of the forces that follow
+    const double shortest = engine.shortest_part();
+    const bool closes = at_event && h < shortest;
+    if (closes || (h <= shortest && judged.of_rows > judged.allowed)) forget_accelerations();
     fresh_ = judged.ended || at_event;
     // a first short part says nothing of the next one's length
     const bool says = !starts_ && !jump;
