@@ -366,7 +366,8 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     remember(motion, h);
     // a kick, or what closes the rest of a gap: it says nothing of the forces that follow
     const double shortest = engine.shortest_part();
-    if (h < shortest || (h <= shortest && judged.of_rows > judged.allowed)) forget_accelerations();
+    const bool closes = at_event && h < shortest;
+    if (closes || (h <= shortest && judged.of_rows > judged.allowed)) forget_accelerations();
     fresh_ = judged.ended || at_event;
     // a first short part says nothing of the next one's length
     const bool says = !starts_ && !jump;
