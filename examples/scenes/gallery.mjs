@@ -19,7 +19,7 @@ const shots = [
     ["tension", "tension-held-bullet", 1],
     ["tipping-car", "tipping-car-foot-breaks-bullet", 0.25],
     ["gate", "gate-hit-bullet", 0.73],
-    ["fence", "fence-4-rods-a-half-bullet", 0.5],
+    ["fence", "fence-vehicle-bullet", 0.9],
     ["lamp-post", "lamp-post-4-rods-bullet", 1],
     ["paperclip", "paperclip-wire-1-bullet", 0.97],
     ["bridge", "bridge-10-percent-80-t-bullet", 0.72],

@@ -140,6 +140,7 @@ int main(int argc, char** argv) try {
                 options.keep = [&](const std::string& name,
                                    const ductile::replay::Recording& seen) {
                     std::string file = scene->name() + "-" + name + "-" + of + ".html";
+                    std::erase(file, ',');
                     std::replace(file.begin(), file.end(), ' ', '-');
                     ductile::replay::write_html(seen, out / file);
                     if (glb) {
