@@ -389,7 +389,8 @@ void truck(Table& table, bool quick) {
         }
         for (const auto& [part, times] :
              {std::pair{"before", &before}, std::pair{"open", &open}, std::pair{"after", &after}}) {
-            if (times->empty()) continue;
+            constexpr std::size_t fewest = 10; // of which a median says something
+            if (times->size() < fewest) continue;
             const double median = bench::median(*times);
             table.add({"truck", method, part, posts, median, median / beside, most, site.absorbed(),
                        double(site.bent())});
