@@ -52,7 +52,7 @@ std::string why_doubted(const RunReport& report) {
 
 Take::Take(Run& run, std::string name, std::string about, StageParameters parameters)
     : run_(run), name_(std::move(name)), about_(std::move(about)) {
-    parameters.tolerance = parameters.plain ? 0 : run.options().tolerance;
+    parameters.tolerance = run.options().tolerance;
     const std::string& engine = run.options().engine;
     if (engine != "bullet" && engine != "ode") {
         throw std::invalid_argument("engine = " + engine + ": must be bullet or ode");

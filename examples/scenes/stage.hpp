@@ -44,8 +44,7 @@ struct StageParameters {
     double gravity = 9.81; ///< downwards, along -z [m/s²]
     /// Of frames, where the engine's World takes one; 0: steps as they are.
     double tolerance = 0;
-    bool plain = false; ///< steps as they are, whatever the options say
-    bool floor = true;  ///< at z = 0
+    bool floor = true; ///< at z = 0
 };
 
 class Stage {

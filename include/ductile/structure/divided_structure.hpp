@@ -14,7 +14,6 @@
 #include <optional>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -39,13 +38,12 @@ struct StructureHold {
 
 /// @throws std::logic_error where a body of a structure is no more as that made it: of mass `made`
 /// [kg], 0: it stands.
-inline void require_body(const char* whose, double made, double mass, bool kinematic) {
+inline void require_body(double made, double mass, bool kinematic) {
     constexpr double share = 1e-3;
     if (!kinematic && std::abs(mass - made) <= share * made) return;
-    throw std::logic_error(std::string(whose) +
-                           ".bodies: must move as they did when they were made"
-                           ", with " +
-                           number_text(made, 6) + " kg");
+    throw std::logic_error(
+        "StructureInTime.bodies: must move as they did when they were made, with " +
+        number_text(made, 6) + " kg");
 }
 
 /// `OpenJoint`: has the `joint` [index in the plan] and, by a pointer, the engine's plastic joint

@@ -147,7 +147,7 @@ DUCTILE_INLINE bool MemberTick::may_be_beyond(double dt, std::span<const BodyBef
     constexpr double arms = 4; // of its length
     const MemberCourse& of = member_.course_;
     const double length = of.member().length();
-    double all = sum_, moved = 0; // what it is told of, and what moved it
+    double all = 0, moved = 0; // by whatever
     bool solved = of.member().clamped();
     if (solved) all += of.member().mass() * double(gravity.length()) * dt;
     for (const PieceBody& piece : member_.pieces_) {
@@ -160,7 +160,7 @@ DUCTILE_INLINE bool MemberTick::may_be_beyond(double dt, std::span<const BodyBef
         moved += double(body.getMass()) *
                  double((body.getLinearVelocity() - was.velocity - fallen).length());
     }
-    all += std::max(moved - sum_, 0.0);
+    all += std::max(moved, sum_);
     if (!solved || arms * all * length <= of.least_strength() * dt) return false;
     return !is_plain() || largest_moment(dt, before, gravity) > of.least_strength() * dt;
 }

@@ -239,7 +239,7 @@ DUCTILE_INLINE void StructureInTime::require_possible() const {
                 "structure");
         }
         const Cluster& cluster = course_.clusters()[c];
-        require_body("StructureInTime", cluster.held ? 0 : cluster.mass, double(body.getMass()),
+        require_body(cluster.held ? 0 : cluster.mass, double(body.getMass()),
                      body.isKinematicObject());
     }
 }

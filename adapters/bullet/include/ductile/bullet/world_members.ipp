@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of world.hpp that concern members and structures, and which of its constraints members
-// bear. A part of members.ipp.
+// Bodies of world.hpp that concern members and structures; which of its constraints members bear,
+// and what they met that they cannot be asked. A part of members.ipp.
 #pragma once
 
 #include <cmath>

@@ -63,8 +63,6 @@ class Divisibles {
     virtual void after_solve() const {}
     [[nodiscard]] virtual bool any_open() const { return false; }
     [[nodiscard]] virtual bool look(double /*dt*/) { return false; }
-    /// In place of a look: the step does not stand.
-    virtual void look_away() {}
     /// As Divisible's.
     virtual void begin_blow(double /*noticed*/) const {}
     [[nodiscard]] virtual bool switch_holds(bool /*on*/) const { return false; }

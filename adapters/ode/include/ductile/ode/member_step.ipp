@@ -77,7 +77,7 @@ DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touc
     constexpr double arms = 4; // of its length
     const double length = description().length();
     bool solved = description().clamped();
-    double all = 0, moved = 0; // what it is told of, and what moved it
+    double all = 0, moved = 0; // by whatever
     dVector3 down;
     dWorldGetGravity(dBodyGetWorld(user_), down);
     const Vector3<double> fallen = scaled(dt, to_core(down));
@@ -92,8 +92,7 @@ DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touc
         moved += course_.pieces()[i].mass * norm(difference(change, fallen));
     }
     if (!solved) return false;
-    const double told = sum_of_impulses(dt, touches);
-    all += told + std::max(moved - told, 0.0);
+    all += std::max(moved, sum_of_impulses(dt, touches));
     return arms * all * length > course_.least_strength() * dt;
 }
 

@@ -58,7 +58,6 @@ class Members final : public Divisibles {
     DUCTILE_INLINE void after_solve() const override;
     [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
     [[nodiscard]] bool look(double dt) override { return look(dt, false); }
-    void look_away() override { take_feedback_back(); }
     DUCTILE_INLINE void begin_blow(double noticed) const override;
     [[nodiscard]] DUCTILE_INLINE bool switch_holds(bool on) const override;
     DUCTILE_INLINE void see_coming() const override;
@@ -86,7 +85,6 @@ class Members final : public Divisibles {
     void list_contacts(std::span<const NamedContact> contacts);
     static void require_named(const Course& course);
     [[nodiscard]] const dJointFeedback* feedback_of(dJointID joint);
-    /// To be called after each step: what a joint kept would be another's in the next one.
     void take_feedback_back();
 
     std::vector<Course> members_;

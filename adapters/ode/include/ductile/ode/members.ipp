@@ -110,9 +110,16 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     if (members_.empty()) return;
     list_contacts(contacts);
     for (const Course& course : members_) require_named(course);
-    lent_.clear(); // not sooner: the ledger reads it when the step stands
     held_by_.clear();
     for (const Course& course : members_) course.of->before_solve(held_by_);
+    // of a step that was not looked at joints kept what is another's now; its contacts may be gone
+    for (dJointID joint : held_by_) {
+        const bool kept =
+            std::find(borrowers_.begin(), borrowers_.end(), joint) != borrowers_.end();
+        if (kept) dJointSetFeedback(joint, nullptr);
+    }
+    borrowers_.clear();
+    lent_.clear(); // not sooner: the ledger reads it when the step stands
     for (dJointID joint : held_by_) static_cast<void>(feedback_of(joint));
     for (Course& course : members_) {
         for (Touch& touch : course.touches) touch.feedback = feedback_of(touch.joint);

@@ -242,7 +242,7 @@ DUCTILE_INLINE void StructureInTime::require_possible() {
         if (held(c)) continue;
         dMass mass;
         dBodyGetMass(bodies_[c], &mass);
-        require_body("StructureInTime", course_.clusters()[c].mass, double(mass.mass),
+        require_body(course_.clusters()[c].mass, double(mass.mass),
                      dBodyIsKinematic(bodies_[c]) != 0);
     }
 }

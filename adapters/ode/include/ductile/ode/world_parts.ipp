@@ -239,10 +239,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     if (instant) begin_blow();
     const auto beyond = [&] {
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
-        if (is_put_back(closed_ < h ? closed_ : 0, h)) {
-            of_.members->look_away();
-            return false;
-        }
+        if (is_put_back(closed_ < h ? closed_ : 0, h)) return false;
         return instant ? of_.members->look_blow(h) : of_.members->look(h);
     };
     for (tick(h, false); beyond(); tick(h, false)) do_again();
@@ -289,7 +286,6 @@ DUCTILE_INLINE void WorldParts::see_coming() {
     } cut(*of_.members);
     if (cut.any) tick(blow_length, true);
     of_.members->see_coming();
-    of_.members->look_away();
     if (cut.any) put_back();
 }
 
