@@ -90,8 +90,7 @@ DUCTILE_INLINE double FrameControl::first_stop(double h) const noexcept {
         const double missed = row.strength * speed * (h - time) / 2;
         if (time < stop && time > nothing * h && missed > allowed_) stop = time;
     }
-    constexpr double past_it = 1 + 1e-7;
-    return stop < h ? std::min(past_it * stop, h) : h;
+    return std::min((1 + 1e-7) * stop, h); // past it
 }
 
 /// Gives a blow to contacts that touch and close; returns when the next gap closes [s].
@@ -103,6 +102,7 @@ DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
         const ClosingContacts seen =
             engine.closing(h, std::max(0.1 * allowed_, least), std::max(allowed_, least));
         if (!seen.strikes || i == most_in_an_instant) return seen.time;
+        report_.left.energy += seen.yielding;
         remember(engine.blow(), 0);
         engine.accept(0);
         ++solves_;

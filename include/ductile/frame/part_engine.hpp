@@ -52,6 +52,7 @@ struct ClosingContacts {
     /// plastic: a blow has to come first.
     bool strikes = false;
     double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
+    double yielding = 0; ///< energy of those that strike, give way, and are taken for hard ones [J]
 };
 
 /// Whether a contact that touched at `closed` [s], 0: none did, pushed for so much longer in a part

@@ -100,6 +100,14 @@ class ClosingContactsFinder {
     [[nodiscard]] double turn(double h) const;
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
+    /// `see(contact, yields, energy)` of each contact that strikes: K [1/kg], [J].
+    template <class See>
+    void each_strike(double touching, const See& see) const {
+        for (const Touch& touch : touches_) {
+            if (touch.contact == nullptr || !touch.strikes(touching)) continue;
+            see(*touch.contact, touch.speed * touch.speed / (2 * touch.energy), touch.energy);
+        }
+    }
     /// When the first gap among those looked at closes with more energy than `apart` [J] [s].
     [[nodiscard]] double next_gap(double apart) const;
     /// When the first gap closed, of those that close with more energy than `apart` [J], in a time
@@ -120,13 +128,18 @@ class ClosingContactsFinder {
   private:
     /// A point that touches.
     struct Touch {
-        double gap;    ///< until it is closed, < 0 beyond that [m]
-        double depth;  ///< at which it is closed [m]
-        double speed;  ///< v [m/s]
-        double before; ///< v before the solve [m/s]
-        double energy; ///< v²/(2 K) [J]
-        bool is_new;   ///< the bodies had no contact when last remembered
-        bool closes;   ///< else it leaves already, and closed since
+        double gap;                  ///< until it is closed, < 0 beyond that [m]
+        double depth;                ///< at which it is closed [m]
+        double speed;                ///< v [m/s]
+        double before;               ///< v before the solve [m/s]
+        double energy;               ///< v²/(2 K) [J]
+        bool is_new;                 ///< the bodies had no contact when last remembered
+        bool closes;                 ///< else it leaves already, and closed since
+        const NamedContact* contact; ///< null: a stop
+
+        [[nodiscard]] bool strikes(double touching) const {
+            return closes && gap < depth / 2 && energy > touching;
+        }
     };
     using Motion = std::pair<dBodyID, ContactBody>;
     using Pair = std::pair<dBodyID, dBodyID>;

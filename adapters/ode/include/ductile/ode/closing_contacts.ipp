@@ -212,7 +212,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         if (!closes && !(is_new && double(named.contact.geom.depth) > closed_depth)) continue;
         const double before = it.speed_of(motion_before(a), motion_before(b));
         touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
-                            before, it.speed * it.speed / (2 * it.yields), is_new, closes});
+                            before, it.speed * it.speed / (2 * it.yields), is_new, closes, &named});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
@@ -231,7 +231,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
                 const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
                 if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;
                 touches_.push_back({axis.gap() + depth, depth, speed, speed,
-                                    speed * speed / (2 * axis.yields), false, true});
+                                    speed * speed / (2 * axis.yields), false, true, nullptr});
             }
         }
     }
@@ -294,9 +294,8 @@ DUCTILE_INLINE double ClosingContactsFinder::turn(double h) const {
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
-    return std::any_of(touches_.begin(), touches_.end(), [touching](const Touch& touch) {
-        return touch.closes && touch.gap < touch.depth / 2 && touch.energy > touching;
-    });
+    return std::any_of(touches_.begin(), touches_.end(),
+                       [touching](const Touch& touch) { return touch.strikes(touching); });
 }
 
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {

@@ -133,9 +133,9 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
-    /// Says once of a contact that strikes a plastic island and gives way by its CFM: it is taken
-    /// for a hard one.
-    void tell_of_soft(const NamedContact& named);
+    /// Energy of contacts that strike and give way by their CFM, which are taken for hard ones: it
+    /// is left unresolved, and said once [J].
+    [[nodiscard]] double yielding(double touching);
     /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s]. What slides and is
     /// not `plastic` is closed too, or loses its contacts by a micrometre and falls for the part.
     [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;

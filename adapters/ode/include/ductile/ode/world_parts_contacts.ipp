@@ -69,7 +69,6 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
         const double closing = blow ? 0 : closes(named, h, plastic);
-        if (plastic && !told_of_soft_) tell_of_soft(named);
         if (!plastic && !own && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
@@ -88,19 +87,23 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     }
 }
 
-DUCTILE_INLINE void WorldParts::tell_of_soft(const NamedContact& named) {
+DUCTILE_INLINE double WorldParts::yielding(double touching) {
     constexpr double hard = 1e-3; // of what yields in the frame: it sinks in as what is closed may
-    const dSurfaceParameters& surface = named.contact.surface;
-    const bool own = (surface.mode & dContactSoftCFM) != 0;
-    const auto cfm = double(own ? surface.soft_cfm : dWorldGetCFM(of_.world));
-    const ContactClosing it(named);
-    const double most = hard * length_ * it.yields;
-    if (!(cfm > most) || !(it.speed * std::abs(it.speed) > 2 * it.yields * apart_)) return;
-    told_of_soft_ = true;
-    of_.say("ductile: a contact of a CFM of " + number_text(cfm, 3) +
-            " s/kg gives way, and is taken for a hard one: what it strikes may take far too much "
-            "or too little; hard is one of at most " +
-            number_text(most, 3));
+    double sum = 0;
+    closing_.each_strike(touching, [&](const NamedContact& named, double yields, double energy) {
+        const dSurfaceParameters& surface = named.contact.surface;
+        const bool own = (surface.mode & dContactSoftCFM) != 0;
+        const auto cfm = double(own ? surface.soft_cfm : dWorldGetCFM(of_.world));
+        const double most = hard * length_ * yields;
+        if (!(cfm > most)) return;
+        sum += energy;
+        if (std::exchange(told_of_soft_, true)) return;
+        of_.say("ductile: a contact of a CFM of " + number_text(cfm, 3) +
+                " s/kg gives way, and is taken for a hard one: what it strikes may take far too "
+                "much or too little; hard is one of at most " +
+                number_text(most, 3));
+    });
+    return sum;
 }
 
 DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bool plastic) const {
@@ -166,7 +169,10 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     const bool looks = of_.maker || closing_.any_stops();
     if (found.strikes || !looks || !closing_.any_plastic()) return found;
     found.strikes = closing_.strikes(touching);
-    if (found.strikes) return found;
+    if (found.strikes) {
+        found.yielding = yielding(touching);
+        return found;
+    }
     found.time = closing_.next_gap(apart);
     if (!(found.time < h) && of_.maker) found.time = next_gap(h, apart);
     return found;
