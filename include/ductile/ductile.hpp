@@ -24,6 +24,7 @@
 #include "ductile/fracture/softening_damage.hpp"
 #include "ductile/fracture/total_strain_life.hpp"
 #include "ductile/fracture/travel_limit.hpp"
+#include "ductile/joint/borne_blow.hpp"
 #include "ductile/joint/break_release.hpp"
 #include "ductile/joint/coupled_joint.hpp"
 #include "ductile/joint/coupled_state.hpp"

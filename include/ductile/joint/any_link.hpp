@@ -60,6 +60,7 @@
 #include <span>
 
 #include "ductile/fracture/event.hpp"
+#include "ductile/joint/borne_blow.hpp"
 #include "ductile/joint/break_release.hpp"
 #include "ductile/joint/joint_axis.hpp"
 #include "ductile/joint/joint_totals.hpp"
@@ -93,7 +94,9 @@ class AnyLink {
 
     /// True where `prepare` reads the bodies' inverse masses and inertias; else they may be left
     /// out of what it is shown.
-    [[nodiscard]] bool reads_mass() const noexcept { return !one_axis_ || !all_rigid_; }
+    [[nodiscard]] bool reads_mass() const noexcept {
+        return !one_axis_ || !all_rigid_ || blow_.may_have();
+    }
 
     /// The rows for a step of `dt` > 0 [s]; `rate`: share of the rigid rows' error to be removed
     /// per second, >= 0 [1/s]; `ahead` as Motion's. A broken joint asks for no force at
@@ -123,8 +126,8 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_,  force_,          start_,       end_,           before_blow_,
-                 swing_, rigid_residual_, unseen_turn_, rigid_unsolved_};
+        kept_ = {pose_, force_, start_,          end_,         before_blow_,   swing_,
+                 blow_, borne_, rigid_residual_, unseen_turn_, rigid_unsolved_};
         keep_joint();
     }
     /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
@@ -135,6 +138,8 @@ class AnyLink {
         end_ = kept_->end;
         before_blow_ = kept_->before_blow;
         swing_ = kept_->swing;
+        blow_ = kept_->blow;
+        borne_ = kept_->borne;
         rigid_residual_ = kept_->rigid_residual;
         unseen_turn_ = kept_->unseen_turn;
         rigid_unsolved_ = kept_->rigid_unsolved;
@@ -145,7 +150,8 @@ class AnyLink {
     /// what the last booked step did.
     void pause() noexcept {
         pause_joint();
-        rigid_residual_ = unseen_turn_ = 0;
+        blow_.forget();
+        rigid_residual_ = unseen_turn_ = borne_ = 0;
         rigid_unsolved_ = false;
     }
 
@@ -242,6 +248,11 @@ class AnyLink {
     [[nodiscard]] S absolute_residual() const noexcept { return allowed_.absolute_residual; }
     /// Largest violation of the rigid rows in the last step [m/s | rad/s].
     [[nodiscard]] S rigid_residual() const noexcept { return rigid_residual_; }
+    /// The most of a blow that the step before the last bore, and should not have; 0: none [J].
+    [[nodiscard]] S borne_blow() const noexcept { return borne_; }
+    /// What that is of the work so far, where it is more than the joint's parameters allow, else 0
+    /// [-].
+    [[nodiscard]] S borne_error() const noexcept;
     /// LinkPose's of the last step [rad].
     [[nodiscard]] S unseen_turn() const noexcept { return unseen_turn_; }
     /// That of the joint, and unreliable where a rigid row was left unsolved or a turn unseen.
@@ -260,7 +271,7 @@ class AnyLink {
     };
     /// What the joint's parameters allow a row to be off by.
     struct Allowed {
-        S absolute_residual, relative_residual;
+        S absolute_residual, relative_residual, step_error;
     };
     /// `all_rigid`: no plastic row is elastic below yield.
     AnyLink(const JointFrame<S>& in_a, const JointFrame<S>& in_b, bool one_axis, bool all_rigid,
@@ -275,6 +286,8 @@ class AnyLink {
     /// Of the last step nothing is known: what follows is no kick.
     void forget_velocities() noexcept {
         before_blow_.setConstant(std::numeric_limits<S>::quiet_NaN());
+        blow_.forget();
+        borne_ = 0;
     }
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept;
@@ -315,6 +328,8 @@ class AnyLink {
     /// The velocities with which a step of `dt` [s] starts would strain a row noticeably, and
     /// neither the joint nor its last step gave them to its bodies.
     [[nodiscard]] bool is_kicked(S dt) const noexcept;
+    /// Looks whether the step before this one, of `dt` [s], bore a blow.
+    void look_for_blow(S dt) noexcept;
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
 
     /// What `keep` keeps.
@@ -322,7 +337,8 @@ class AnyLink {
         LinkPose<S> pose;
         Vector6<S> force, start, end, before_blow;
         SwingState<S> swing;
-        S rigid_residual, unseen_turn;
+        BorneBlow<S> blow;
+        S borne, rigid_residual, unseen_turn;
         bool rigid_unsolved;
     };
 
@@ -334,6 +350,8 @@ class AnyLink {
     RowTurning<S> turning_;                       ///< between prepare and commit
     bool ahead_ = false;                          ///< they were half a step ahead in it
     bool sound_ = true;                           ///< the bodies of the last prepare were somewhere
+    BorneBlow<S> blow_;
+    S borne_ = 0; ///< [J]
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;

@@ -66,7 +66,11 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
         if (!whole) limits_[i] = {.lower = 0, .upper = 0};
     }
     if (!sound_) return limits_;
-    if (reads_mass()) take_mass(pose_.inverse_mass(a, b));
+    if (reads_mass()) {
+        const Matrix6<S> k = pose_.inverse_mass(a, b);
+        if (!one_axis_ || !all_rigid_) take_mass(k);
+        if (blow_.may_have()) blow_.take_mass(k, plastic_);
+    }
     prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, ahead);
     return limits_;
 }
@@ -101,6 +105,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     force_ = forces;
     commit_joint(end_, a, b, dt);
     if (all_rigid_) {
+        if (!ahead_) {
+            look_for_blow(dt);
+        } else if (blow_.may_have()) {
+            blow_.forget();
+        }
         S fastest = 0;
         for (std::size_t i = 0; i < plastic_.size(); ++i) {
             if (plastic_[i]) fastest = std::max(fastest, std::abs(end_[Eigen::Index(i)]));
@@ -111,6 +120,26 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
         swing_.step(utilisation(), last().plastic_work * SwingState<S>::waits > held * dt, dt);
     }
     return last();
+}
+
+template <std::floating_point S>
+void AnyLink<S>::look_for_blow(S dt) noexcept {
+    if (broken()) {
+        blow_.forget();
+        borne_ = 0;
+        return;
+    }
+    borne_ = blow_.see(force_, last().plastic_work > 0, dt, plastic_,
+                       [this](std::size_t i) { return strength(JointAxis(i)); });
+}
+
+template <std::floating_point S>
+S AnyLink<S>::borne_error() const noexcept {
+    if (!(borne_ > 0)) return 0;
+    S least = std::numeric_limits<S>::infinity();
+    for (const JointAxis axis : axes()) least = std::min(least, strength(axis));
+    const S error = borne_ / (totals().plastic_work + least * least_travel());
+    return error > allowed_.step_error ? error : S(0);
 }
 
 template <std::floating_point S>

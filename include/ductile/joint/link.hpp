@@ -73,7 +73,8 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     /// @throws std::invalid_argument where an axis is given twice.
     Link(Joint joint, const Axes& axes, const JointFrame<S>& in_a, const JointFrame<S>& in_b)
         : AnyLink<S>(in_a, in_b, one_axis, all_rigid(joint),
-                     {joint.parameters().absolute_residual, joint.parameters().relative_residual}),
+                     {joint.parameters().absolute_residual, joint.parameters().relative_residual,
+                      joint.parameters().allowed_step_error}),
           joint_(std::move(joint)),
           surface_(joint_),
           axes_(axes) {

@@ -4,6 +4,7 @@
 // step. An engine's constraint answers the private questions at the end; the rest is here, once.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "ductile/joint/break_release.hpp"
@@ -54,6 +55,11 @@ class JointQueries {
         auto now = joint_report(state_totals(), last_step(), fracture(), last_outcome(),
                                 last_rigid_residual());
         now.unseen_turn = last_unseen_turn();
+        if (const double error = borne_error(); error > 0) {
+            now.coarse = true;
+            now.borne = borne_blow();
+            now.step_error = std::max(now.step_error, error);
+        }
         return acts() ? now : idle_report(now);
     }
 
@@ -78,6 +84,9 @@ class JointQueries {
     [[nodiscard]] virtual Outcome last_outcome() const { return last_step().outcome; }
     [[nodiscard]] virtual double last_rigid_residual() const { return 0; }
     [[nodiscard]] virtual double last_unseen_turn() const = 0;
+    /// As AnyLink's.
+    [[nodiscard]] virtual double borne_blow() const { return 0; }
+    [[nodiscard]] virtual double borne_error() const { return 0; }
     [[nodiscard]] virtual double last_utilisation() const = 0;
     /// False where the engine left the joint out of the last step.
     [[nodiscard]] virtual bool acts() const { return true; }

@@ -28,10 +28,11 @@ template <std::floating_point S>
 struct JointReport {
     Outcome outcome = Outcome::elastic;
     bool first_yield = false; ///< it flowed in this step for the first time
-    bool coarse = false;      ///< the flow that ended had steps too long for it: step_error.hpp
+    bool coarse = false;      ///< steps were too long for it: step_error.hpp, borne_blow.hpp
     S residual = 0;           ///< worst violation of any of its rows, as Step::residual
     S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
+    S borne = 0;  ///< the most of a blow that a step just bore, where it is coarse by that [J]
     Unmodelled unmodelled = Unmodelled::nothing; ///< of a member or a structure
     S plastic_travel = 0;                        ///< p [m | rad]
     S absorbed_energy = 0;                       ///< D [J]
@@ -65,7 +66,7 @@ template <std::floating_point S>
 [[nodiscard]] JointReport<S> idle_report(JointReport<S> last) noexcept {
     last.residual = 0;
     last.unseen_turn = 0;
-    last.gained = 0;
+    last.gained = last.borne = 0;
     last.coarse = false;
     if (last.outcome == Outcome::broken) return last;
     last.first_yield = false;

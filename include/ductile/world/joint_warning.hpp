@@ -79,6 +79,12 @@ namespace ductile {
 
 [[nodiscard]] inline std::string coarse_warning(const JointEvent<double>& event) {
     std::ostringstream line;
+    if (event.report.borne > 0) {
+        line << "bore a blow of up to " << event.report.borne
+             << " J, to which it should have yielded, within one step that ended before t = "
+             << event.time << " s";
+        return line.str();
+    }
     line << "moved too much in the step that ended at t = " << event.time
          << " s: its plastic travel may be off by " << 100 * event.report.step_error << " %";
     return line.str();

@@ -55,6 +55,8 @@ class LinkQueries : public PairQueries {
     [[nodiscard]] Outcome last_outcome() const final { return link_.outcome(); }
     [[nodiscard]] double last_rigid_residual() const final { return link_.rigid_residual(); }
     [[nodiscard]] double last_unseen_turn() const final { return link_.unseen_turn(); }
+    [[nodiscard]] double borne_blow() const final { return link_.borne_blow(); }
+    [[nodiscard]] double borne_error() const final { return link_.borne_error(); }
     [[nodiscard]] double last_utilisation() const final {
         return is_silent() ? 0 : link_.utilisation();
     }
