@@ -37,7 +37,6 @@ void share_work(std::span<Joint* const> joints, const Islands& islands) {
     }
     if (!(all.value() < 1)) return;
     const std::vector<std::size_t> of_joint = islands();
-    if (of_joint.empty()) return;
     std::unordered_map<std::size_t, WorkShare<double>> shares;
     for (std::size_t i = 0; i < joints.size(); ++i) {
         if (const Step<double>* step = joints[i]->booked()) shares[of_joint[i]].add(*step);
