@@ -29,7 +29,7 @@ struct MaterialParameters {
     S density = std::numeric_limits<S>::quiet_NaN();        ///< rho [kg/m³], > 0
     S youngs_modulus = std::numeric_limits<S>::quiet_NaN(); ///< E [Pa], > 0
     S poisson_ratio = std::numeric_limits<S>::quiet_NaN();  ///< nu [-], in (-1, 0.5)
-    S yield_stress = std::numeric_limits<S>::quiet_NaN();   ///< f_y [Pa], > 0
+    S yield_stress = std::numeric_limits<S>::quiet_NaN();   ///< f_y [Pa], from 1e-7 E to E
     /// f_u [Pa], largest engineering stress, >= f_y; none: not known
     std::optional<S> ultimate_stress = std::nullopt;
     /// eps_u [-], total engineering strain at which a fibre parts, > f_y/E; infinity: never
@@ -50,7 +50,7 @@ class Material {
               check::positive("Material.youngs_modulus", parameters.youngs_modulus, "Pa")),
           poisson_ratio_(check::between("Material.poisson_ratio", parameters.poisson_ratio, S(-1),
                                         S(0.5), "")),
-          yield_stress_(check::positive("Material.yield_stress", parameters.yield_stress, "Pa")),
+          yield_stress_(checked_yield_stress(parameters)),
           ultimate_stress_(checked_ultimate_stress(parameters)),
           ultimate_strain_(checked_ultimate_strain(parameters)),
           fatigue_(parameters.fatigue) {
@@ -80,6 +80,16 @@ class Material {
     }
 
   private:
+    /// Nothing yields at a strain of 1e-7 or beyond 1: one of both is in MPa or GPa.
+    static S checked_yield_stress(const MaterialParameters<S>& parameters) {
+        constexpr auto field = "Material.yield_stress";
+        const S stress = check::positive(field, parameters.yield_stress, "Pa");
+        const S strain = stress / parameters.youngs_modulus;
+        if (strain < S(1e-7) || strain > 1) {
+            check::fail(field, stress, "Pa", "from 1e-7 to 1 of youngs_modulus, both in Pa");
+        }
+        return stress;
+    }
     static std::optional<S> checked_ultimate_stress(const MaterialParameters<S>& parameters) {
         if (!parameters.ultimate_stress) return std::nullopt;
         constexpr auto field = "Material.ultimate_stress";

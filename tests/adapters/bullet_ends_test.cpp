@@ -463,7 +463,8 @@ TEST_CASE("a body that is in no world is missed at the first step", "[bullet][en
     Hinge hinge(body, here, joint(64));
     world.world().removeRigidBody(&body);
     const std::string missed =
-        "PlasticConstraint.a: must be in a world before the first step: addRigidBody it";
+        "PlasticConstraint.a: is in no world: addRigidBody it before the first step, or remove "
+        "the joint before the body";
     hinge.add_to(world.world()); // which of the two comes first does not matter
     {
         bullet::World keeper(world.world());

@@ -20,7 +20,8 @@ namespace ductile::test {
 struct FrameSettings {
     bool elastic = true;
     double weights = 1;    ///< factor on gravity
-    bool loose = false;    ///< on footings of 0.6 × 0.6 × 0.3 m, 260 kg, that lie on the ground
+    bool loose = false;    ///< on footings, 0.3 m high, 260 kg, that lie on the ground
+    double footing = 0.6;  ///< their width and depth [m]
     int crates = 0;        ///< of 1 t on every beam
     int frames = 1;        ///< one on the other, jointed by their columns
     bool contacts = false; ///< members collide
@@ -81,7 +82,9 @@ inline StructureModel frame_model(const FrameSettings& settings, double base) {
     }
     for (const NodeId foot : at[0]) {
         if (settings.loose) {
-            model.footing(foot, {.width = 0.6, .depth = 0.6, .height = 0.3, .mass = 260});
+            model.footing(
+                foot,
+                {.width = settings.footing, .depth = settings.footing, .height = 0.3, .mass = 260});
         } else {
             model.support(foot);
         }

@@ -125,6 +125,34 @@ TEST_CASE("A frame stands at 0.999 of P30's collapse load, without creep, and fa
     }
 }
 
+TEST_CASE("A frame that lost nothing stands at 0.999 of P30's collapse load and falls at 1.001",
+          "[structures]") {
+    if (single) return; // the margin is round-off's
+    constexpr double collapse = 26.353353;
+    for (const double factor : {0.999, 1.001}) {
+        CAPTURE(factor);
+        FrameSettings settings;
+        settings.elastic = false;
+        Frame frame(settings);
+        frame.rig.keep_awake();
+        constexpr int steps = 50; // little by little, as forces are shared out anew
+        for (int i = 1; i <= steps; ++i) {
+            frame.structure->scale_weights(factor * collapse * i / steps);
+            frame.rig.step(dt);
+        }
+        frame.rig.run(2, dt);
+        if (factor < 1) {
+            CHECK(frame.structure->absorbed_energy() == 0);
+            CHECK(frame.rig.speed() < 1e-9);
+            // least of what any distribution of the forces uses
+            CHECK(frame.structure->utilisation() == Approx(factor).epsilon(1e-3));
+        } else {
+            CHECK(frame.structure->absorbed_energy() > 1e6);
+        }
+        CHECK(frame.rig.lines().empty());
+    }
+}
+
 TEST_CASE("The frame stands on loose footings, under another frame and under crates",
           "[structures]") {
     FrameSettings settings;
@@ -144,7 +172,7 @@ TEST_CASE("The frame stands on loose footings, under another frame and under cra
         frame.rig.keep_awake();
         frame.rig.run(10, dt);
         const double before = frame.sway();
-        frame.rig.run(10, dt);
+        frame.rig.run(settings.loose ? 50 : 10, dt); // others are still to the last digit by then
         // In float crates that are put down in parts of a frame strain a beam by their digits: 0.8
         // J of 8 kJ that they fall by, and the World says so.
         const bool digits = single && settings.crates > 0;
@@ -154,7 +182,7 @@ TEST_CASE("The frame stands on loose footings, under another frame and under cra
             CHECK(frame.rig.lines().empty());
         }
         CHECK(frame.structure->utilisation() == Approx(used).epsilon(0.02));
-        CHECK(std::abs(frame.sway() - before) < (single ? 1e-4 : 1e-7));
+        CHECK(std::abs(frame.sway() - before) < (single ? 1e-4 : 1e-8));
     }
 }
 

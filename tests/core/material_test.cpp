@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
 
+#include <string>
+
 #include "ductile/material.hpp"
 #include "support/throws.hpp"
 
@@ -39,6 +41,21 @@ TEST_CASE("a material names the parameter that is missing or out of range", "[ma
           "Material.youngs_modulus = inf Pa: must be finite and > 0");
 }
 
+TEST_CASE("a material whose yield stress and modulus are not both in Pa is refused", "[material]") {
+    constexpr auto range = ": must be from 1e-7 to 1 of youngs_modulus, both in Pa";
+    auto bad = steel;
+    bad.yield_stress = 400; // MPa
+    CHECK(message_of([&] { Material<double>{bad}; }) ==
+          "Material.yield_stress = 400 Pa" + std::string(range));
+    bad = steel;
+    bad.youngs_modulus = 200; // GPa
+    CHECK(message_of([&] { Material<double>{bad}; }) ==
+          "Material.yield_stress = 400000000 Pa" + std::string(range));
+    bad.youngs_modulus = 1e6; // rubber
+    bad.yield_stress = 1e6;
+    CHECK(message_of([&] { Material<double>{bad}; }) == "nothing thrown");
+}
+
 TEST_CASE("a material without a limit of strain or fatigue constants says so", "[material]") {
     const Material material(steel);
     CHECK(material.ultimate_strain() == std::numeric_limits<double>::infinity());
@@ -49,8 +66,8 @@ TEST_CASE("a material without a limit of strain or fatigue constants says so", "
 TEST_CASE("a material keeps its ultimate strain and fatigue constants", "[material]") {
     auto parameters = steel;
     parameters.ultimate_strain = 0.2;
-    parameters.fatigue = ductile::FatigueConstants<double>{.ductility_coefficient = 1,
-                                                           .ductility_exponent = -0.6};
+    parameters.fatigue =
+        ductile::FatigueConstants<double>{.ductility_coefficient = 1, .ductility_exponent = -0.6};
     const Material material(parameters);
     CHECK(material.ultimate_strain() == 0.2);
     REQUIRE(material.fatigue().has_value());
@@ -81,10 +98,10 @@ TEST_CASE("a material names the limit of strain or fatigue constant that is out 
           "FatigueConstants.ductility_exponent = nan: must be in (-1, 0)");
     CHECK(with({.ductility_coefficient = 1, .ductility_exponent = 0.6}) ==
           "FatigueConstants.ductility_exponent = 0.6: must be in (-1, 0)");
-    CHECK(with({.ductility_coefficient = 1,
-                .ductility_exponent = -0.6,
-                .strength_coefficient = -1}) ==
-          "FatigueConstants.strength_coefficient = -1 Pa: must be finite and >= 0");
+    CHECK(
+        with(
+            {.ductility_coefficient = 1, .ductility_exponent = -0.6, .strength_coefficient = -1}) ==
+        "FatigueConstants.strength_coefficient = -1 Pa: must be finite and >= 0");
     CHECK(with({.ductility_coefficient = 1,
                 .ductility_exponent = -0.6,
                 .strength_coefficient = 900e6}) ==

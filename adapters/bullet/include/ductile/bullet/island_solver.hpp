@@ -20,6 +20,7 @@
 //
 // Traps of Bullet 3.24 that this header deals with
 //   - Large limits stand for infinite ones: 1e10 for contacts, SIMD_INFINITY for joints.
+//   - Its friction rows know what forces give their bodies in a tick, but not what torques do.
 //   - What overlaps deeper than m_splitImpulsePenetrationThreshold is pushed apart in a solve of
 //   its own:
 //     Bullet's, by sweeps, without the joints. Not in parts of frames (front_solver.ipp).
@@ -87,6 +88,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_contacts();
     void find_turned(btPersistentManifold** manifolds, int count, double tick);
     [[nodiscard]] double turned(const void* point) const;
+    [[nodiscard]] double torque_left_out(const btSolverConstraint& friction) const;
     void store();
     [[nodiscard]] IslandSeat seat(btRigidBody& body) const;
     solve::IslandRow& add_row(btSolverConstraint& row);

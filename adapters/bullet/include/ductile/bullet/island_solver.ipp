@@ -237,6 +237,15 @@ DUCTILE_INLINE double IslandSolver::turned(const void* point) const {
     return found != turned_.end() && found->first == point ? found->second : 0;
 }
 
+/// What Bullet's friction rows forget: the speed along them that torques on their bodies give in a
+/// tick.
+DUCTILE_INLINE double IslandSolver::torque_left_out(const btSolverConstraint& row) const {
+    const btSolverBody& a = m_tmpSolverBodyPool[row.m_solverBodyIdA];
+    const btSolverBody& b = m_tmpSolverBodyPool[row.m_solverBodyIdB];
+    return double(row.m_relpos1CrossNormal.dot(a.m_externalTorqueImpulse) +
+                  row.m_relpos2CrossNormal.dot(b.m_externalTorqueImpulse));
+}
+
 /// A normal row and, after it, its friction rows, sliding and rolling ones, on one cone.
 DUCTILE_INLINE void IslandSolver::load_contacts() {
     btConstraintArray& contacts = m_tmpSolverContactConstraintPool;
@@ -270,6 +279,7 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
                 }
                 block.size[std::size_t(block.count)] = double(pool[next].m_friction);
                 solve::IslandRow& row = take(pool[next]);
+                row.target -= torque_left_out(pool[next]);
                 if (slid < 2) row.impulse = before[slid++] * share;
             }
         };

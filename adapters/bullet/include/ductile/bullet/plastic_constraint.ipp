@@ -142,7 +142,8 @@ DUCTILE_INLINE void PlasticConstraint::require_bodies_in_world() const {
     for (const int side : {0, 1}) {
         if (!(body(side).getInvMass() > 0) || body(side).getBroadphaseHandle() != nullptr) continue;
         throw std::logic_error(std::string("PlasticConstraint.") + (side == 0 ? "a" : "b") +
-                               ": must be in a world before the first step: addRigidBody it");
+                               ": is in no world: addRigidBody it before the first step, or remove "
+                               "the joint before the body");
     }
 }
 
