@@ -22,8 +22,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/member/strips.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/members.hpp"
 
 using namespace ductile;
 
@@ -250,4 +252,164 @@ TEST_CASE("worlds in threads of their own do not know of each other", "[bullet][
         return scenes.front()->state();
     };
     CHECK(state_after(4) == state_after(1));
+}
+
+namespace {
+
+using Manager = btSimulationIslandManagerMt;
+
+/// Four threads for the islands, as Bullet hands them out where it was built for threads.
+void solve_in_threads(btAlignedObjectArray<Manager::Island*>* islands,
+                      const Manager::SolverParams& with) {
+    constexpr int count = 4;
+    std::vector<std::thread> threads;
+    for (int t = 0; t < count; ++t) {
+        threads.emplace_back([islands, &with, t] {
+            for (int i = t; i < islands->size(); i += count) {
+                Manager::solveIsland(with.m_solverPool, *(*islands)[i], with);
+            }
+        });
+    }
+    for (auto& thread : threads) thread.join();
+}
+
+/// A solver for each island: Bullet's own pool locks nothing where it was not built for threads.
+class SolverPerIsland final : public btConstraintSolverPoolMt {
+  public:
+    SolverPerIsland() : btConstraintSolverPoolMt(1) {}
+    btScalar solveGroup(btCollisionObject** bodies, int body_count,
+                        btPersistentManifold** manifolds, int manifold_count,
+                        btTypedConstraint** constraints, int constraint_count,
+                        const btContactSolverInfo& info, btIDebugDraw* drawer,
+                        btDispatcher* dispatcher) override {
+        btSequentialImpulseConstraintSolver solver;
+        return solver.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
+                                 constraint_count, info, drawer, dispatcher);
+    }
+};
+
+/// Eight posts that balls strike, or not, the last two tied together, and piles of boxes that touch
+/// none of them.
+template <class Engine>
+class Posts {
+  public:
+    template <class... Arguments>
+    Posts(bool struck, double tolerance, Arguments&&... arguments)
+        : engine(&dispatcher_, &broadphase_, std::forward<Arguments>(arguments)...,
+                 &configuration_),
+          world_(engine, {.tolerance = tolerance, .warn = {}}) {
+        engine.setGravity({0, 0, btScalar(-9.81)});
+        engine.getDispatchInfo().m_deterministicOverlappingPairs = true;
+        engine.getSolverInfo().m_minimumSolverBatchSize = 1;
+        post_.addChildShape(btTransform(btQuaternion::getIdentity(), {0, 0, 1}), &half_post_);
+        for (int i = 0; i < 8; ++i) {
+            const btVector3 at(btScalar(5 * i), 0, 0);
+            members.push_back(std::make_unique<bullet::Member>(
+                add(0, post_, at), test::heavy_post(), btTransform::getIdentity(),
+                bullet::MemberBox{0.05, 0.05}));
+            btRigidBody& ball = add(100, ball_, at + btVector3(0, btScalar(-0.16), btScalar(1.9)));
+            if (struck) ball.setLinearVelocity({0, btScalar(1 + 0.3 * i), 0});
+        }
+        btRigidBody& between = add(20, ball_, {btScalar(32.5), 0, 2});
+        for (bullet::Member* member : {members[6].get(), members[7].get()}) {
+            const auto x = btScalar(member == members[6].get() ? -2.5 : 2.5);
+            member->attach(2, [&between, x](btRigidBody& piece, const btTransform& at) {
+                return std::make_unique<btPoint2PointConstraint>(piece, between, at.getOrigin(),
+                                                                 btVector3(x, 0, 0));
+            });
+        }
+        for (auto& member : members) world_.add(*member);
+        (void)add(0, ground_, {0, 20, -1});
+        for (int i = 0; i < 60; ++i) {
+            const auto x = btScalar(i);
+            others_.push_back(&add(1 + x, box_, {x, 20, btScalar(0.26)}));
+            others_.push_back(&add(1, box_, {x + btScalar(0.1), 20, btScalar(0.8)}));
+        }
+    }
+    ~Posts() {
+        members.clear();
+        for (auto& body : bodies_) engine.removeRigidBody(body.get());
+    }
+    Posts(const Posts&) = delete;
+    Posts& operator=(const Posts&) = delete;
+
+    void run() {
+        for (int i = 0; i < 60; ++i) {
+            world_.step(1.0 / 120);
+            for (const auto& member : members) {
+                seen.push_back(btScalar(member->absorbed_energy()));
+                opened = opened || !member->whole();
+                for (int k = 0; k <= 10; ++k) see(member->pose(k).getOrigin(), seen);
+            }
+            for (const btRigidBody* body : others_) {
+                see(body->getCenterOfMassPosition(), seen_of_others);
+                see(body->getAngularVelocity(), seen_of_others);
+            }
+        }
+    }
+
+  private:
+    btRigidBody& add(btScalar mass, btCollisionShape& shape, const btVector3& at) {
+        btVector3 inertia(0, 0, 0);
+        if (mass > 0) shape.calculateLocalInertia(mass, inertia);
+        btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+        info.m_startWorldTransform.setOrigin(at);
+        bodies_.push_back(std::make_unique<btRigidBody>(info));
+        bodies_.back()->setActivationState(DISABLE_DEACTIVATION);
+        engine.addRigidBody(bodies_.back().get());
+        return *bodies_.back();
+    }
+    static void see(const btVector3& v, std::vector<btScalar>& to) {
+        to.insert(to.end(), {v.x(), v.y(), v.z()});
+    }
+
+    btDefaultCollisionConfiguration configuration_;
+    btCollisionDispatcher dispatcher_{&configuration_};
+    btDbvtBroadphase broadphase_;
+    btCompoundShape post_;
+    btBoxShape half_post_{{btScalar(0.05), btScalar(0.05), 1}},
+        box_{{btScalar(0.25), btScalar(0.25), btScalar(0.25)}}, ground_{{100, 5, 1}};
+    btSphereShape ball_{btScalar(0.1)};
+    std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<btRigidBody*> others_;
+
+  public:
+    Engine engine;
+
+  private:
+    bullet::World world_;
+
+  public:
+    std::vector<std::unique_ptr<bullet::Member>> members;
+    std::vector<btScalar> seen, seen_of_others; ///< in every frame
+    bool opened = false;
+};
+
+} // namespace
+
+TEST_CASE("members that open in islands solved by four threads are those of one, bit for bit",
+          "[bullet][threads][member]") {
+    const double tolerance = GENERATE(0.0, 0.01);
+    CAPTURE(tolerance);
+    const auto run = [tolerance](Manager::IslandDispatchFunc dispatch, bool struck) {
+        SolverPerIsland solver;
+        Posts<btDiscreteDynamicsWorldMt> scene(struck, tolerance, &solver, nullptr);
+        auto& manager = static_cast<Manager&>(*scene.engine.getSimulationIslandManager());
+        manager.setMinimumSolverBatchSize(1);
+        manager.setIslandDispatchFunction(dispatch);
+        scene.run();
+        CHECK(scene.opened == struck);
+        return std::pair{scene.seen, scene.seen_of_others};
+    };
+    const auto serial = run(Manager::serialIslandDispatch, true),
+               parallel = run(solve_in_threads, true);
+    CHECK((parallel.first == serial.first));
+    CHECK((parallel.second == serial.second));
+    if (tolerance > 0) return; // parts are of all bodies, where there are members
+    CHECK((parallel.second == run(solve_in_threads, false).second));
+    // in parts it has the contacts of an island in another order
+    btSequentialImpulseConstraintSolver alone;
+    Posts<btDiscreteDynamicsWorld> usual(true, tolerance, &alone);
+    usual.run();
+    CHECK((parallel.first == usual.seen));
 }

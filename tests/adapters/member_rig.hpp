@@ -135,7 +135,8 @@ struct KeptBody {
     }
 };
 
-/// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
+/// A mass [kg] fixed by a point to the tip of a cantilever such as P13's, always jointed or just in
+/// time.
 struct Struck {
     Rig rig;
     bullet::World world;
@@ -144,9 +145,9 @@ struct Struck {
     std::unique_ptr<bullet::Member> member;
     btRigidBody* mass;
 
-    Struck(const Member& of, bool just_in_time, double tolerance = 0)
+    Struck(const Member& of, bool just_in_time, double tolerance = 0, double kg = 1)
         : world(rig.engine, {.tolerance = tolerance, .warn = {}}), description(of) {
-        mass = &rig.body(1, {1, 1, 1}, {0, 0, 1});
+        mass = &rig.body(kg, {1, 1, 1}, {0, 0, btScalar(of.length())});
         const btVector3 none(0, 0, 0);
         if (!just_in_time) {
             always = std::make_unique<AlwaysJointed>(rig, world, of);
@@ -157,7 +158,7 @@ struct Struck {
             return;
         }
         member = std::make_unique<bullet::Member>(rig.body(0, none, none), of, here);
-        member->attach(1, [this](btRigidBody& piece, const btTransform& place) {
+        member->attach(of.length(), [this](btRigidBody& piece, const btTransform& place) {
             return std::make_unique<btPoint2PointConstraint>(piece, *mass, place.getOrigin(),
                                                              btVector3(0, 0, 0));
         });
@@ -195,7 +196,7 @@ inline void hold_across(bullet::Member& member, double place, double z, bool sli
 }
 
 /// A beam that stands clamped, its other end held so that it may slide along alone, or not at all,
-/// and a mass of 100 kg fixed by a point to it at `place` [m].
+/// and a mass [kg] fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
     std::vector<std::string> said; ///< by the World
@@ -205,10 +206,10 @@ struct HeldTwice {
     btRigidBody* mass;
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
-              bool slides = true)
+              bool slides = true, double kg = 100)
         : world(rig.engine, {.tolerance = tolerance,
                              .warn = [this](const std::string& line) { said.push_back(line); }}),
-          mass(&rig.body(100, {10, 10, 10}, {0, 0, btScalar(place)})) {
+          mass(&rig.body(kg, {10, 10, 10}, {0, 0, btScalar(place)})) {
         const btVector3 none(0, 0, 0);
         const double length = of.length();
         if (!just_in_time) {
@@ -263,6 +264,9 @@ inline btRigidBody& ball_of(Rig& rig, double mass, const btVector3& at) {
                     rig.shape(std::make_unique<btSphereShape>(btScalar(0.1))), usual, everything);
 }
 
+[[nodiscard]] inline Vector3<double> place_of(const btRigidBody* body) {
+    return bullet::to_core(body->getCenterOfMassPosition());
+}
 inline void set_velocity(btRigidBody* body, const Vector3<double>& v) {
     body->setLinearVelocity(bullet::to_bullet(v));
 }
@@ -290,6 +294,16 @@ struct Scene {
     void go(double time, double frame) {
         const int count = int(std::lround(time / frame));
         for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// Clamped, along z from the origin on; gravity across it, of `g` [m/s²].
+struct Cantilever : Scene {
+    std::unique_ptr<bullet::Member> member;
+
+    Cantilever(const Member& of, double g) : Scene({0, btScalar(-g), 0}) {
+        member = std::make_unique<bullet::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
+        world.add(*member);
     }
 };
 

@@ -146,7 +146,8 @@ struct KeptBody {
     void put_back() const { as_it_was.put_back(body); }
 };
 
-/// A mass of 1 kg fixed by a point to the tip of P13's cantilever, always jointed or just in time.
+/// A mass [kg] fixed by a point to the tip of a cantilever such as P13's, always jointed or just in
+/// time.
 struct Struck {
     Rig rig;
     ode::World world;
@@ -155,17 +156,17 @@ struct Struck {
     dBodyID mass;
     dJointID pin;
 
-    Struck(const Member& of, bool just_in_time, double tolerance = 0)
+    Struck(const Member& of, bool just_in_time, double tolerance = 0, double kg = 1)
         : world(rig.id, {.tolerance = tolerance, .warn = {}}),
-          mass(rig.body(1, {1, 1, 1}, {0, 0, 1})) {
+          mass(rig.body(kg, {1, 1, 1}, {0, 0, of.length()})) {
         world.add(mass);
         if (just_in_time) {
             member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
-            pin = rig.pin(member->body_of(1), mass, {0, 0, 1});
+            pin = rig.pin(member->body_of(1), mass, {0, 0, of.length()});
             world.add(*member, "post");
         } else {
             always = std::make_unique<AlwaysJointed>(rig, world, of);
-            pin = rig.pin(always->bodies.back(), mass, {0, 0, 1});
+            pin = rig.pin(always->bodies.back(), mass, {0, 0, of.length()});
         }
     }
     void strike(double speed) const { set_velocity(mass, {0, speed, 0}); }
@@ -178,7 +179,7 @@ struct Struck {
 };
 
 /// A beam that stands clamped, its other end held so that it may slide along alone, or not at all,
-/// and a mass of 100 kg fixed by a point to it at `place` [m].
+/// and a mass [kg] fixed by a point to it at `place` [m].
 struct HeldTwice {
     Rig rig;
     std::vector<std::string> said; ///< by the World
@@ -188,10 +189,10 @@ struct HeldTwice {
     dBodyID mass;
 
     HeldTwice(const Member& of, bool just_in_time, double tolerance, double place,
-              bool slides = true)
+              bool slides = true, double kg = 100)
         : world(rig.id, {.tolerance = tolerance,
                          .warn = [this](const std::string& line) { said.push_back(line); }}),
-          mass(rig.body(100, {10, 10, 10}, {0, 0, place})) {
+          mass(rig.body(kg, {10, 10, 10}, {0, 0, place})) {
         const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, of.length()});
         for (const dBodyID body : {mass, carriage}) world.add(body);
         const dJointID rail = dJointCreateSlider(rig.id, nullptr),
@@ -240,6 +241,8 @@ inline dBodyID ball_of(const Rig& rig, double mass, const V3& at) {
     return ball;
 }
 
+[[nodiscard]] inline V3 place_of(dBodyID body) { return ode::to_core(dBodyGetPosition(body)); }
+
 /// By the engine's own calls, of which a member that is whole is not told.
 inline void push_behind(ode::Member& member, double force) {
     dBodyAddForce(member.body_of(0), 0, dReal(force), 0);
@@ -265,6 +268,16 @@ struct Scene {
     void go(double time, double frame) {
         const int count = int(std::lround(time / frame));
         for (int i = 0; i < count; ++i) world.step(frame);
+    }
+};
+
+/// Clamped, along z from the origin on; gravity across it, of `g` [m/s²].
+struct Cantilever : Scene {
+    std::unique_ptr<ode::Member> member;
+
+    Cantilever(const Member& of, double g) : Scene({0, -g, 0}) {
+        member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
+        world.add(*member);
     }
 };
 

@@ -4,6 +4,8 @@
 // without.
 #include "adapters/ode_rig.hpp"
 
+#include "adapters/ode_member_rig.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -250,4 +252,71 @@ TEST_CASE("a world goes on alone when its threads have ended", "[ode][threads]")
     }
     for (int i = 0; i < 70; ++i) rig.step(1.0 / 240);
     CHECK(hinge.absorbed_energy() == Approx(100).epsilon(1e-9));
+}
+
+namespace {
+
+/// Clamped posts that balls strike, or not, the last one two posts at once, and chains of ODE's own
+/// balls that touch none of them: what was seen of either in every step.
+struct Posts {
+    std::vector<double> members, others;
+    bool opened = false;
+};
+Posts posts(unsigned threads, bool struck) {
+    in_ode::Rig engine({0, 0, -9.81});
+    const auto pool = threads > 0 ? std::make_unique<ode::ThreadPool>(engine.id, threads) : nullptr;
+    ode::World world(engine.id, {.tolerance = 0, .warn = {}});
+    const Member of = heavy_post();
+    std::vector<std::unique_ptr<ode::Member>> all;
+    for (const double x : {0.0, 5.0, 10.0, 15.0, 20.0, 20.12}) {
+        const dBodyID body = engine.body(0, none, {x, 0, 0});
+        engine.boxes(body, of, 0.05);
+        all.push_back(std::make_unique<ode::Member>(body, of, in_ode::here));
+        world.add(*all.back());
+        if (x > 20) continue;
+        const dBodyID ball = in_ode::ball_of(engine, 100, {x < 20 ? x : x + 0.06, -0.16, 1.9});
+        if (struck) in_ode::set_velocity(ball, {0, 1 + x / 10, 0});
+        world.add(ball);
+    }
+    std::vector<dBodyID> chain;
+    for (int i = 0; i < 40; ++i) {
+        const dBodyID link = engine.body(1 + 0.1 * i, {0.1, 0.2, 0.3}, {1.0 * i, 20, 0});
+        dBodySetAngularVel(link, 1, 0, dReal(0.1 * i));
+        (void)engine.pin(link, i % 4 == 0 ? nullptr : chain.back(), {i - 0.5, 20, 0});
+        world.add(link);
+        chain.push_back(link);
+    }
+    engine.meet(world);
+    Posts seen;
+    for (int i = 0; i < 200; ++i) {
+        world.step(1.0 / 500);
+        for (const auto& member : all) {
+            seen.members.push_back(member->absorbed_energy());
+            seen.opened = seen.opened || !member->whole();
+            for (int k = 0; k <= 10; ++k) {
+                const V3& at = member->pose(k).origin;
+                seen.members.insert(seen.members.end(), at.begin(), at.end());
+            }
+        }
+        for (const dBodyID body : chain) {
+            const V3 at = Rig::position(body);
+            seen.others.insert(seen.others.end(), at.begin(), at.end());
+        }
+    }
+    return seen;
+}
+
+} // namespace
+
+TEST_CASE("with threads members that open give the same bits, and what they do not touch",
+          "[ode][threads][member]") {
+    const Posts alone = posts(0, true), quiet = posts(3, false);
+    CHECK(alone.opened);
+    CHECK_FALSE(quiet.opened);
+    CHECK((quiet.others == alone.others));
+    for (const unsigned threads : {1U, 3U}) {
+        const Posts seen = posts(threads, true);
+        CHECK((seen.members == alone.members));
+        CHECK((seen.others == alone.others));
+    }
 }

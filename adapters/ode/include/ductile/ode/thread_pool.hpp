@@ -8,11 +8,13 @@
 // Plastic constraints need nothing for it: they act before and after ODE's step, on the thread that
 // calls it. ODE spreads islands, and stages of one island, over the threads.
 //
-// The direct solver gives the same bits with and without threads. QuickStep with two or more of
-// them does not: its threads change the velocity of a shared body at once, and now and then a
-// change is lost (seen: up to 9e-3 N s in a step of a forest of 32 bars, 0.04 J in 200 steps). The
-// bodies then did not receive what the joints' feedback says; an energy ledger shows it as
-// unexplained.
+// What the library solves has the same bits with and without threads, and so have bodies of at most
+// two joints, contacts among them, that dWorldStep solves. With two threads or more it sums what
+// the joints of a body give in the order in which threads come to them: of three or more the last
+// digit differs from run to run. QuickStep with two or more of them loses more: its threads change
+// the velocity of a shared body at once, and now and then a change is lost (seen: up to 9e-3 N s in
+// a step of a forest of 32 bars, 0.04 J in 200 steps). The bodies then did not receive what the
+// joints' feedback says; an energy ledger shows it as unexplained.
 //
 // The world and the library's initialisation have to outlive this object.
 #pragma once
