@@ -20,6 +20,7 @@ class BulletStage final : public Stage {
         engine_.setGravity(btVector3(0, 0, -parameters.gravity));
         bullet::WorldParameters of_world;
         of_world.tolerance = parameters.tolerance;
+        of_world.budget = parameters.budget;
         world_ = std::make_unique<bullet::World>(engine_, of_world);
         keeps_tolerance_ = parameters.tolerance > 0;
         if (parameters.floor) {

@@ -22,7 +22,8 @@ class OdeStage final : public Stage {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
         world_ = std::make_unique<ode::World>(
-            engine_.id, ode::WorldParameters{.tolerance = parameters.tolerance});
+            engine_.id,
+            ode::WorldParameters{.tolerance = parameters.tolerance, .budget = parameters.budget});
         keeps_tolerance_ = parameters.tolerance > 0;
         world_->on_contacts({.space = engine_.space, .group = engine_.contacts}, [this] {
             dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {

@@ -44,6 +44,7 @@ struct StageParameters {
     double gravity = 9.81; ///< downwards, along -z [m/s²]
     /// Of frames, where the engine's World takes one; 0: steps as they are.
     double tolerance = 0;
+    int budget = 256;  ///< solves of a frame
     bool floor = true; ///< at z = 0
 };
 
