@@ -55,7 +55,7 @@ test("a recording that is damaged, cut short or none is refused in words", async
     for (const length of [4, 10, 200, laidDown.length - 1]) {
         await assert.rejects(decode(gzipSync(laidDown.subarray(0, length))), RecordingError);
     }
-    const foreign = Buffer.concat([Buffer.from("ductrec3"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
+    const foreign = Buffer.concat([Buffer.from("ductrec4"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
     await assert.rejects(decode(gzipSync(foreign)), RecordingError);
 });
 
