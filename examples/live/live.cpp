@@ -106,13 +106,13 @@ Json play(const Json& wish) {
                                 {"expected", finding.expected ? Json(*finding.expected) : Json()}});
         }
         double spent = 0, dearest = 0;
-        for (const double each : run.times()) {
+        for (const auto& [each, solves] : run.costs()) {
             spent += each;
             dearest = std::max(dearest, each);
         }
         return {{"findings", std::move(findings)},
                 {"doubted", run.doubted()},
-                {"frames", run.times().size()},
+                {"frames", run.costs().size()},
                 {"spent", spent},
                 {"dearest", dearest}};
     }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -17,12 +19,24 @@ using Quantised = std::vector<std::uint16_t>;
 
 constexpr double levels = 65534;
 constexpr std::uint16_t no_number = 65535;
+constexpr double round_off = 1e-9; ///< of a certificate: half of it is kept as 0 [m/s | rad/s]
+
+/// To at most `off` [same unit], in as few digits as that needs.
+double brief(double value, double off) {
+    for (int digits = 3; digits < 17; ++digits) {
+        char text[32];
+        std::snprintf(text, sizeof text, "%.*g", digits, value);
+        const double rounded = std::strtod(text, nullptr);
+        if (std::abs(rounded - value) <= off) return rounded;
+    }
+    return value;
+}
 
 class Columns {
   public:
-    /// Over the range of its own.
+    /// Over the range of its own, in so many `steps` of `least` or more.
     template <class Values, class Value>
-    void add(const Values& values, Value value) {
+    void add(const Values& values, Value value, double steps = levels, double least = 0) {
         double low = 0, high = 0;
         bool any = false;
         for (const auto& sample : values) {
@@ -32,21 +46,23 @@ class Columns {
             high = any ? std::max(high, v) : v;
             any = true;
         }
-        add(values, value, low, (high - low) / levels);
+        const double step = std::max((high - low) / steps, least);
+        add_fixed(values, value, brief(low, step / 256), brief(step, step / (256 * levels)));
     }
     template <class Values, class Value>
-    void add(const Values& values, Value value, double low, double step) {
+    void add_fixed(const Values& values, Value value, double low, double step) {
         Quantised quantised;
         quantised.reserve(values.size());
         for (const auto& sample : values) {
             const double v = double(value(sample));
-            const double q = step > 0 ? std::round((v - low) / step) : 0;
+            const double q = step > 0 ? std::clamp(std::round((v - low) / step), 0.0, levels) : 0;
             quantised.push_back(std::isfinite(v) ? std::uint16_t(q) : no_number);
         }
-        add(quantised, low, step);
+        store(quantised, low, step);
     }
-    void add(const std::vector<double>& values) {
-        add(values, [](double v) { return v; });
+    void add(const std::vector<double>& values, double steps = levels, double least = 0) {
+        add(
+            values, [](double v) { return v; }, steps, least);
     }
 
     [[nodiscard]] Json text() const {
@@ -61,7 +77,16 @@ class Columns {
     }
 
   private:
-    void add(const Quantised& quantised, double low, double step) {
+    void store(const Quantised& quantised, double low, double step) {
+        if (std::adjacent_find(quantised.begin(), quantised.end(), std::not_equal_to{}) ==
+            quantised.end()) { // its value alone
+            const std::uint16_t value = quantised.front();
+            const bool number = value != no_number;
+            lows_.push_back(number ? Json(brief(low + step * value, step / 256)) : Json());
+            steps_.push_back(0);
+            orders_.push_back(0);
+            return;
+        }
         const Quantised once = differences(quantised), twice = differences(once);
         const bool second = weight(twice) < weight(once);
         const Quantised& chosen = second ? twice : once;
@@ -87,7 +112,8 @@ class Columns {
         return sum;
     }
 
-    std::vector<double> lows_, steps_;
+    std::vector<Json> lows_;
+    std::vector<double> steps_;
     std::vector<int> orders_;
     std::vector<std::uint16_t> samples_;
 };
@@ -141,7 +167,7 @@ void add_columns(Columns& columns, const Recording& recording) {
             columns.add(poses, [k](const Pose& pose) { return pose.position[k]; });
         }
         for (std::size_t k = 0; k < 4; ++k) {
-            columns.add(
+            columns.add_fixed(
                 poses, [k](const Pose& pose) { return std::clamp(pose.turn[k], -1.0, 1.0); }, -1,
                 2 / levels);
         }
@@ -150,10 +176,10 @@ void add_columns(Columns& columns, const Recording& recording) {
         columns.add(samples.utilisation);
         columns.add(samples.plastic_travel);
         columns.add(samples.absorbed);
-        columns.add(samples.residual);
-        columns.add(
+        columns.add(samples.residual, 254.0, round_off);
+        columns.add_fixed(
             samples.state, [](std::uint8_t state) { return state; }, 0, 1);
-        columns.add(
+        columns.add_fixed(
             samples.life, [](double v) { return v; }, 0, 1 / levels);
         for (const Curve& curve : samples.curves) {
             columns.add(curve.force);
@@ -161,9 +187,9 @@ void add_columns(Columns& columns, const Recording& recording) {
         }
     }
     for (const auto& energy : recording.energies) columns.add(energy.second);
-    columns.add(
+    columns.add_fixed(
         recording.hashes, [](std::uint32_t hash) { return hash & 0x7fff; }, 0, 1);
-    columns.add(
+    columns.add_fixed(
         recording.hashes, [](std::uint32_t hash) { return (hash >> 16) & 0x7fff; }, 0, 1);
 }
 
@@ -185,7 +211,7 @@ std::string laid_down(const Recording& recording) {
     for (const auto& energy : recording.energies) text["energies"].push_back(energy.first);
     for (const Event& event : recording.events) text["events"].push_back(text_of(event));
     const std::string words = text.dump(-1, ' ', false, Json::error_handler_t::replace);
-    std::string bytes = "ductrec3";
+    std::string bytes = "ductrec4";
     for (int shift = 0; shift < 32; shift += 8) bytes.push_back(char(words.size() >> shift & 0xff));
     return bytes + words + columns.bytes();
 }

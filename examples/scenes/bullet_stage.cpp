@@ -20,6 +20,7 @@ class BulletStage final : public Stage {
         engine_.setGravity(btVector3(0, 0, -parameters.gravity));
         bullet::WorldParameters of_world;
         of_world.tolerance = parameters.tolerance;
+        of_world.budget = parameters.budget;
         world_ = std::make_unique<bullet::World>(engine_, of_world);
         keeps_tolerance_ = parameters.tolerance > 0;
         if (parameters.floor) {
@@ -49,6 +50,11 @@ class BulletStage final : public Stage {
             if (box.sharp) shapes_.back()->setMargin(hardly);
         }
         btRigidBody& body = own(box.mass, box.name, bullet::to_bullet(box.at), box.collides);
+        if (const btVector3 turned = bullet::to_bullet(box.turned); turned.length() > 0) {
+            btTransform pose = body.getWorldTransform();
+            pose.setRotation(btQuaternion(turned, turned.length()));
+            body.setCenterOfMassTransform(pose);
+        }
         body.setFriction(box.friction);
         body.setLinearVelocity(bullet::to_bullet(box.velocity));
         if (box.driven) {
@@ -58,9 +64,12 @@ class BulletStage final : public Stage {
         }
         return int(bodies_.size()) - 1;
     }
-    BuiltStructure& build(const StructureModel& model) override {
+    BuiltStructure& build(const StructureModel& model, BodyNumber carrier,
+                          const std::vector<NodeId>& on) override {
         structure_.reset();
-        structure_ = std::make_unique<bullet::Structure>(*world_, model);
+        std::vector<bullet::OwnBody> own;
+        for (const NodeId node : on) own.push_back({node, &body_of(carrier)});
+        structure_ = std::make_unique<bullet::Structure>(*world_, model, own);
         return *structure_;
     }
     LinkQueries& connect(const std::string& name, BodyNumber a, BodyNumber b,

@@ -45,9 +45,9 @@ class Gate final : public Scene {
                 {"speed", "of the vehicle", "m/s", &speed_, 1, 30, ""}};
     }
     [[nodiscard]] std::vector<Part> parts() override {
-        return {{"own weight", own_weight},
-                {"hit", [this](Run& run) { hit(run, false); }},
-                {"loose block", [this](Run& run) { hit(run, true); }}};
+        return {{"hit", [this](Run& run) { hit(run, false); }}, // the first one has a picture
+                {"loose block", [this](Run& run) { hit(run, true); }},
+                {"own weight", own_weight}};
     }
 
   private:

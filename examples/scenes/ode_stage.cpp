@@ -22,7 +22,8 @@ class OdeStage final : public Stage {
         set_gravity(parameters.gravity);
         dWorldSetAutoDisableFlag(engine_.id, 1);
         world_ = std::make_unique<ode::World>(
-            engine_.id, ode::WorldParameters{.tolerance = parameters.tolerance});
+            engine_.id,
+            ode::WorldParameters{.tolerance = parameters.tolerance, .budget = parameters.budget});
         keeps_tolerance_ = parameters.tolerance > 0;
         world_->on_contacts({.space = engine_.space, .group = engine_.contacts}, [this] {
             dSpaceCollide(engine_.space, this, [](void* stage, dGeomID a, dGeomID b) {
@@ -43,6 +44,9 @@ class OdeStage final : public Stage {
                                 : dCreateBox(engine_.space, 2 * box.half.x(), 2 * box.half.y(),
                                              2 * box.half.z());
         }
+        dMatrix3 rotation;
+        dRFromAxisAndAngle(rotation, box.turned.x(), box.turned.y(), box.turned.z(),
+                           norm(box.turned));
         if (box.mass > 0 || box.driven) {
             own.body = dBodyCreate(engine_.id);
             dMass mass;
@@ -56,18 +60,23 @@ class OdeStage final : public Stage {
             if (box.driven) dBodySetKinematic(own.body);
             dBodySetFiniteRotationMode(own.body, 1);
             dBodySetPosition(own.body, box.at.x(), box.at.y(), box.at.z());
+            dBodySetRotation(own.body, rotation);
             dBodySetLinearVel(own.body, box.velocity.x(), box.velocity.y(), box.velocity.z());
             if (own.geom != nullptr) dGeomSetBody(own.geom, own.body);
             world_->add(own.body);
         } else {
             dGeomSetPosition(own.geom, box.at.x(), box.at.y(), box.at.z());
+            dGeomSetRotation(own.geom, rotation);
             if (!box.collides) dGeomDisable(own.geom);
         }
         return int(own_.size()) - 1;
     }
-    BuiltStructure& build(const StructureModel& model) override {
+    BuiltStructure& build(const StructureModel& model, BodyNumber carrier,
+                          const std::vector<NodeId>& on) override {
         structure_.reset();
-        structure_ = std::make_unique<ode::Structure>(*world_, engine_.space, model);
+        std::vector<ode::OwnBody> own;
+        for (const NodeId node : on) own.push_back({node, body_of(carrier)});
+        structure_ = std::make_unique<ode::Structure>(*world_, engine_.space, model, own);
         return *structure_;
     }
     LinkQueries& connect(const std::string& name, BodyNumber a, BodyNumber b,

@@ -180,15 +180,24 @@ class RollCage final : public Scene {
     }
 
     static void roll_over(Run& run) {
-        Take take = run.take("roll over", "A cage falls on the edge of its roof.");
+        Take take = run.take("roll over", "A cage round 1.5 t falls on the edge of its roof.");
         Stage& stage = take.stage();
-        BuiltStructure& built = stage.build(rolled_cage(true));
+        const RolledCage cage = rolled_cage(true);
+        const auto vehicle = stage.add({.name = "vehicle",
+                                        .mass = mass,
+                                        .half = {1.3, 0.6, 0.2},
+                                        .at = RolledCage::place(1.2, 0, 0.1),
+                                        .friction = 0.5,
+                                        .turned = {RolledCage::roll, 0, 0}});
+        BuiltStructure& built = stage.build(cage.model, vehicle, cage.floor);
         stage.describe({{"section", "tube 50 x 3 mm"}, {"material", "S355"}});
         take.action(60);
         take.run(3);
         const Ledger<double>& ledger = stage.world().ledger();
         run.tell("cage: bodies", double(built.plan().bodies.size()));
         run.tell("cage: joints", double(built.plan().joints.size()));
+        run.tell("cage: its vehicle is off upright by", std::acos(stage.axes(vehicle)(2, 2)),
+                 "rad");
         run.tell("cage: absorbed", built.absorbed_energy(), "J");
         run.tell("cage: contact", ledger.booked(Account::contact), "J");
         run.tell("cage: friction", ledger.booked(Account::friction), "J");

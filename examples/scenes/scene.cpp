@@ -53,6 +53,7 @@ std::string why_doubted(const RunReport& report) {
 Take::Take(Run& run, std::string name, std::string about, StageParameters parameters)
     : run_(run), name_(std::move(name)), about_(std::move(about)) {
     parameters.tolerance = run.options().tolerance;
+    parameters.budget = run.options().budget;
     const std::string& engine = run.options().engine;
     if (engine != "bullet" && engine != "ode") {
         throw std::invalid_argument("engine = " + engine + ": must be bullet or ode");
@@ -83,7 +84,10 @@ void Take::action(double samples_a_second) {
 void Take::step(double frame) {
     const std::clock_t start = std::clock();
     stage_->step(frame);
-    if (!(slow_ > 0)) run_.spent(double(std::clock() - start) / CLOCKS_PER_SEC);
+    if (!(slow_ > 0)) {
+        const int solves = stage_->keeps_tolerance() ? stage_->world().frame().solves() : 1;
+        run_.spent({double(std::clock() - start) / CLOCKS_PER_SEC, solves});
+    }
     for (const JointEvent<double>& event : stage_->world().events()) {
         unsolved_ = unsolved_ || event.kind == EventKind::unreliable;
     }

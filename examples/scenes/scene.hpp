@@ -29,6 +29,7 @@ struct RunOptions {
     std::string engine = "bullet";
     double frame = 1.0 / 60; ///< [s]
     double tolerance = 0.01; ///< of frames, where the engine's World takes one
+    int budget = 256;        ///< solves of a frame
     std::string part;        ///< of the scene; empty: all of it
     /// Gets a take's recording, and says under which name it is kept; none: nothing is recorded.
     std::function<std::string(const std::string& name, const replay::Recording&)> keep;
@@ -97,9 +98,13 @@ class Run {
     [[nodiscard]] const std::vector<Finding>& findings() const { return findings_; }
     [[nodiscard]] const std::vector<std::string>& replays() const { return replays_; }
 
-    /// CPU time of a frame [s].
-    void spent(double seconds) { times_.push_back(seconds); }
-    [[nodiscard]] const std::vector<double>& times() const { return times_; }
+    /// What a frame cost.
+    struct Cost {
+        double time = 0; ///< of the CPU [s]
+        int solves = 0;
+    };
+    void spent(const Cost& frame) { costs_.push_back(frame); }
+    [[nodiscard]] const std::vector<Cost>& costs() const { return costs_; }
     [[nodiscard]] bool right() const;
     /// Takes whose World does not vouch for them, each with the reason: more was left unresolved
     /// than the tolerance, or a joint unsolved.
@@ -114,7 +119,7 @@ class Run {
     std::vector<Finding> findings_;
     std::vector<std::string> replays_; ///< under which names they are kept
     std::vector<std::string> doubted_;
-    std::vector<double> times_;
+    std::vector<Cost> costs_;
 };
 
 /// What of a scene can be played by itself: a take, or several that belong together.

@@ -31,10 +31,23 @@ using namespace ductile::scenes;
 
 namespace {
 
+struct Costs {
+    double median = 0, mean = 0; ///< of a frame [s]
+    Run::Cost dearest;
+};
+Costs costs_of(const Run& run) {
+    std::vector<Run::Cost> frames = run.costs();
+    if (frames.empty()) return {};
+    std::sort(frames.begin(), frames.end(),
+              [](const Run::Cost& a, const Run::Cost& b) { return a.time < b.time; });
+    double sum = 0;
+    for (const Run::Cost& frame : frames) sum += frame.time;
+    return {frames[frames.size() / 2].time, sum / double(frames.size()), frames.back()};
+}
+
 /// What a run cost, as a line of measured.csv.
 std::string measured(const Run& run, const std::filesystem::path& out) {
-    std::vector<double> times = run.times();
-    std::sort(times.begin(), times.end());
+    const Costs costs = costs_of(run);
     const auto largest = [&](const char* kind) {
         std::uintmax_t most = 0;
         for (const std::string& replay : run.replays()) {
@@ -45,10 +58,10 @@ std::string measured(const Run& run, const std::filesystem::path& out) {
         }
         return most;
     };
-    return fmt::format("{},{},{:.6g},{},{:.3f},{:.2f},{},{},{}\n", run.scene(),
-                       run.options().engine, run.options().frame, times.size(),
-                       1e3 * times[times.size() / 2], 1e3 * times.back(), run.replays().size(),
-                       largest("html"), largest("glb"));
+    return fmt::format("{},{},{:.6g},{},{:.3f},{:.3f},{:.2f},{},{},{},{}\n", run.scene(),
+                       run.options().engine, run.options().frame, run.costs().size(),
+                       1e3 * costs.median, 1e3 * costs.mean, 1e3 * costs.dearest.time,
+                       costs.dearest.solves, run.replays().size(), largest("html"), largest("glb"));
 }
 
 void print(const Run& run) {
@@ -66,11 +79,13 @@ void print(const Run& run) {
     for (const std::string& take : run.doubted()) {
         fmt::print("        {}: its World does not vouch for it\n", take);
     }
-    std::vector<double> times = run.times();
-    std::sort(times.begin(), times.end());
-    if (times.empty()) return;
-    fmt::print("        a frame of {:.2f} ms took {:.3f} ms at the median, {:.2f} ms at most\n",
-               1e3 * run.options().frame, 1e3 * times[times.size() / 2], 1e3 * times.back());
+    if (run.costs().empty()) return;
+    const Costs costs = costs_of(run);
+    fmt::print(
+        "        a frame of {:.2f} ms took {:.3f} ms at the median, {:.3f} ms at the mean, "
+        "{:.2f} ms at most, in {} solves\n",
+        1e3 * run.options().frame, 1e3 * costs.median, 1e3 * costs.mean, 1e3 * costs.dearest.time,
+        costs.dearest.solves);
 }
 
 /// Says what is wrong with a text that is no number from `low` to `high`, as nan is none.
@@ -103,6 +118,9 @@ int main(int argc, char** argv) try {
     app.add_option("--tolerance", options.tolerance, "of frames, 0: steps as they are [-]")
         ->check(within(0, 0.5))
         ->capture_default_str();
+    app.add_option("--budget", options.budget, "solves of a frame [-]")
+        ->check(CLI::Range(4, 100000))
+        ->capture_default_str();
     app.add_option("--part", options.part,
                    "of the one scene; none: all that is no part of one's own");
     app.add_option("--out", out, "folder of the replays and index.html; none: no replays");
@@ -126,7 +144,8 @@ int main(int argc, char** argv) try {
     if (!out.empty()) write_index({}, out); // fails sooner than after all of them
     bool right = true;
     std::string costs =
-        "scene,engine,frame_s,frames,median_ms,dearest_ms,replays,largest_html_B,largest_glb_B\n";
+        "scene,engine,frame_s,frames,median_ms,mean_ms,dearest_ms,dearest_solves,replays,"
+        "largest_html_B,largest_glb_B\n";
     std::vector<Shown> shown;
     const bool all = app.get_subcommands().empty();
     for (const auto& scene : scenes) {

@@ -27,7 +27,7 @@ namespace ductile::scenes {
 /// A hinge whose life ends by strain to and fro.
 using FatigueAxisJoint = OneAxisJoint<Perfect<double>, LowCycleFatigue<CoffinManson<double>>>;
 
-/// A box with its axes along the world's.
+/// A box with its axes along the world's, or turned.
 struct BoxBody {
     std::string name;
     double mass = 0; ///< [kg]; 0: it does not move
@@ -38,12 +38,14 @@ struct BoxBody {
     bool sharp = false;  ///< what is no box meets its edges as they are, not rounded
     bool ball = false;   ///< of radius half.x
     bool driven = false; ///< moves as Stage::turn says, whatever acts on it
+    Vector3<double> turned = Vector3<double>::Zero(); ///< rotation vector [rad]
 };
 
 struct StageParameters {
     double gravity = 9.81; ///< downwards, along -z [m/s²]
     /// Of frames, where the engine's World takes one; 0: steps as they are.
     double tolerance = 0;
+    int budget = 256;  ///< solves of a frame
     bool floor = true; ///< at z = 0
 };
 
@@ -61,8 +63,9 @@ class Stage {
     [[nodiscard]] virtual bool keeps_tolerance() const = 0;
 
     virtual BodyNumber add(const BoxBody& box) = 0;
-    /// One at a time.
-    virtual BuiltStructure& build(const StructureModel& model) = 0;
+    /// One at a time; of its nodes those of `on` are places of the body `carrier`.
+    virtual BuiltStructure& build(const StructureModel& model, BodyNumber carrier = ground,
+                                  const std::vector<NodeId>& on = {}) = 0;
     /// Takes a member of it away, with its joints; the replay shows it where it was.
     void remove(std::string_view member);
     /// A plastic joint of six axes at `at`; the columns of `axes` are its x, y and z [m].

@@ -167,6 +167,55 @@ TEST_CASE("replay: a minute of 200 bodies takes less than half a megabyte", "[re
     CHECK(size > 50'000); // they move
 }
 
+TEST_CASE("replay: a minute of 200 jointed bodies takes less than half a megabyte", "[replay]") {
+    // 20 posts of ten rods, hit every 2 s: they yield, swing at 1 Hz and more, and come to rest;
+    // their certificates are round-off
+    constexpr std::size_t bodies = 200, rate = 30, seconds = 60;
+    replay::Recording posts;
+    for (std::size_t k = 0; k < rate * seconds; ++k) posts.times.push_back(double(k) / rate);
+    for (std::size_t k = 0; k < rate * seconds; ++k) {
+        posts.hashes.push_back(std::uint32_t(k * 2654435761u));
+    }
+    posts.energies.emplace_back("kinetic", std::vector<double>(rate * seconds));
+    std::uint32_t any = 1;
+    for (std::size_t i = 0; i < bodies; ++i) {
+        const double hit = 2 * double(i / 10), up = double(i % 10 + 1) / 10;
+        posts.bodies.emplace_back().name = "rod " + std::to_string(i);
+        posts.joints.push_back({.name = "joint " + std::to_string(i),
+                                .a = int(i),
+                                .b = i % 10 == 0 ? -1 : int(i) - 1,
+                                .in_a = {0, 0, -0.2 - 1e-9 * double(i)},
+                                .facts = {{"capacity", "19.6 kN m"}}});
+        std::vector<replay::Pose>& poses = posts.poses.emplace_back();
+        replay::JointSamples& joint = posts.samples.emplace_back();
+        replay::Curve curve;
+        curve.axis = "bending x";
+        for (const double time : posts.times) {
+            const double since = std::max(time - hit, 0.0), bent = 0.1 * std::min(since, 0.3);
+            const double swing = std::exp(-since) * std::sin(7 * since + 2 * std::sin(18 * since));
+            const double turn = up * (bent + 0.02 * swing);
+            poses.push_back(
+                {.position = {double(i / 10) + 2 * up * turn, 0, 4 * up * std::cos(turn)},
+                 .turn = {std::cos(turn / 2), 0, std::sin(turn / 2), 0}});
+            const double force = 19e3 * (1 - up) * swing;
+            any = any * 1664525u + 1013904223u;
+            joint.utilisation.push_back(std::abs(force) / 19.6e3);
+            joint.plastic_travel.push_back(i % 10 == 0 ? bent : 0);
+            joint.absorbed.push_back(19.6e3 * joint.plastic_travel.back());
+            joint.residual.push_back(1e-19 * any);
+            joint.state.push_back(joint.plastic_travel.back() > 0 ? replay::flowed : replay::holds);
+            joint.life.push_back(std::numeric_limits<double>::quiet_NaN());
+            curve.force.push_back(force);
+            curve.position.push_back(force / 1e6 + joint.plastic_travel.back());
+        }
+        joint.curves.push_back(curve);
+    }
+    const std::size_t size = replay::pack(posts).size();
+    CAPTURE(size);
+    CHECK(size < 500'000);
+    CHECK(size > 50'000); // they move
+}
+
 TEST_CASE("replay: bodies and joints that come late or go are kept", "[replay]") {
     Rotor rotor;
     replay::Recorder recorder({.name = "late", .about = "", .engine = "ode", .rate = 240});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Members that are several bodies: boxes of one section that joints hold together end to end, in one
-// line at the start. They are drawn as one bent bar, not as boxes with gaps.
+// line at the start. They are drawn as one bent bar, not as boxes with gaps. And slender members of
+// one body that joints hold at their ends: what those turned is drawn as a bend along the chord.
 import { poseAt } from "./recording.js";
 
 const start = { index: 0, share: 0 };
@@ -125,5 +126,46 @@ export function chains({ bodies, joints }, holds = () => true) {
     };
     const partners = (body) => usable[body].filter(({ to, joint }) => usable[to].some((link) => link.joint === joint)).length;
     bodies.forEach((_, body) => partners(body) === 1 && !seen.has(body) && walk(body));
+    return found;
+}
+
+/**
+ * What holds the ends of slender boxes on their axis: of each body [{ axis, sign, other, along }], `along` the axis towards
+ * that end at the start, as the other body (-1: the ground) has it. Of two slender ends each takes half of what their joint
+ * turned (`share`), else the one takes it all.
+ */
+export function clamps({ bodies, joints }, holds = () => true) {
+    const slender = (half, axis) => othersOf(axis).every((each) => half[axis] > 4 * half[each]);
+    const halves = bodies.map(boxOf);
+    const poses = bodies.map((body) => poseAt(body, start, new Float64Array(7)));
+    const found = bodies.map(() => []);
+    joints.forEach(({ a, b, in_a, helper }, number) => {
+        if (a < 0 || helper || !holds(number)) return;
+        const at = turned(poses[a], in_a).map((v, k) => v + poses[a][k]);
+        const inB = b >= 0 && turned(poses[b], at.map((v, k) => v - poses[b][k]), -1);
+        const ends = [[a, in_a, b], [b, inB, a]].map(([body, point, other]) => {
+            const half = body >= 0 && bodies[body].moves && halves[body];
+            const end = half && endAt(half, point);
+            if (!end || !slender(half, end.axis) || othersOf(end.axis).some((each) => Math.abs(point[each]) > 0.5 * half[each])) return undefined;
+            const world = turned(poses[body], unit(end.axis)).map((v) => end.sign * v);
+            return { body, ...end, other, along: other >= 0 ? turned(poses[other], world, -1) : world };
+        });
+        const share = ends[0] && ends[1] ? 0.5 : 1;
+        for (const end of ends) if (end) found[end.body].push({ ...end, share });
+    });
+    return found;
+}
+
+/** Chains of one body each: what is held at an end and in none of `others`. */
+export function members(recording, held, others) {
+    const drawn = reaches(recording);
+    const chained = new Set(others.flatMap((chain) => chain.map(({ body }) => body)));
+    const found = [];
+    held.forEach((ends, body) => {
+        if (ends.length === 0 || chained.has(body) || ends.some(({ axis }) => axis !== ends[0].axis)) return;
+        const { axis } = ends[0];
+        const end = (side) => [0, 1, 2].map((k) => (k === axis ? drawn[body][side][k] : 0));
+        found.push([{ body, axis, sign: 1, half: boxOf(recording.bodies[body]), entry: end("low"), exit: end("high") }]);
+    });
     return found;
 }

@@ -4,7 +4,7 @@
 
 export class RecordingError extends Error {}
 
-const magic = "ductrec3";
+const magic = "ductrec4";
 const noNumber = 65535;
 
 /** Bytes of base64 text. */
@@ -37,18 +37,19 @@ async function unzipped(bytes) {
     }
 }
 
-/** Decodes columns one after the other. */
+/** Decodes columns one after the other; those of order 0 are constant and have no samples. */
 class Columns {
     constructor(text, low, high, frames) {
-        Object.assign(this, { text, low, high, frames, next: 0 });
+        Object.assign(this, { text, low, high, frames, next: 0, at: 0 });
     }
     take() {
         const column = this.next++;
         const { low, step, order } = this.text;
         const values = new Float64Array(this.frames);
+        if (order[column] === 0) return values.fill(low[column] ?? NaN);
         let last = 0;
         let slope = 0;
-        for (let i = 0, at = column * this.frames; i < this.frames; ++i, ++at) {
+        for (let i = 0, at = this.at; i < this.frames; ++i, ++at) {
             const zigzag = this.low[at] | (this.high[at] << 8);
             const difference = (zigzag >> 1) ^ -(zigzag & 1);
             if (order[column] === 2) {
@@ -59,6 +60,7 @@ class Columns {
             }
             values[i] = last === noNumber && step[column] !== 1 ? NaN : low[column] + step[column] * last;
         }
+        this.at += this.frames;
         return values;
     }
 }
@@ -89,7 +91,7 @@ function read(all, letters) {
     const length = new DataView(all.buffer, all.byteOffset).getUint32(8, true);
     const text = JSON.parse(letters.decode(all.subarray(12, 12 + length)));
     const frames = text.times.length;
-    const samples = text.columns.low.length * frames;
+    const samples = text.columns.order.filter((order) => order > 0).length * frames;
     const rest = all.subarray(12 + length);
     if (rest.length !== 2 * samples) throw new RecordingError("the recording is cut short");
     const columns = new Columns(text.columns, rest.subarray(0, samples), rest.subarray(samples), frames);

@@ -7,7 +7,7 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
-import { chains, reaches } from "./chains.js";
+import { chains, clamps, members, reaches } from "./chains.js";
 import { brokenColour, colourOf, lostColour, stillColour } from "./colours.js";
 import { broken, placeOf, poseAt, unreliable } from "./recording.js";
 
@@ -78,10 +78,17 @@ const outline = [[1, -1], [1, 1], [-1, 1], [-1, -1], [1, -1]];
 
 const bays = 6; // of a bar between two joints
 
+const hardly = 1e-3; // a bend that is not drawn [rad]
+
 /** A chain of bodies (chains.js) as one bar: through its joints, along the bodies between them. */
 class Bar {
-    constructor(chain, material) {
+    /** @param held  what holds the ends of each body (clamps) */
+    constructor(chain, held, material) {
         this.chain = chain;
+        this.ends = [-1, 1].map((side) => {
+            const { body, axis, sign } = chain.at(side < 0 ? 0 : -1);
+            return held[body].filter((end) => end.axis === axis && end.sign === side * sign);
+        });
         this.count = chain.length * bays + 1;
         const faces = [];
         for (let i = 0; i + 1 < this.count; ++i) {
@@ -117,11 +124,25 @@ class Bar {
         });
         for (let i = 1; i < chain.length; ++i) stations[i].at.multiplyScalar(0.5);
         for (const { along } of stations) along.normalize();
+        this.bent = chain.length > 1;
+        this.ends.forEach((ends, i) => {
+            const { along } = stations[i * chain.length];
+            const own = x.copy(along);
+            for (const { other, share, along: wanted } of ends) {
+                point.fromArray(wanted).multiplyScalar(i === 0 ? -1 : 1); // the way the bar goes
+                if (other >= 0) point.applyQuaternion(turn.set(poses[other][4], poses[other][5], poses[other][6], poses[other][3]));
+                along.addScaledVector(point.sub(own), share / ends.length);
+            }
+            along.normalize();
+            this.bent ||= along.distanceTo(own) > hardly;
+        });
     }
 
     /** `poses`, `colours`: of all bodies. */
     update(poses, colours) {
         this.place(poses);
+        this.mesh.visible = this.bent;
+        if (!this.bent) return;
         const { chain, stations } = this;
         const { position, normal, color } = this.geometry.attributes;
         const write = (attribute, index, v) => v.toArray(attribute.array, 3 * index);
@@ -253,7 +274,9 @@ export class Scene {
             geometry.dispose();
         }
         this.barred ??= new three.ShaderMaterial({ vertexShader: ofBars, fragmentShader: filled, vertexColors: true, side: three.DoubleSide });
-        this.bars = chains(this.recording, holds).map((chain) => new Bar(chain, this.barred));
+        const held = clamps(this.recording, holds);
+        const rows = chains(this.recording, holds);
+        this.bars = [...rows, ...members(this.recording, held, rows)].map((chain) => new Bar(chain, held, this.barred));
         for (const bar of this.bars) this.scene.add(bar.mesh);
     }
 
@@ -340,7 +363,7 @@ export class Scene {
         this.setBars(place.index);
         for (const bar of this.bars) {
             bar.update(poses, colours);
-            for (const { body } of bar.chain) places[12 * body + 3] = 0;
+            for (const { body } of bar.chain) places[12 * body + 3] = bar.bent ? 0 : 1;
         }
         this.texture.needsUpdate = true;
         const { position, color } = this.markers.geometry.attributes;

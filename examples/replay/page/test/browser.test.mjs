@@ -163,6 +163,20 @@ test("it is readable on a phone and in the dark", async () => {
     await page.close();
 });
 
+/** The middle of each section of the first bar, at a time, and whether body 0 is drawn as a box. */
+const lineAt = (page, time) => page.evaluate((time) => {
+    replay.setTime(time);
+    const [bar] = replay.scene.bars;
+    const line = [];
+    for (let i = 0; i < bar.count; ++i) {
+        const sum = [0, 0, 0];
+        for (let k = 0; k < 8; ++k) for (let c = 0; c < 3; ++c) sum[c] += bar.geometry.attributes.position.array[3 * (8 * i + k) + c] / 8;
+        line.push(sum);
+    }
+    return { line, drawn: [replay.scene.places[3], replay.scene.places[15]] };
+}, time);
+const nearPoint = (a, b) => assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) < 1e-3, `${a} for ${b}`);
+
 test("two boxes that a joint bends are drawn as one bar, and as boxes once it broke", async () => {
     const template = await readFile(process.env.REPLAY_PAGE, "utf8");
     const bent = (t) => [0.5 + 0.5 * Math.cos(t), 0, -0.5 * Math.sin(t), Math.cos(t / 2), 0, Math.sin(t / 2), 0];
@@ -174,27 +188,37 @@ test("two boxes that a joint bends are drawn as one bar, and as boxes once it br
     const bentPage = resolve(folder, "replay_bent.html");
     await writeFile(bentPage, pageOf(template, made));
     const page = await open(bentPage);
-    const middle = await page.evaluate(() => {
-        replay.setTime(1);
-        const [bar] = replay.scene.bars;
-        const line = []; // of the middle of each section
-        for (let i = 0; i < bar.count; ++i) {
-            const sum = [0, 0, 0];
-            for (let k = 0; k < 8; ++k) for (let c = 0; c < 3; ++c) sum[c] += bar.geometry.attributes.position.array[3 * (8 * i + k) + c] / 8;
-            line.push(sum);
-        }
-        return { line, drawn: [replay.scene.places[3], replay.scene.places[15]] };
-    });
-    const near = (a, b) => assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) < 1e-3, `${a} for ${b}`);
-    near(middle.line[0], [-0.49, 0, 0]);
-    near(middle.line[6], [0.5, 0, 0]);
-    near(middle.line[12], [0.5 + 0.99 * Math.cos(1), 0, -0.99 * Math.sin(1)]);
+    const middle = await lineAt(page, 1);
+    nearPoint(middle.line[0], [-0.49, 0, 0]);
+    nearPoint(middle.line[6], [0.5, 0, 0]);
+    nearPoint(middle.line[12], [0.5 + 0.99 * Math.cos(1), 0, -0.99 * Math.sin(1)]);
     assert.deepEqual(middle.drawn, [0, 0]);
     const after = await page.evaluate(() => {
         replay.setTime(1.01);
         return [replay.scene.bars.length, replay.scene.places[3], replay.scene.places[15]];
     });
     assert.deepEqual(after, [0, 1, 1]);
+    assert.deepEqual(page.faults, []);
+    await page.close();
+});
+
+test("a post of one body is drawn bent from its foot on, and straight where that has not turned", async () => {
+    const template = await readFile(process.env.REPLAY_PAGE, "utf8");
+    const made = {
+        name: "post", times: [0, 1],
+        bodies: [{ name: "post", half: [0.02, 0.02, 0.5], pose: (t) => [0.5 * Math.sin(t), 0, 0.5 * Math.cos(t), Math.cos(t / 2), 0, Math.sin(t / 2), 0] }],
+        joints: [{ name: "foot", a: 0, b: -1, in_a: [0, 0, -0.5], sample: () => ({}) }],
+    };
+    const postPage = resolve(folder, "replay_post.html");
+    await writeFile(postPage, pageOf(template, made));
+    const page = await open(postPage);
+    const { line, drawn } = await lineAt(page, 1);
+    const [x, z] = [Math.sin(1), Math.cos(1)];
+    nearPoint(line[0], [0, 0, 0]);
+    nearPoint(line[3], [(x - x / 4) / 2, 0, (z + (1 - z) / 4) / 2]); // the chord, and L/8 of what the ends differ by
+    nearPoint(line[6], [x, 0, z]);
+    assert.equal(drawn[0], 0);
+    assert.deepEqual(await page.evaluate(() => (replay.setTime(0), [replay.scene.bars[0].mesh.visible, replay.scene.places[3]])), [false, 1]);
     assert.deepEqual(page.faults, []);
     await page.close();
 });

@@ -53,7 +53,7 @@ export function pack({ name, times, bodies, joints, energies = waves, events = [
         columns: { low: columns.map((c) => c.low), step: columns.map((c) => c.step), order: columns.map(() => 1) },
     });
     const head = Buffer.alloc(12);
-    head.write("ductrec3");
+    head.write("ductrec4");
     head.writeUInt32LE(Buffer.byteLength(text), 8);
     return gzipSync(Buffer.concat([head, Buffer.from(text), low, high]));
 }

@@ -10,7 +10,7 @@ import { gunzipSync, gzipSync } from "node:zlib";
 import validator from "gltf-validator";
 
 import { pack } from "./made.mjs";
-import { chains, reaches } from "../src/chains.js";
+import { chains, clamps, members, reaches } from "../src/chains.js";
 import { decode, firstDifference, ofPage, placeOf, poseAt, RecordingError } from "../src/recording.js";
 
 const folder = process.env.REPLAY_DIR ?? ".";
@@ -55,7 +55,7 @@ test("a recording that is damaged, cut short or none is refused in words", async
     for (const length of [4, 10, 200, laidDown.length - 1]) {
         await assert.rejects(decode(gzipSync(laidDown.subarray(0, length))), RecordingError);
     }
-    const foreign = Buffer.concat([Buffer.from("ductrec3"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
+    const foreign = Buffer.concat([Buffer.from("ductrec4"), Buffer.from([7, 0, 0, 0]), Buffer.from('{"a":1}')]);
     await assert.rejects(decode(gzipSync(foreign)), RecordingError);
 });
 
@@ -106,6 +106,18 @@ test("a box is drawn up to where joints hold it, at a corner as far as the other
     const turned = { half: [0.3, 0.04, 0.05], offset: [0.2, 0, 0, 0, 0, 0, 1], pose: () => [1, 0, 0, 1, 0, 0, 0] };
     const [, off] = reaches(await decode(pack(row(2, { bodies: { 1: turned }, joints: { 0: { in_a: [-0.12, 0, 0] } } }))));
     assert.ok(Math.abs(off.high[0] - 0.32) < 1e-3, `${off.high}`);
+});
+
+test("slender members are held at their ends on their axis: half of a joint's turn between two of them, all of it else", async () => {
+    const shares = async (other) => clamps(await decode(pack(row(2, other)))).map((ends) => ends.map(({ sign, other, share }) => [sign, other, share]));
+    assert.deepEqual(await shares({}), [[[1, 1, 0.5]], [[-1, 0, 0.5]]]);
+    const node = { half: [0.05, 0.05, 0.05] };
+    assert.deepEqual(await shares({ bodies: { 0: { ...node, pose: () => [0.5, 0, 0, 1, 0, 0, 0] } } }), [[], [[-1, 0, 1]]]);
+    assert.deepEqual(await shares({ joints: { 0: { in_a: [-0.5, 0.04, 0] } } }), [[], []]);
+    const made = await decode(pack(row(2, { bodies: { 0: { ...node, pose: () => [0.5, 0, 0, 1, 0, 0, 0] } } })));
+    const held = clamps(made);
+    assert.deepEqual(members(made, held, []).map(([{ body, entry, exit }]) => [body, entry, exit]), [[1, [-0.5, 0, 0], [0.49, 0, 0]]]);
+    assert.deepEqual(members(made, held, [[{ body: 1 }]]), []);
 });
 
 test("the glb is valid glTF, of a body that went to infinity too", async () => {
