@@ -132,7 +132,7 @@ test("a slider moves what comes out, and the address keeps scene and sliders", a
 test("what the sections do not allow is refused in words, a run can be stopped", async () => {
     await page.evaluate(() => live.choose("bar", "thrown", { side: 40, wall: 20 }));
     assert.match(await page.textContent("#running"), /thickness/);
-    await page.evaluate(() => void live.choose("ramp"));
+    await page.evaluate(() => void live.choose("ramp", undefined, { rate: 1000 })); // longer than a click may take
     await page.waitForFunction(() => live.shown > 0);
     await page.click("#run");
     assert.equal(await page.textContent("#running"), "stopped");

@@ -17,8 +17,8 @@
 //
 // On the way a vehicle flies off the deck's kinks and lands, and the deck swings at about 1 Hz:
 // joints that are below yield with it at rest flow a little, by what is told, and the sag that 50 t
-// leave is not that of statics: in frames of 1/60, 1/240, 1/960 s 0.981, 0.982, 0.969 m in Bullet
-// and 0.978, 0.984, 0.976 m in ODE (the author's 0.34 m: where parts of the deck collide with their
+// leave is not that of statics: in frames of 1/60, 1/240 s 0.983 m in Bullet and 0.978, 0.977 m in
+// ODE (the author's 0.34 m: where parts of the deck collide with their
 // neighbours 2 cm away, as in Bullet unless told otherwise, their top edges carry it and it is
 // 0.324).
 //

@@ -33,16 +33,21 @@ namespace {
 
 struct Costs {
     double median = 0, mean = 0; ///< of a frame [s]
+    double late = 0;             ///< most that a clock of real time would be ahead [s]
     Run::Cost dearest;
 };
 Costs costs_of(const Run& run) {
     std::vector<Run::Cost> frames = run.costs();
     if (frames.empty()) return {};
+    double sum = 0, late = 0, latest = 0;
+    for (const Run::Cost& frame : frames) {
+        sum += frame.time;
+        late = std::max(late + frame.time - run.options().frame, 0.0);
+        latest = std::max(latest, late);
+    }
     std::sort(frames.begin(), frames.end(),
               [](const Run::Cost& a, const Run::Cost& b) { return a.time < b.time; });
-    double sum = 0;
-    for (const Run::Cost& frame : frames) sum += frame.time;
-    return {frames[frames.size() / 2].time, sum / double(frames.size()), frames.back()};
+    return {frames[frames.size() / 2].time, sum / double(frames.size()), latest, frames.back()};
 }
 
 /// What a run cost, as a line of measured.csv.
@@ -58,10 +63,11 @@ std::string measured(const Run& run, const std::filesystem::path& out) {
         }
         return most;
     };
-    return fmt::format("{},{},{:.6g},{},{:.3f},{:.3f},{:.2f},{},{},{},{}\n", run.scene(),
+    return fmt::format("{},{},{:.6g},{},{:.3f},{:.3f},{:.2f},{},{:.2f},{},{},{}\n", run.scene(),
                        run.options().engine, run.options().frame, run.costs().size(),
                        1e3 * costs.median, 1e3 * costs.mean, 1e3 * costs.dearest.time,
-                       costs.dearest.solves, run.replays().size(), largest("html"), largest("glb"));
+                       costs.dearest.solves, 1e3 * costs.late, run.replays().size(),
+                       largest("html"), largest("glb"));
 }
 
 void print(const Run& run) {
@@ -83,9 +89,9 @@ void print(const Run& run) {
     const Costs costs = costs_of(run);
     fmt::print(
         "        a frame of {:.2f} ms took {:.3f} ms at the median, {:.3f} ms at the mean, "
-        "{:.2f} ms at most, in {} solves\n",
+        "{:.2f} ms at most, in {} solves; {:.1f} ms late at most\n",
         1e3 * run.options().frame, 1e3 * costs.median, 1e3 * costs.mean, 1e3 * costs.dearest.time,
-        costs.dearest.solves);
+        costs.dearest.solves, 1e3 * costs.late);
 }
 
 /// Says what is wrong with a text that is no number from `low` to `high`, as nan is none.
@@ -144,7 +150,7 @@ int main(int argc, char** argv) try {
     if (!out.empty()) write_index({}, out); // fails sooner than after all of them
     bool right = true;
     std::string costs =
-        "scene,engine,frame_s,frames,median_ms,mean_ms,dearest_ms,dearest_solves,replays,"
+        "scene,engine,frame_s,frames,median_ms,mean_ms,dearest_ms,dearest_solves,late_ms,replays,"
         "largest_html_B,largest_glb_B\n";
     std::vector<Shown> shown;
     const bool all = app.get_subcommands().empty();
