@@ -6,6 +6,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <utility>
@@ -177,6 +178,10 @@ class WorldRig {
     void set_gravity(const V3& g) {
         dynamics_.setGravity(bullet::to_bullet(g));
         for (auto& body : bodies_) body->setGravity(bullet::to_bullet(g));
+    }
+    /// Of all that were made.
+    void set_friction(double coefficient) {
+        for (auto& body : bodies_) body->setFriction(btScalar(std::sqrt(coefficient)));
     }
     static void apply_force(Body b, const V3& force) {
         b->applyCentralForce(bullet::to_bullet(force));

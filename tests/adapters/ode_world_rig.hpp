@@ -154,6 +154,8 @@ class WorldRig {
     void set_gravity(const V3& g) {
         dWorldSetGravity(id_, dReal(g.x()), dReal(g.y()), dReal(g.z()));
     }
+    /// Of all.
+    void set_friction(double coefficient) { friction_ = coefficient; }
     static void apply_force(Body b, const V3& force) {
         dBodyAddForce(b, dReal(force.x()), dReal(force.y()), dReal(force.z()));
     }
@@ -214,7 +216,12 @@ class WorldRig {
     }
     static void touch(void* data, dGeomID a, dGeomID b) {
         auto& rig = *static_cast<WorldRig*>(data);
-        rig.engine_.touch(a, b, {}, [&rig](dJointID joint, const dContact& contact) {
+        dSurfaceParameters surface{};
+        if (rig.friction_ > 0) {
+            surface.mode = dContactApprox1;
+            surface.mu = dReal(rig.friction_);
+        }
+        rig.engine_.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
             rig.world_.add_contact(joint, contact);
         });
     }
@@ -230,6 +237,7 @@ class WorldRig {
     dWorldID id_ = engine_.id;
     ode::World world_;
     bool collides_ = false;
+    double friction_ = 0;
     std::vector<std::unique_ptr<Hinge>> hinges_;
     std::vector<std::unique_ptr<Six>> sixes_;
     std::vector<std::unique_ptr<ode::PlasticConstraint>> others_;

@@ -60,6 +60,17 @@ struct ContactBody {
     return (closing(now) - closing(then)) * half / time;
 }
 
+/// How fast the speed of A's arm over B's grows only because both turn [m/s²]. Friction that holds
+/// is asked for no speed at the end of a part, too: times h/2 and along it, this is what it leaves
+/// the solve short of. Else what lies on a turntable walks outwards by (ω h)²/2 of its radius in
+/// each. Of a wheel that rolls it points along the normal, and nothing of it is along the ground.
+[[nodiscard]] inline Vector3<double> turning_arms(const ContactBody& a,
+                                                  const Vector3<double>& arm_a,
+                                                  const ContactBody& b,
+                                                  const Vector3<double>& arm_b) {
+    return difference(cross(a.spin, cross(a.spin, arm_a)), cross(b.spin, cross(b.spin, arm_b)));
+}
+
 /// Whether what a contact does to the flows of a part of `h` [s] could matter beside `least` [J].
 [[nodiscard]] inline bool may_misplace(const PartMotion& motion, double h, double least) {
     constexpr double noticed = 0.1;

@@ -90,3 +90,18 @@ TEST_CASE("Turned contact: what does not turn, or is another contact, has none",
     face.normal = {1, 0, 0};
     CHECK(w(corner(0), face, wheel) == 0);
 }
+
+TEST_CASE("Turned contact: friction that holds is short of what turns the arms", "[frame]") {
+    // a block at `radius` on a table that turns with it: towards the middle, ω² r of the table's
+    const ContactBody table{.spin = {0, 0, spin}}, block{.spin = {0, 0, spin}};
+    const V at(radius, 0, 0), under(0, 0, -0.1);
+    const V held = turning_arms(block, under, table, at);
+    CHECK(held.x() == Approx(spin * spin * radius));
+    CHECK(held.y() == 0);
+    CHECK(held.z() == 0);
+    // a wheel that rolls on what stands: nothing along the ground
+    const ContactBody wheel{.velocity = {spin * radius, 0, 0}, .spin = {0, 0, -spin}};
+    const V rolls = turning_arms(wheel, V(0, -radius, 0), {}, V(3, 0, 0));
+    CHECK(rolls.x() == Approx(0).margin(1e-12));
+    CHECK(rolls.z() == 0);
+}

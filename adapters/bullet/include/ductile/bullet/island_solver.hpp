@@ -89,6 +89,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void find_turned(btPersistentManifold** manifolds, int count, double tick);
     [[nodiscard]] double turned(const void* point) const;
     [[nodiscard]] double torque_left_out(const btSolverConstraint& friction) const;
+    [[nodiscard]] double turns_away(const btSolverConstraint& friction,
+                                    const btManifoldPoint& point) const;
     void store();
     [[nodiscard]] IslandSeat seat(btRigidBody& body) const;
     solve::IslandRow& add_row(btSolverConstraint& row);
@@ -104,6 +106,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::size_t first_read_ = 0;
     const HeldContacts* held_ = nullptr;
     bool ahead_ = false;
+    double half_ = 0; ///< of the tick [s]
     bool pushes_apart_ = true;
     std::vector<EndRow> at_end_;    ///< of the others' rows, constraint by constraint
     std::vector<int> count_at_end_; ///< rows of each

@@ -31,6 +31,12 @@ struct NamedContact {
 /// not finite or a normal that is not of unit length.
 void require_contact(dJointID joint, const dContact& contact);
 
+namespace detail {
+/// ODE's two friction directions. `normal`: on A.
+[[nodiscard]] std::array<Vector3<double>, 2> friction_directions(const dContact& contact,
+                                                                 const Vector3<double>& normal);
+} // namespace detail
+
 class ContactRows {
   public:
     /// Adds the rows for a step of `dt` [s].

@@ -35,7 +35,6 @@ DUCTILE_INLINE double wanted_velocity(dWorldID world, const dContact& contact, d
     return bounces ? std::max(wanted, double(surface.bounce) * impact + motion) : wanted;
 }
 
-/// ODE's two friction directions.
 DUCTILE_INLINE std::array<Vector3<double>, 2> friction_directions(const dContact& contact,
                                                                   const Vector3<double>& normal) {
     if ((contact.surface.mode & dContactFDir1) != 0) {

@@ -141,6 +141,7 @@ class WorldParts final : public PartEngine {
     [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;
     /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
     [[nodiscard]] double turned(const NamedContact& named, double h) const;
+    void hold_turning(NamedContact& named, double h);
     /// Contacts begin with what the nearest one of their bodies bore in the last part.
     void begin_pushes();
     void remember_pushes();

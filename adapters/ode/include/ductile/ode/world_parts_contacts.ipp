@@ -78,6 +78,7 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
             surface.motionN += dReal((plastic ? turned(named, h) : 0) - closing);
+            if (plastic) hold_turning(named, h);
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -122,6 +123,23 @@ DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) co
     if (nearest == nullptr) return 0;
     return turned_contact(now, *nearest, contact_body(bodies.a), contact_body(bodies.b), h / 2,
                           h / 2);
+}
+
+/// Friction that holds is right at the end of a part of `h` [s].
+DUCTILE_INLINE void WorldParts::hold_turning(NamedContact& named, double h) {
+    dSurfaceParameters& surface = named.contact.surface;
+    const auto [bodies, now] = detail::seen_contact(named);
+    const Vector3<double> turns =
+        turning_arms(contact_body(bodies.a), now.arm_a, contact_body(bodies.b), now.arm_b);
+    if (turns.isZero()) return;
+    const auto along = detail::friction_directions(named.contact, now.normal);
+    const auto move = [&](int flag, dReal& motion, const Vector3<double>& way) {
+        if ((surface.mode & flag) == 0) motion = 0;
+        surface.mode |= flag;
+        motion -= dReal(h / 2 * dot(way, turns));
+    };
+    move(dContactMotion1, surface.motion1, along[0]);
+    move(dContactMotion2, surface.motion2, along[1]);
 }
 
 DUCTILE_INLINE void WorldParts::begin_pushes() {
