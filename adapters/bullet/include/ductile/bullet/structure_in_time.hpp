@@ -56,7 +56,7 @@ struct OpenJoint {
     std::unique_ptr<PlasticJoint<SectionJoint<double>>> constraint;
 };
 
-/// What it says of its joints: structure/divided_structure.hpp.
+/// What it says of its joints: structure/divided_structure.hpp. All of it: structure_snapshot.hpp.
 class StructureInTime final : public DividedStructure<OpenJoint>, private Divisible {
   public:
     /// @throws std::invalid_argument as make_plan and StructureCourse, and where the world is a
@@ -83,6 +83,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     }
 
   private:
+    friend class StructureSnapshot;
     struct Hold : Attachment {
         StructureHold at;
     };
