@@ -102,9 +102,9 @@ class DividedStructure : public BuiltStructure {
     [[nodiscard]] JointReport<double> report(std::size_t joint) const {
         JointReport<double> report = report_alone(joint);
         // of all of it, said by its first joint
-        if (!course_.knows_loads() && joint == first_joint()) {
+        if ((driven_through_ || !course_.knows_loads()) && joint == first_joint()) {
             report.outcome = Outcome::unreliable;
-            report.unmodelled = Unmodelled::forces;
+            report.unmodelled = driven_through_ ? Unmodelled::driven : Unmodelled::forces;
         }
         return report;
     }
@@ -320,6 +320,7 @@ class DividedStructure : public BuiltStructure {
     std::vector<ClusterStep> steps_; ///< of the last step, by cluster
     std::vector<BodyLoad> loads_;    ///< of it
     double noticed_ = 0;             ///< [J]
+    bool driven_through_ = false;    ///< in this step, by a driven body
 
   private:
     // ---- the engine's

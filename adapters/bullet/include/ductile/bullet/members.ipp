@@ -195,7 +195,14 @@ DUCTILE_INLINE void Members::before_solve() {
     if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
         for (Course& course : members_) course.of->require_possible();
         objects_ = world_.getNumCollisionObjects();
+        driven_.clear();
+        for (int i = 0; i < objects_; ++i) {
+            btRigidBody* body = btRigidBody::upcast(world_.getCollisionObjectArray()[i]);
+            if (body == nullptr || !body->isKinematicObject()) continue;
+            driven_.emplace_back(body, body->getWorldTransform());
+        }
     }
+    if (!driven_.empty()) see_driven();
     for (const Course* course : here_) {
         if (course->direct == 0) continue;
         if (!direct_.any) direct_.by_place.assign(before_.size(), 0);

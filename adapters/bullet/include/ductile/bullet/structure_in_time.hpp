@@ -124,8 +124,10 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     void leave() override { left_ = true; }
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
+    void driven_through() override { driven_through_ = true; }
     void begin() override {
         course_.begin_step();
+        driven_through_ = false;
         touches_.clear();
     }
     void touch(const ContactTouch& touch, double /*sum*/) override { touches_.push_back(touch); }
