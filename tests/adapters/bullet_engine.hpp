@@ -28,4 +28,25 @@ struct BulletEngine {
     BulletEngine& operator=(const BulletEngine&) = delete;
 };
 
+/// A body that no member or structure made, as it was.
+struct KeptBody {
+    btRigidBody* body;
+    btTransform pose;
+    btVector3 velocity, spin;
+
+    explicit KeptBody(btRigidBody* of)
+        : body(of),
+          pose(of->getCenterOfMassTransform()),
+          velocity(of->getLinearVelocity()),
+          spin(of->getAngularVelocity()) {}
+    void put_back() const {
+        body->setCenterOfMassTransform(pose);
+        body->setInterpolationWorldTransform(pose);
+        body->setLinearVelocity(velocity);
+        body->setAngularVelocity(spin);
+        body->setInterpolationLinearVelocity(velocity);
+        body->setInterpolationAngularVelocity(spin);
+    }
+};
+
 } // namespace ductile::test

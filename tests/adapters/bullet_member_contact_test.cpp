@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "ductile/bullet/structure_in_time.hpp"
+
 using namespace ductile;
 using namespace ductile::test;
 using bullet::World;
@@ -163,6 +165,70 @@ TEST_CASE("a member that is struck by what is driven takes what a heavy ball giv
         const double by_ball = absorbed(false, frame);
         CHECK(by_ball > 300);
         CHECK(absorbed(true, frame) == Approx(by_ball).epsilon(rough ? 0.02 : 5e-3));
+    }
+}
+
+TEST_CASE("a driven body that passes through a whole clamped member is said to do so",
+          "[bullet][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        for (const double away : {0.0, 0.5}) { // through it, and past it
+            Rig rig;
+            std::vector<std::string> said;
+            World world(rig.engine,
+                        {.tolerance = tolerance,
+                         .warn = [&said](const std::string& line) { said.push_back(line); }});
+            bullet::Member post(
+                rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(0.05, 2), usual, everything),
+                heavy_post(), here, {0.05, 0.05});
+            btRigidBody& truck =
+                rig.body(0, {0, 0, 0}, {0, -1, 1},
+                         rig.shape(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f))),
+                         usual, everything);
+            truck.setCollisionFlags(truck.getCollisionFlags() |
+                                    btCollisionObject::CF_KINEMATIC_OBJECT);
+            world.add(post);
+            for (int i = 0; i < 60; ++i) {
+                btTransform there = here;
+                there.setOrigin({btScalar(away), btScalar(2.0 * i / 60 - 1), 1});
+                truck.setWorldTransform(there);
+                world.step(1.0 / 60);
+            }
+            CAPTURE(tolerance, away);
+            const bool through = away == 0;
+            CHECK((world.watch().unreliable_steps(0) > 0) == through);
+            REQUIRE(said.size() == (through ? 1 : 0));
+            if (through)
+                CHECK(said[0].find("a driven body passes through it") != std::string::npos);
+            if (tolerance > 0) CHECK(world.run().believed() == !through);
+        }
+    }
+}
+
+TEST_CASE("a driven body that passes through a whole structure is said to do so",
+          "[bullet][member]") {
+    const Rectangle<double> section({.width = 0.1, .height = 0.1});
+    StructureModel model({.elastic = false});
+    const NodeId foot = model.node({0, 0, 0}), top = model.node({0, 0, 3});
+    model.member("column", foot, top, section, Material<double>(s355<double>()));
+    model.support(foot);
+    for (const bool through : {true, false}) {
+        Rig rig;
+        World world(rig.engine, {.warn = {}});
+        bullet::StructureInTime column(world, model);
+        btRigidBody& truck =
+            rig.body(0, {0, 0, 0}, {0, -1, 1},
+                     rig.shape(std::make_unique<btBoxShape>(btVector3(0.2f, 0.2f, 0.2f))), usual,
+                     everything);
+        truck.setCollisionFlags(truck.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
+        for (int i = 0; i < 60; ++i) {
+            btTransform there = here;
+            there.setOrigin({btScalar(through ? 0 : 1), btScalar(2.0 * i / 60 - 1), 1});
+            truck.setWorldTransform(there);
+            world.step(1.0 / 60);
+        }
+        CAPTURE(through);
+        CHECK((world.watch().unreliable_steps(0) > 0) == through);
+        CHECK(world.run().believed() == !through);
     }
 }
 

@@ -13,14 +13,18 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/bullet_engine.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/structure.hpp"
 #include "ductile/bullet/structure_in_time.hpp"
+#include "ductile/bullet/structure_snapshot.hpp"
 #include "ductile/joint/usual_joints.hpp"
 
 namespace ductile::test {
 
 namespace engine = ductile::bullet;
+
+using Snapshot = bullet::StructureSnapshot;
 
 /// Of the engine's: a ball, a hinge about y, a weld.
 enum class OwnJoint { point, hinge, weld };

@@ -114,27 +114,6 @@ using Snapshot = bullet::MemberSnapshot;
 inline double across(const bullet::Member& member, int segment) {
     return double(member.pose(segment).getOrigin().y());
 }
-/// A body that is no member's, as it was.
-struct KeptBody {
-    btRigidBody* body;
-    btTransform pose;
-    btVector3 velocity, spin;
-
-    explicit KeptBody(btRigidBody* of)
-        : body(of),
-          pose(of->getCenterOfMassTransform()),
-          velocity(of->getLinearVelocity()),
-          spin(of->getAngularVelocity()) {}
-    void put_back() const {
-        body->setCenterOfMassTransform(pose);
-        body->setInterpolationWorldTransform(pose);
-        body->setLinearVelocity(velocity);
-        body->setAngularVelocity(spin);
-        body->setInterpolationLinearVelocity(velocity);
-        body->setInterpolationAngularVelocity(spin);
-    }
-};
-
 /// A mass [kg] fixed by a point to the tip of a cantilever such as P13's, always jointed or just in
 /// time.
 struct Struck {

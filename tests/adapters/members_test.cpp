@@ -213,6 +213,30 @@ TEST_CASE("a force that a member is not told of is said, one that it is told of 
     CHECK(std::abs(ledger.unexplained()) < (rough ? 1e-3 : 1e-9) * ledger.supplied());
 }
 
+TEST_CASE("forces and throws beyond all reason end a step with a word, not the process",
+          "[member]") {
+    int said = 0;
+    for (const double force : {1e5, 1e8, 1e16, 1e99}) {
+        for (const double speed : {0.0, 1e4}) {
+            for (const double tolerance : {0.0, 0.01}) {
+                const auto push = [](auto& world, auto& member, double by) {
+                    for (int i = 0; i < 40; ++i) {
+                        apply_force(member, by, 0.9);
+                        world.step(1.0 / 60);
+                    }
+                };
+                Struck post(strip(10), true, tolerance);
+                post.strike(speed);
+                said +=
+                    message_of([&] { push(post.world, *post.member, force); }) != "nothing thrown";
+                BallOnBar bar(free_bar(), 1, speed, 1);
+                said += message_of([&] { push(bar.world, *bar.bar, force); }) != "nothing thrown";
+            }
+        }
+    }
+    CHECK(said > 0);
+}
+
 TEST_CASE("a member that is heavier than it was made is refused", "[member]") {
     BallOnBar scene(free_bar(), 1, 0, 1);
     scene.world.step(1.0 / 60);

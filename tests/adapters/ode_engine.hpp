@@ -8,6 +8,8 @@
 #include <array>
 #include <cstddef>
 
+#include "ductile/ode/world_snapshot.hpp"
+
 namespace ductile::test {
 
 /// First made, last destroyed. ODE counts its users.
@@ -51,5 +53,18 @@ struct OdeEngine {
     dSpaceID space = nullptr;
     dJointGroupID contacts = nullptr;
 };
+
+namespace in_ode {
+
+/// A body that no member or structure made, as it was.
+struct KeptBody {
+    dBodyID body;
+    ode::BodySnapshot as_it_was;
+
+    explicit KeptBody(dBodyID of) : body(of), as_it_was(of) {}
+    void put_back() const { as_it_was.put_back(body); }
+};
+
+} // namespace in_ode
 
 } // namespace ductile::test

@@ -137,15 +137,6 @@ using Snapshot = ode::MemberSnapshot;
 inline double across(const ode::Member& member, int segment) {
     return member.pose(segment).origin[1];
 }
-/// A body that is no member's, as it was.
-struct KeptBody {
-    dBodyID body;
-    ode::BodySnapshot as_it_was;
-
-    explicit KeptBody(dBodyID of) : body(of), as_it_was(of) {}
-    void put_back() const { as_it_was.put_back(body); }
-};
-
 /// A mass [kg] fixed by a point to the tip of a cantilever such as P13's, always jointed or just in
 /// time.
 struct Struck {

@@ -17,10 +17,14 @@
 #include "ductile/ode/ode.hpp"
 #include "ductile/ode/structure.hpp"
 #include "ductile/ode/structure_in_time.hpp"
+#include "ductile/ode/structure_snapshot.hpp"
 
 namespace ductile::test {
 
 namespace engine = ductile::ode;
+
+using in_ode::KeptBody;
+using Snapshot = ode::StructureSnapshot;
 
 /// Of the engine's: a ball, a hinge about y, a weld.
 enum class OwnJoint { point, hinge, weld };
@@ -30,7 +34,7 @@ class StructureRig {
     using Body = dBodyID;
     using Joint = ode::PlasticJoint<UsualSixAxisJoint>;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
-    static constexpr bool in_frames = false; ///< a default World's steps
+    static constexpr bool in_frames = false;       ///< a default World's steps
     /// How deep into the floor a body is made that is to rest on it: ODE lets contacts overlap [m].
     static constexpr double layer = 1e-3;
 

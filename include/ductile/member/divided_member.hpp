@@ -215,6 +215,14 @@ class DividedMember {
             section.bend = open.hinge->rotation();
         }
     }
+    /// With a joint or, where that could not be made, without.
+    [[nodiscard]] std::vector<int> all_open() const {
+        std::vector<int> all;
+        for (int i = 0; i < description().sections(); ++i) {
+            if (course_.section(i).open) all.push_back(i);
+        }
+        return all;
+    }
     [[nodiscard]] Saved save() const {
         Saved saved{state(), course_.vibration(), course_.redundant(), {}};
         for (std::size_t section = 0; section < saved.state.size(); ++section) {

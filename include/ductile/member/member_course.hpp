@@ -132,6 +132,7 @@ class MemberCourse {
     /// What the looks since the last call of begin_step met.
     [[nodiscard]] Unmodelled unmodelled() const noexcept { return unmodelled_; }
     void begin_step() noexcept { unmodelled_ = Unmodelled::nothing; }
+    void doubt(Unmodelled what) noexcept { unmodelled_ = what; }
 
     /// Closed sections, the worst of each piece, that carried more than they can in a step of `dt`
     /// [s]; `steps`: by piece. Valid until the next call.

@@ -22,6 +22,7 @@
 #include "ductile/structure/built_structure.hpp"
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
+#include "ductile/structure/structure_save.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 #include "ductile/world/joint_report.hpp"
 
@@ -101,9 +102,9 @@ class DividedStructure : public BuiltStructure {
     [[nodiscard]] JointReport<double> report(std::size_t joint) const {
         JointReport<double> report = report_alone(joint);
         // of all of it, said by its first joint
-        if (!course_.knows_loads() && joint == first_joint()) {
+        if ((driven_through_ || !course_.knows_loads()) && joint == first_joint()) {
             report.outcome = Outcome::unreliable;
-            report.unmodelled = Unmodelled::forces;
+            report.unmodelled = driven_through_ ? Unmodelled::driven : Unmodelled::forces;
         }
         return report;
     }
@@ -145,11 +146,31 @@ class DividedStructure : public BuiltStructure {
     /// Into the course what open joints went through and carry.
     void note_joints() {
         for (const OpenJoint& open : joints_) {
-            auto& state = course_.joint(open.joint).state;
-            state = open.constraint->state();
-            if (!open.constraint->is_awake_member()) state->joint.flowing = false; // not any more
+            course_.joint(open.joint).state = noted(open);
             course_.force(open.joint) = forces_of(open);
         }
+    }
+    [[nodiscard]] static StructureCourse::LinkState noted(const OpenJoint& open) {
+        auto state = open.constraint->state();
+        if (!open.constraint->is_awake_member()) state.joint.flowing = false; // not any more
+        return state;
+    }
+    [[nodiscard]] StructureSave save() const {
+        StructureCourse::Saved saved = course_.save();
+        for (const OpenJoint& open : joints_) {
+            saved.state.joints[open.joint].state = noted(open);
+            saved.state.forces[open.joint] = forces_of(open);
+        }
+        return {course_, std::move(saved), placed_clusters()};
+    }
+    /// All bodies and joints anew: what follows must not hang on what there is now.
+    /// @throws std::invalid_argument as StructureSave.
+    void put_back(const StructureSave& saved) {
+        saved.require_of(course_);
+        find_holds();
+        joints_.clear();
+        become(course_.restore(saved.saved(), saved.bodies()), false);
+        rearranged();
     }
     /// Those that closed, or are between other bodies than they were.
     void end_joints(const StructureCourse::Change& change) {
@@ -299,6 +320,7 @@ class DividedStructure : public BuiltStructure {
     std::vector<ClusterStep> steps_; ///< of the last step, by cluster
     std::vector<BodyLoad> loads_;    ///< of it
     double noticed_ = 0;             ///< [J]
+    bool driven_through_ = false;    ///< in this step, by a driven body
 
   private:
     // ---- the engine's

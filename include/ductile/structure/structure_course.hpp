@@ -142,9 +142,14 @@ class StructureCourse {
     Change close(std::span<const int> joints, std::span<const PlacedBody> clusters);
     Change remove_joint(std::size_t joint, std::span<const PlacedBody> clusters);
     Change remove_body(std::size_t body, std::span<const PlacedBody> clusters);
-    [[nodiscard]] const State& state() const noexcept { return state_; }
-    /// `bodies`: by body of the plan, where it is to be.
-    void restore(const State& state, std::span<const PlacedBody> bodies);
+    /// What it is now. Plain value.
+    struct Saved {
+        State state;
+        std::vector<Cluster> clusters;
+    };
+    [[nodiscard]] Saved save() const { return {state_, clusters_}; }
+    /// Of the same plan, the same of its joints being there; `clusters`: where they are to be.
+    Change restore(const Saved& saved, std::span<const PlacedBody> clusters);
 
   private:
     Change rearrange(std::span<const PlacedBody> clusters);

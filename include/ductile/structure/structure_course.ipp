@@ -238,11 +238,16 @@ DUCTILE_INLINE StructureCourse::Change StructureCourse::remove_body(
     body_there_[body] = false;
     return rearrange(clusters);
 }
-DUCTILE_INLINE void StructureCourse::restore(const State& state,
-                                             std::span<const PlacedBody> bodies) {
-    state_ = state;
-    clusters_ = find_clusters(bodies, made_at_);
+DUCTILE_INLINE StructureCourse::Change StructureCourse::restore(
+    const Saved& saved, std::span<const PlacedBody> clusters) {
+    state_ = saved.state;
+    clusters_ = saved.clusters;
+    made_at_.assign(clusters.begin(), clusters.end());
+    for (std::size_t c = 0; c < clusters_.size(); ++c) {
+        for (const std::size_t body : clusters_[c].bodies) cluster_of_[body] = c;
+    }
     make_forces();
+    return {std::vector<std::optional<std::size_t>>(clusters_.size())};
 }
 
 // ---- after a step

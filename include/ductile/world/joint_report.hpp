@@ -20,6 +20,7 @@ enum class Unmodelled : unsigned char {
     nothing,
     stretch,   ///< a member flowed that nothing lets stretch (member/member_course.hpp)
     off_plane, ///< more along, about or across a member than it bears, but bending about its x
+    driven,    ///< what does not move of it and a driven body passed through each other
     forces     ///< it went as no load that it was told of explains
 };
 

@@ -22,6 +22,9 @@ namespace ductile {
         case Unmodelled::off_plane:
             return "had to bear more than it can along its axis, about it or across the plane in "
                    "which it bends, of which it knows nothing";
+        case Unmodelled::driven:
+            return "does not move, and a driven body passes through it: the engine makes no "
+                   "contacts between them";
         default:
             return "moved as the loads that it knows of do not explain";
     }
@@ -32,6 +35,8 @@ namespace ductile {
             return "let one of its ends slide";
         case Unmodelled::off_plane:
             return "a structure (StructureInTime) yields whichever way it is loaded";
+        case Unmodelled::driven:
+            return "strike it with a body that has a mass, as large as it may be";
         default:
             return "push it by its apply_force or apply, hold it by attach, and leave its bodies "
                    "the masses that it gave them";

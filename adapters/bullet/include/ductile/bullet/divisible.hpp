@@ -54,6 +54,8 @@ class Divisible {
     [[nodiscard]] virtual bool whole() const = 0;
     /// The last look met what it cannot be asked, which its report says.
     [[nodiscard]] virtual bool doubts() const { return false; }
+    /// A driven body passes through what does not move of it.
+    virtual void driven_through() = 0;
     /// Under which a joint of its own is reported, and of which section it is; null: not its own.
     [[nodiscard]] virtual const void* key_of(const PlasticConstraint& joint,
                                              int& section) const = 0;

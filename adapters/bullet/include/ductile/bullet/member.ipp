@@ -159,9 +159,7 @@ DUCTILE_INLINE void Member::leave() {
     pushed_ = rearranged_ = nullptr;
     ends_ = nullptr;
     note_sections();
-    std::vector<int> all;
-    for (const OpenSection& open : joints_) all.push_back(open.section);
-    if (!whole()) close(all, false);
+    if (!whole()) close(all_open(), false);
     for (Attachment& attachment : attachments_) attachment.drop(*world_);
     world_ = nullptr;
 }

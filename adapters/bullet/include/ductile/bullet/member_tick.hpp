@@ -31,6 +31,7 @@ class MemberTick final : public Divisible {
     [[nodiscard]] DUCTILE_INLINE bool idle() const override;
     [[nodiscard]] DUCTILE_INLINE bool whole() const override;
     [[nodiscard]] DUCTILE_INLINE bool doubts() const override;
+    DUCTILE_INLINE void driven_through() override;
     [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
                                                     int& section) const override;
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;

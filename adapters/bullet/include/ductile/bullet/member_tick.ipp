@@ -26,6 +26,7 @@ DUCTILE_INLINE bool MemberTick::idle() const {
 DUCTILE_INLINE bool MemberTick::doubts() const {
     return member_.course_.unmodelled() != Unmodelled::nothing;
 }
+DUCTILE_INLINE void MemberTick::driven_through() { member_.course_.doubt(Unmodelled::driven); }
 DUCTILE_INLINE void MemberTick::require_possible() const { member_.require_possible(); }
 DUCTILE_INLINE void MemberTick::leave() { member_.leave(); }
 DUCTILE_INLINE double MemberTick::closed_work() const { return member_.course_.closed_work(); }

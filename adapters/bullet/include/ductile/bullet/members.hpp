@@ -119,6 +119,8 @@ class Members final : public Divisibles {
     void note_doubts(Course& course);
     /// Those of the last tick were told.
     void forget_doubts();
+    /// Bullet makes no contacts of what does not move with what is driven.
+    void see_driven();
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);
@@ -135,7 +137,8 @@ class Members final : public Divisibles {
     std::vector<Member*> pushed_;      ///< with forces
     btVector3 gravity_{0, 0, 0};       ///< of the last look
     bool look_at_all_ = true, any_doubts_ = false;
-    int objects_ = 0; ///< of the world, in the last tick
+    int objects_ = 0;                                          ///< of the world, in the last tick
+    std::vector<std::pair<btRigidBody*, btTransform>> driven_; ///< of them, where they were then
     std::vector<std::pair<const void*, bool>> idle_changes_;
     std::vector<BodyBefore> before_; ///< by the body's place in the world
     DirectBodies direct_;

@@ -27,17 +27,10 @@ DUCTILE_INLINE std::vector<std::string> Members::add(Member& member, std::functi
     member.enter(world_);
     member.ends_ = std::move(ends);
     member.pushed_ = [this, &member] { pushed_.push_back(&member); };
-    member.rearranged_ = [this, &member] {
-        look_at_all_ = true;
-        for (std::size_t i = 0; i < members_.size(); ++i) {
-            if (members_[i].member != &member) continue;
-            members_[i].direct = direct_ticks; // whatever went before
-            note_bodies(i);
-        }
-    };
     if (!member.forces_.empty()) pushed_.push_back(&member);
     auto tick = std::make_unique<MemberTick>(member);
     MemberTick* of = tick.get();
+    member.rearranged_ = [this, of] { rearranged(*of); };
     add({.of = of, .member = &member, .tick = std::move(tick)});
     return of->remarks();
 }
@@ -80,8 +73,11 @@ DUCTILE_INLINE void Members::remove(Divisible& structure) {
 }
 
 DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
+    look_at_all_ = true;
     for (std::size_t i = 0; i < members_.size(); ++i) {
-        if (members_[i].of == &structure) note_bodies(i);
+        if (members_[i].of != &structure) continue;
+        members_[i].direct = direct_ticks; // whatever went before
+        note_bodies(i);
     }
 }
 DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
@@ -199,7 +195,14 @@ DUCTILE_INLINE void Members::before_solve() {
     if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
         for (Course& course : members_) course.of->require_possible();
         objects_ = world_.getNumCollisionObjects();
+        driven_.clear();
+        for (int i = 0; i < objects_; ++i) {
+            btRigidBody* body = btRigidBody::upcast(world_.getCollisionObjectArray()[i]);
+            if (body == nullptr || !body->isKinematicObject()) continue;
+            driven_.emplace_back(body, body->getWorldTransform());
+        }
     }
+    if (!driven_.empty()) see_driven();
     for (const Course* course : here_) {
         if (course->direct == 0) continue;
         if (!direct_.any) direct_.by_place.assign(before_.size(), 0);

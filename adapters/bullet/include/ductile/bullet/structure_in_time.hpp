@@ -56,7 +56,7 @@ struct OpenJoint {
     std::unique_ptr<PlasticJoint<SectionJoint<double>>> constraint;
 };
 
-/// What it says of its joints: structure/divided_structure.hpp.
+/// What it says of its joints: structure/divided_structure.hpp. All of it: structure_snapshot.hpp.
 class StructureInTime final : public DividedStructure<OpenJoint>, private Divisible {
   public:
     /// @throws std::invalid_argument as make_plan and StructureCourse, and where the world is a
@@ -83,6 +83,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     }
 
   private:
+    friend class StructureSnapshot;
     struct Hold : Attachment {
         StructureHold at;
     };
@@ -123,8 +124,10 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     void leave() override { left_ = true; }
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
+    void driven_through() override { driven_through_ = true; }
     void begin() override {
         course_.begin_step();
+        driven_through_ = false;
         touches_.clear();
     }
     void touch(const ContactTouch& touch, double /*sum*/) override { touches_.push_back(touch); }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world.hpp"
@@ -64,6 +65,46 @@ DUCTILE_INLINE void Members::forget_doubts() {
         if (!members_[i].of->doubts()) continue;
         members_[i].of->begin();
         note_bodies(i);
+    }
+}
+
+DUCTILE_INLINE void Members::see_driven() {
+    struct Near final : btBroadphaseAabbCallback {
+        std::vector<btCollisionObject*> objects;
+        bool process(const btBroadphaseProxy* proxy) override {
+            objects.push_back(static_cast<btCollisionObject*>(proxy->m_clientObject));
+            return true;
+        }
+    };
+    struct Touch final : btCollisionWorld::ContactResultCallback {
+        bool any = false;
+        btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                                 const btCollisionObjectWrapper*, int, int) override {
+            any = any || point.getDistance() < 0;
+            return 0;
+        }
+    };
+    for (auto& [body, was] : driven_) {
+        const btTransform now = body->getWorldTransform();
+        if (std::exchange(was, now) == now) continue;
+        const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
+        Near near;
+        world_.getBroadphase()->aabbTest(proxy.m_aabbMin, proxy.m_aabbMax, near);
+        for (btCollisionObject* object : near.objects) {
+            Course* course = course_of(*object);
+            if (course == nullptr || !object->isStaticObject()) continue;
+            const btBroadphaseProxy& other = *object->getBroadphaseHandle();
+            if ((other.m_collisionFilterGroup & proxy.m_collisionFilterMask) == 0 ||
+                (proxy.m_collisionFilterGroup & other.m_collisionFilterMask) == 0) {
+                continue;
+            }
+            Touch touch;
+            world_.contactPairTest(body, object, touch);
+            if (!touch.any) continue;
+            list(*course);
+            course->of->driven_through();
+            note_doubts(*course);
+        }
     }
 }
 

@@ -156,9 +156,7 @@ DUCTILE_INLINE void Member::leave() {
     if (life_->goes_on() && !whole()) {
         find_holds();
         note_sections();
-        std::vector<int> all;
-        for (const OpenSection& open : joints_) all.push_back(open.section);
-        become(course_.close(all, placed_pieces()), false);
+        become(course_.close(all_open(), placed_pieces()), false);
     }
     world_ = nullptr;
 }

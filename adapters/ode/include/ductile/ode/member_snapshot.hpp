@@ -13,10 +13,10 @@
 
 #include <ode/ode.h>
 
-#include <optional>
 #include <vector>
 
 #include "ductile/ode/member.hpp"
+#include "ductile/ode/user_joint.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -37,18 +37,9 @@ class MemberSnapshot {
         JointFrame<double> pose;
         BodySnapshot body;
     };
-    struct Hold {
-        dJointID joint;
-        JointPlace place;
-        Wrench wrench;
-        dBodyID other; ///< on which it holds; null: the world
-        std::optional<BodySnapshot> other_was{};
-    };
-    static void hold_again(const Hold& hold, Member& member);
-
     Member::Saved saved_;
     std::vector<Piece> pieces_;
-    std::vector<Hold> holds_;
+    std::vector<SavedHold> holds_;
     PressedTouches pressed_;
 };
 

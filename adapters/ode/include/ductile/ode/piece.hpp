@@ -194,6 +194,12 @@ class PressedTouches {
                                 touch.point, wrench_of(*touch.feedback, touch.of_a).force});
         }
     }
+    /// All press this body, which is now what they pressed.
+    void go_to(dBodyID on) noexcept {
+        for (auto* all : {&pressed_, &asleep_}) {
+            for (Pressed& pressed : *all) pressed.on = on;
+        }
+    }
     void forget() {
         pressed_.clear();
         asleep_.clear();

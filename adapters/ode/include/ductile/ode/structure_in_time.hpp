@@ -60,7 +60,7 @@ struct OpenJoint {
     std::unique_ptr<PlasticJoint<SectionJoint<double>>> constraint;
 };
 
-/// What it says of its joints: structure/divided_structure.hpp.
+/// What it says of its joints: structure/divided_structure.hpp. All of it: structure_snapshot.hpp.
 class StructureInTime final : public DividedStructure<OpenJoint>, private Divisible {
   public:
     /// `space`: where the geoms go; null: there are none.
@@ -86,6 +86,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     }
 
   private:
+    friend class StructureSnapshot;
     struct Hold : UserJoint {
         StructureHold at;
     };

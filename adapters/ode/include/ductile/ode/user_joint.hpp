@@ -15,6 +15,7 @@
 
 #include "ductile/member/member_course.hpp"
 #include "ductile/ode/piece.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
@@ -62,6 +63,22 @@ struct UserJoint {
     /// In a blow of `dt` [s] that was seen, of its own body or of the other; `place`: where it
     /// holds, world [m].
     [[nodiscard]] JointSide side(bool own, const Vector3<double>& place, double dt) const;
+};
+
+/// One as it was. Plain value.
+class SavedHold {
+  public:
+    explicit SavedHold(const UserJoint& hold);
+    /// It holds where it did, the bodies of the member or structure being where they were; what it
+    /// holds on to may be elsewhere. False: it is another one, or holds something else now.
+    bool put_back(UserJoint& now) const;
+
+  private:
+    dJointID joint_;
+    JointPlace place_;
+    Wrench wrench_;
+    dBodyID other_; ///< on which it holds; null: the world
+    std::optional<BodySnapshot> other_was_{};
 };
 
 } // namespace ductile::ode

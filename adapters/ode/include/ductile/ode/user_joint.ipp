@@ -127,4 +127,21 @@ DUCTILE_INLINE JointSide UserJoint::side(bool own, const Vector3<double>& place,
             .moment = scaled(dt, given.torque)};
 }
 
+DUCTILE_INLINE SavedHold::SavedHold(const UserJoint& hold)
+    : joint_(hold.joint), place_(hold.joint), wrench_(hold.wrench), other_(hold.other()) {
+    if (other_ != nullptr) other_was_.emplace(other_);
+}
+DUCTILE_INLINE bool SavedHold::put_back(UserJoint& now) const {
+    if (now.joint != joint_ || now.other() != other_) return false;
+    std::optional<BodySnapshot> other_is;
+    if (other_ != nullptr) {
+        other_is.emplace(other_);
+        other_was_->put_pose_back(other_);
+    }
+    place_.attach(joint_, dJointGetBody(joint_, 0), dJointGetBody(joint_, 1), now.body);
+    if (other_ != nullptr) other_is->put_pose_back(other_);
+    now.wrench = wrench_;
+    return true;
+}
+
 } // namespace ductile::ode

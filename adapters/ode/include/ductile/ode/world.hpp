@@ -179,6 +179,7 @@ class World final : public SteppedWorld {
     void require_all_bodies();
     void require_known(dBodyID body) const;
     void require_finite();
+    void require_slow() const;
     void require_contacts();
 
     dWorldID world_;

@@ -272,6 +272,7 @@ DUCTILE_INLINE void World::tell_of_members() {
 }
 
 DUCTILE_INLINE void World::solve(double dt) {
+    if (!members_->empty()) require_slow();
     for (SteppedConstraint* constraint : constraints_) constraint->prepare(dt);
     // contacts of a member are often more than hold it, of which ODE's LCP loses some
     const bool frames = parts_ != nullptr;

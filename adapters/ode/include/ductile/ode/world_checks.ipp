@@ -3,6 +3,7 @@
 // Bodies of world.hpp: what a step is refused for. A part of world.ipp.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -79,6 +80,16 @@ DUCTILE_INLINE void World::require_finite() {
                 refuse("a body of \"" + (known ? watch().name(number) : "a member") + "\"", what);
             }
         }
+    }
+}
+/// What is pushed beyond all reason may go faster with every solve, until ODE's numbers overflow.
+DUCTILE_INLINE void World::require_slow() const {
+    constexpr double fastest = 1e9;
+    for (dBodyID body : bodies_) {
+        const double speed = std::max(norm(linear_velocity(body)), norm(angular_velocity(body)));
+        if (speed <= fastest) continue;
+        check::fail("World.step: how fast a body is", speed, "m/s or rad/s",
+                    "<= 1e9, as ODE would end the process");
     }
 }
 DUCTILE_INLINE void World::require_known(dBodyID body) const {
