@@ -69,6 +69,7 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    closing_.show_struck(manifolds());
     if (members_->empty() && local_) save();
     begin_blow();
     for (tick(blow_length, false); members_->look_blow(blow_length); tick(blow_length, false)) {
