@@ -33,11 +33,18 @@
 //
 // A gap that closes slowly as a part begins, and is not aimed at, may be hurried within it by what
 // flows, unknown to Bullet until shapes overlap: where they passed each other with an energy that
-// counts, it closed where a constant gain of speed has it, and the part is cut there, too.
+// counts, it closed where a constant gain of speed has it, and the part is cut there, too. So may
+// what touches and turns, which is apart in the middle of a part and falls back until its end: half
+// of the part comes first.
+//
+// Two bodies that turn may close elsewhere than where they are nearest (closing_points.ipp). They
+// are asked for where they go: a point in which they overlap there, with an energy that counts, is
+// followed back along its way.
 //
 // Not thread-safe.
 #pragma once
 
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -61,7 +68,14 @@ class Divisibles;
 
 namespace detail {
 class ShapeReach;
-}
+
+/// Of two bodies that touch there too, beside where they are nearest.
+struct StruckPoint {
+    const btCollisionObject *a, *b;
+    btVector3 normal, on_b;
+    double gap; ///< [m]
+};
+} // namespace detail
 
 class ClosingContactsFinder {
   public:
@@ -89,8 +103,14 @@ class ClosingContactsFinder {
         find_islands(world);
         return !joined_.empty();
     }
+    /// Has Bullet know what the last `find` saw of points that strike, where its algorithms know
+    /// one a tick: all shapes but boxes on boxes.
+    void show_struck(std::span<btPersistentManifold* const> manifolds) const;
     /// Bodies that the last `find` saw may have ended.
-    void forget_open() noexcept { open_.clear(); }
+    void forget_open() noexcept {
+        open_.clear();
+        struck_.clear();
+    }
 
     /// Whether a body is in an island with plastic joints.
     [[nodiscard]] bool touches_plastic(btDiscreteDynamicsWorld& world, const btRigidBody& body) {
@@ -99,6 +119,12 @@ class ClosingContactsFinder {
     }
 
   private:
+    struct Pair {
+        btCollisionObject* a;
+        btCollisionObject* b;
+        btScalar reach; ///< how far they can come in time [m]
+        bool turns;     ///< fast enough to close elsewhere than where they are nearest
+    };
     /// Bounds of all bodies.
     struct Fastest {
         double speed;        ///< of any point of one that is awake [m/s]
@@ -109,6 +135,8 @@ class ClosingContactsFinder {
     [[nodiscard]] btVector3 falls(const btCollisionObject& object) const;
     [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
     void add_joint(const btTypedConstraint& constraint);
+    void look_ahead(btDiscreteDynamicsWorld& world, const Pair& pair, double h, double touching,
+                    double apart, ClosingContacts& found);
     void note_found(const btCollisionObject& a, const btCollisionObject& b);
     void find_islands(btDiscreteDynamicsWorld& world);
     void list_pairs(btDiscreteDynamicsWorld& world, btScalar h, double least, btScalar fastest);
@@ -122,14 +150,10 @@ class ClosingContactsFinder {
     /// A body of a member that contacts do not push.
     [[nodiscard]] bool is_still_member(const btCollisionObject& object) const;
 
-    struct Pair {
-        btCollisionObject* a;
-        btCollisionObject* b;
-        btScalar reach; ///< how far they can come in time [m]
-    };
-    /// One that is apart and not aimed at.
+    /// One that is apart, or may come apart, and is not aimed at.
     struct OpenPair {
         Pair pair;
+        bool touched;      ///< it is not apart, but turns
         double way, speed; ///< until their nearest points are closed [m], closing [m/s]
     };
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
@@ -140,7 +164,8 @@ class ClosingContactsFinder {
     std::vector<const btRigidBody*> falling_; ///< what nothing holds, and just begins to, sorted
     std::vector<int> islands_;                ///< sorted
     std::vector<Pair> pairs_;
-    std::vector<OpenPair> open_; ///< of the last `find`
+    std::vector<OpenPair> open_;              ///< of the last `find`
+    std::vector<detail::StruckPoint> struck_; ///< the same
     const LocalScope* scope_ = nullptr;
     std::vector<const btRigidBody*> found_bodies_;
     std::vector<btRigidBody*> foreign_;

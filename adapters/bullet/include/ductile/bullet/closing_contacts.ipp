@@ -4,57 +4,21 @@
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
-#include <BulletCollision/CollisionShapes/btCollisionShape.h>
+#include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/closing_points.ipp" // IWYU pragma: keep
 #include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/falling_groups.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
-#include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet {
 
 namespace detail {
-
-/// Null for what a contact cannot push.
-[[nodiscard]] DUCTILE_INLINE const btRigidBody* pushed(const btCollisionObject& object) {
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    const bool moves =
-        body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
-    return moves ? body : nullptr;
-}
-
-[[nodiscard]] DUCTILE_INLINE btVector3 velocity_at(const btCollisionObject& object,
-                                                   const btVector3& point) {
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    if (body == nullptr) return btVector3(0, 0, 0);
-    return body->getVelocityInLocalPoint(point - body->getCenterOfMassPosition());
-}
-
-[[nodiscard]] DUCTILE_INLINE double parting_speed(const btCollisionObject& a,
-                                                  const btCollisionObject& b,
-                                                  const btManifoldPoint& point,
-                                                  const btVector3& normal) {
-    const btVector3 parts =
-        velocity_at(a, point.getPositionWorldOnA()) - velocity_at(b, point.getPositionWorldOnB());
-    return double(normal.dot(parts));
-}
-
-[[nodiscard]] DUCTILE_INLINE btVector3 spin(const btCollisionObject& object) {
-    const btRigidBody* body = btRigidBody::upcast(&object);
-    return body != nullptr ? body->getAngularVelocity() : btVector3(0, 0, 0);
-}
-
-/// 1/effective mass along `normal` at `point`, of one of the bodies [1/kg].
-[[nodiscard]] DUCTILE_INLINE double yield_at(const btCollisionObject& object,
-                                             const btVector3& point, const btVector3& normal) {
-    const btRigidBody* body = pushed(object);
-    return body != nullptr ? double(body->computeImpulseDenominator(point, normal)) : 0.0;
-}
 
 /// From the centre of mass to the farthest point of a shape [m]; many bodies have one shape.
 class ShapeReach {
@@ -80,76 +44,6 @@ class ShapeReach {
     return body.getAngularVelocity().length() * reach.of(*body.getCollisionShape());
 }
 
-/// How far a body may get past something and still be found on this side of it: half of its
-/// smallest extent; infinite for what does not move [m].
-[[nodiscard]] DUCTILE_INLINE double half_thickness(const btCollisionObject& object) {
-    if (pushed(object) == nullptr) return std::numeric_limits<double>::infinity();
-    btVector3 low, high;
-    object.getCollisionShape()->getAabb(btTransform::getIdentity(), low, high);
-    const btVector3 extent = high - low;
-    return double(extent[extent.minAxis()]) / 2;
-}
-
-struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
-    ClosingContacts& found;
-    double touching, apart;
-    double h;       ///< of the part [s]
-    double unseen;  ///< past each other by more than that nobody would find them [m]
-    btVector3 fall; ///< acceleration of the first body beside the second [m/s²]
-    const btCollisionObject* first;
-    struct Nearest {                                           ///< of the points
-        double away = std::numeric_limits<double>::infinity(); ///< [m]
-        double speed = 0, energy = 0;                          ///< with which it closes [m/s], [J]
-        double way = 0;                                        ///< until it is closed [m]
-    } nearest{};
-    ClosestPoints(ClosingContacts& result, double touch, double open, btScalar reach, double length,
-                  const btCollisionObject* a, const btCollisionObject* b, const btVector3& falls)
-        : found(result),
-          touching(touch),
-          apart(open),
-          h(length),
-          unseen(std::min(half_thickness(*a), half_thickness(*b))),
-          fall(falls),
-          first(a) {
-        m_closestDistanceThreshold =
-            reach + rounding(*a->getCollisionShape()) + rounding(*b->getCollisionShape());
-    }
-    /// Towards the second body, of who begins to fall on it [m/s²].
-    [[nodiscard]] double gain(const btCollisionObject& a, const btVector3& normal) const {
-        return std::max(0.0, (&a == first ? -1 : 1) * double(normal.dot(fall)));
-    }
-    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
-                             const btCollisionObjectWrapper* b, int, int) override {
-        const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
-        const btVector3 &on_a = point.getPositionWorldOnA(), &on_b = point.getPositionWorldOnB();
-        const auto [away, normal] = gap_at(point, *a, *b);
-        const double speed = -parting_speed(of_a, of_b, point, normal);
-        const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
-        const double faster = gain(of_a, normal);
-        const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
-        const double gap = std::max(away, 0.0);
-        const btVector3 turns =
-            speed > 0 ? btScalar(gap / speed) * (spin(of_a) - spin(of_b)) : btVector3(0, 0, 0);
-        const double way = gap + closed_gap / 2 + flush_depth(normal, *a, *b, turns);
-        if (away < nearest.away) nearest = {away, speed, taken, way};
-        if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
-            const double end = std::max(speed, 0.0) + faster * h;
-            if (!(end * end > 2 * yields * apart)) return 0;
-            const double at = std::sqrt(speed * speed + 2 * faster * way);
-            found.time = std::min(found.time, 2 * way / (speed + at));
-            return 0;
-        }
-        if (!(speed > 0) || !(yields > 0)) return 0;
-        const bool touches = away < closed_gap;
-        found.strikes = found.strikes || (touches && taken > touching);
-        // what a blow does not know is not closed for Bullet
-        const bool counts = touches ? away > -closed_gap / 4 && taken > touching
-                                    : taken > apart || speed * h / 2 - away > unseen;
-        if (counts) found.time = std::min(found.time, way / speed);
-        return 0;
-    }
-};
-
 } // namespace detail
 
 DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWorld& world, double h,
@@ -159,6 +53,7 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
     found_bodies_.clear();
     foreign_.clear();
     open_.clear();
+    struck_.clear();
     const double least = std::min(touching, apart);
     find_falling(world, btScalar(h));
     const Fastest fastest = find_fastest(world, btScalar(h));
@@ -171,14 +66,53 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a, pair.b,
                                      falls(*pair.a) - falls(*pair.b));
         world.contactPairTest(pair.a, pair.b, points);
+        if (pair.turns && !of_pair.strikes) look_ahead(world, pair, h, touching, apart, of_pair);
+        if (of_pair.strikes) {
+            detail::PointsElsewhere(of_pair, struck_, touching, apart, *pair.a, *pair.b)
+                .look_around(world, points.nearest.at, points.nearest.normal);
+        }
         found.strikes = found.strikes || of_pair.strikes;
         found.time = std::min(found.time, of_pair.time);
         if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
-        if (points.nearest.away > 0) {
-            open_.push_back({pair, points.nearest.way, points.nearest.speed});
+        if (points.nearest.away > 0 || pair.turns) {
+            open_.push_back(
+                {pair, !(points.nearest.away > 0), points.nearest.way, points.nearest.speed});
         }
     }
     return found;
+}
+
+/// As often as it takes to see the thinner of the two pass.
+DUCTILE_INLINE void ClosingContactsFinder::look_ahead(btDiscreteDynamicsWorld& world,
+                                                      const Pair& pair, double h, double touching,
+                                                      double apart, ClosingContacts& found) {
+    constexpr double most = 8;
+    const double until = std::min(h, found.time);
+    const double passes =
+        std::min(detail::half_thickness(*pair.a), detail::half_thickness(*pair.b));
+    const double looks = std::clamp(std::ceil(double(pair.reach) * until / h / passes), 1.0, most);
+    for (double i = 1; i <= looks && !found.strikes && !(found.time < until); ++i) {
+        detail::PointsElsewhere points(found, struck_, touching, apart, *pair.a, *pair.b);
+        points.look_ahead(world, until * i / looks);
+    }
+}
+
+DUCTILE_INLINE void ClosingContactsFinder::show_struck(
+    std::span<btPersistentManifold* const> manifolds) const {
+    for (const auto& [a, b, normal, on_b, gap] : struck_) {
+        const auto theirs = [a, b](const btPersistentManifold* manifold) {
+            const auto *one = manifold->getBody0(), *two = manifold->getBody1();
+            return (one == a && two == b) || (one == b && two == a);
+        };
+        const auto manifold = std::find_if(manifolds.begin(), manifolds.end(), theirs);
+        if (manifold == manifolds.end()) continue;
+        const btCollisionObjectWrapper of_a(nullptr, a->getCollisionShape(), a,
+                                            a->getWorldTransform(), -1, -1),
+            of_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
+        btManifoldResult result(&of_a, &of_b);
+        result.setPersistentManifold(*manifold);
+        result.addContactPoint(normal, on_b, btScalar(gap));
+    }
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::note_found(const btCollisionObject& a,
@@ -303,7 +237,7 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
 DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,
                                                     double apart) {
     double first = h;
-    for (const auto& [pair, way, speed] : open_) {
+    for (const auto& [pair, touched, way, speed] : open_) {
         ClosingContacts none;
         detail::ClosestPoints now(none, apart, apart, 0, h, pair.a, pair.b, btVector3(0, 0, 0));
         world.contactPairTest(pair.a, pair.b, now);
@@ -311,7 +245,9 @@ DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& wor
         const double gain = (now.nearest.speed - speed) / h;
         if (!(gain > 0)) continue;
         note_found(*pair.a, *pair.b);
-        first = std::min(first, 2 * way / (speed + std::sqrt(speed * speed + 2 * gain * way)));
+        const double at = std::sqrt(speed * speed + 2 * gain * way);
+        const double closed = speed > 0 ? 2 * way / (speed + at) : (at - speed) / gain;
+        first = std::min(first, touched ? std::max(closed, h / 2) : closed);
     }
     return first;
 }

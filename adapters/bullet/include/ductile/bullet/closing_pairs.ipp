@@ -191,9 +191,9 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
     if (other->getBroadphaseHandle() == nullptr) return;
     const btVector3 away = body->getLinearVelocity() -
                            (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
-    const btScalar closing = away.length() + detail::turning_speed(*body, shapes) +
-                             h * (falls(*body) - falls(*other)).length() +
+    const btScalar turning = detail::turning_speed(*body, shapes) +
                              (mate != nullptr ? detail::turning_speed(*mate, shapes) : btScalar(0));
+    const btScalar closing = away.length() + turning + h * (falls(*body) - falls(*other)).length();
     const double yields = double(body->getInvMass()) +
                           (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
     if (!(double(closing * closing) > 2 * yields * least)) return;
@@ -210,7 +210,8 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
         !scope_->has(*other)) {
         foreign_.push_back(mate); // where it is now is not where it was
     } else {
-        pairs_.push_back({body, other, reach});
+        const bool turns = double(4 * turning * turning) > 2 * yields * least;
+        pairs_.push_back({body, other, reach, turns});
     }
 }
 

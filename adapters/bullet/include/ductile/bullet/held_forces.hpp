@@ -23,7 +23,8 @@ namespace ductile::bullet {
     return result;
 }
 
-/// Of rigid bodies. Not thread-safe. No body may leave the world between `hold` and `apply`.
+/// Of rigid bodies. Not thread-safe. Where bodies leave the world between `hold` and `apply`,
+/// `forget_gone` comes in between.
 class HeldForces {
   public:
     /// True where there are the same as the last time.
@@ -40,6 +41,13 @@ class HeldForces {
             held_.push_back({body, force, torque});
         }
         return held_ == before_;
+    }
+    /// What acted on bodies that are not in the world any more.
+    void forget_gone(const btCollisionWorld& world) {
+        const auto& objects = world.getCollisionObjectArray();
+        std::erase_if(held_, [&objects](const Held& held) {
+            return objects.findLinearSearch2(held.body) < 0;
+        });
     }
     void apply() const {
         apply([](const btRigidBody&) { return true; });

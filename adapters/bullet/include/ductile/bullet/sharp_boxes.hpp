@@ -44,20 +44,80 @@ namespace ductile::bullet {
     return most;
 }
 
-/// How far two shapes are apart, negative where they overlap [m], and along what.
+/// How far two shapes are apart, negative where they overlap [m], along what, and where.
 struct Gap {
     double away;
     btVector3 normal; ///< towards the first
+    btVector3 on_a, on_b;
 };
+
+namespace detail {
+
+[[nodiscard]] inline bool are_boxes(const btCollisionObjectWrapper& a,
+                                    const btCollisionObjectWrapper& b) {
+    return a.getCollisionShape()->getShapeType() == BOX_SHAPE_PROXYTYPE &&
+           b.getCollisionShape()->getShapeType() == BOX_SHAPE_PROXYTYPE;
+}
+
+inline constexpr btScalar flush = btScalar(1e-4); ///< tilt of edges and faces that meet at once
+
+/// What of a box is farthest along a normal: a corner, a point of an edge, or of a face.
+struct Farthest {
+    btVector3 at;
+    btVector3 along; ///< of an edge
+    int free = 0;    ///< axes along which all is as far
+};
+
+/// As near to `near` as may be.
+[[nodiscard]] inline Farthest farthest(const btCollisionObjectWrapper& of, const btVector3& normal,
+                                       const btVector3& near) {
+    constexpr btScalar level = 4 * SIMD_EPSILON;
+    const btTransform& at = of.getWorldTransform();
+    const btVector3 half =
+        static_cast<const btBoxShape*>(of.getCollisionShape())->getHalfExtentsWithMargin();
+    const btVector3 towards = normal * at.getBasis();
+    Farthest result;
+    btVector3 local = at.invXform(near);
+    for (int j = 0; j < 3; ++j) {
+        if (btFabs(towards[j]) > level) {
+            local[j] = towards[j] > 0 ? half[j] : -half[j];
+        } else {
+            local[j] = std::clamp(local[j], -half[j], half[j]);
+            result.along = at.getBasis().getColumn(j);
+            ++result.free;
+        }
+    }
+    result.at = at * local;
+    return result;
+}
+
+/// Where two boxes meet: at the corner of one of them, where edges cross, or anywhere along what is
+/// flush. Closest points of rounded edges are up to their margin off, where what turns has another
+/// speed: what a blow had stopped seemed to go on closing, and was struck again until the budget
+/// was spent.
+inline void find_place(Gap& gap, const btCollisionObjectWrapper& a,
+                       const btCollisionObjectWrapper& b) {
+    const Farthest of_b = farthest(b, gap.normal, gap.on_b);
+    Farthest of_a = farthest(a, -gap.normal, gap.on_a);
+    const btVector3 across = of_a.along.cross(of_b.along);
+    constexpr btScalar parallel = btScalar(1e-6);
+    if (of_a.free == 1 && of_b.free == 1 && across.length2() > parallel) {
+        of_a.at +=
+            of_a.along * ((of_b.at - of_a.at).cross(of_b.along).dot(across) / across.length2());
+    }
+    const btVector3 between = gap.normal * btScalar(gap.away);
+    gap.on_a = of_a.free <= of_b.free ? of_a.at : of_b.at + between;
+    gap.on_b = gap.on_a - between;
+}
+
+} // namespace detail
 
 /// Of closest points that a contactPairTest found.
 [[nodiscard]] inline Gap gap_at(const btManifoldPoint& point, const btCollisionObjectWrapper& a,
                                 const btCollisionObjectWrapper& b) {
-    Gap gap{double(point.getDistance()), point.m_normalWorldOnB};
-    if (a.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE ||
-        b.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE) {
-        return gap;
-    }
+    Gap gap{double(point.getDistance()), point.m_normalWorldOnB, point.getPositionWorldOnA(),
+            point.getPositionWorldOnB()};
+    if (!detail::are_boxes(a, b)) return gap;
     const btTransform &at_a = a.getWorldTransform(), &at_b = b.getWorldTransform();
     const auto farthest = [](const btCollisionObjectWrapper& of, const btVector3& towards) {
         const btTransform& at = of.getWorldTransform();
@@ -78,7 +138,10 @@ struct Gap {
     const auto see = [&](btVector3 normal) {
         if (normal.dot(at_a.getOrigin() - at_b.getOrigin()) < 0) normal = -normal;
         const double away = along(normal);
-        if (away - gap.away > digits) gap = {away, normal};
+        if (away - gap.away > digits) {
+            gap.away = away;
+            gap.normal = normal;
+        }
     };
     for (int i = 0; i < 3; ++i) {
         see(at_a.getBasis().getColumn(i));
@@ -90,6 +153,7 @@ struct Gap {
             at_a.getBasis().getColumn(i / 3).cross(at_b.getBasis().getColumn(i % 3));
         if (across.length2() > parallel) see(across.normalized());
     }
+    detail::find_place(gap, a, b);
     return gap;
 }
 
@@ -97,11 +161,8 @@ struct Gap {
 /// is flush then [m].
 [[nodiscard]] inline double flush_depth(const btVector3& meet, const btCollisionObjectWrapper& a,
                                         const btCollisionObjectWrapper& b, const btVector3& turn) {
-    constexpr btScalar flush = btScalar(1e-4), of_a_face = btScalar(0.999);
-    if (a.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE ||
-        b.getCollisionShape()->getShapeType() != BOX_SHAPE_PROXYTYPE) {
-        return 0;
-    }
+    constexpr btScalar of_a_face = btScalar(0.999);
+    if (!detail::are_boxes(a, b)) return 0;
     const auto half = [](const btCollisionObjectWrapper& of) {
         return static_cast<const btBoxShape*>(of.getCollisionShape())->getHalfExtentsWithMargin();
     };
@@ -117,7 +178,7 @@ struct Gap {
             btScalar depth = 0;
             for (int j = 0; j < 3; ++j) {
                 const btScalar least = std::min(half(other)[j], room[j]);
-                if (btFabs(tilt[j]) < flush) depth += 2 * least * btFabs(tilt[j]);
+                if (btFabs(tilt[j]) < detail::flush) depth += 2 * least * btFabs(tilt[j]);
             }
             return double(depth);
         }

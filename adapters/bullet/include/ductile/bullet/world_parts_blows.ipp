@@ -17,6 +17,7 @@ DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
     const double before = meter_.held().total();
     members_->open_found();
+    forces_.forget_gone(world_);
     meter_.bodies_rearranged(before);
     save();
 }
@@ -64,9 +65,11 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
     if (!members_->close_held(when)) return;
     meter_.bodies_rearranged(before);
     closing_.forget_open();
+    forces_.forget_gone(world_);
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    closing_.show_struck(manifolds());
     if (members_->empty() && local_) save();
     begin_blow();
     for (tick(blow_length, false); members_->look_blow(blow_length); tick(blow_length, false)) {
