@@ -173,6 +173,48 @@ TEST_CASE("Frames: an edge strikes where it is, not where closest points round i
     }
 }
 
+TEST_CASE("Frames: what slaps is struck on shapes of which Bullet knows one point a tick",
+          "[frame]") {
+    // an arm on its lower edge, thrown up: strength x angle on its way up and on its way down
+    constexpr double mass = 6, length = 0.8, half = 0.04, strength = 3, g = 9.81, spin = 4;
+    constexpr double inertia = mass * (length * length + 4 * half * half) / 3;
+    const auto needs = [](double angle) {
+        const double rise = length / 2 * std::sin(angle) + half * (std::cos(angle) - 1);
+        return strength * angle + mass * g * rise;
+    };
+    double low = 0, high = 1.5;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (needs(middle) < inertia * spin * spin / 2 ? low : high) = middle;
+    }
+    for (const bool plane : {true, false}) {
+        for (const double frame : all_frames) {
+            CAPTURE(plane, frame);
+            Rig rig;
+            rig.engine.setGravity({0, btScalar(-g), 0});
+            std::unique_ptr<btCollisionShape> floor;
+            if (plane) {
+                floor = std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0));
+            } else {
+                floor = std::make_unique<btCylinderShape>(btVector3(2, 0.5, 2));
+            }
+            rig.body(0, {0, 0, 0}, {0, btScalar(plane ? 0 : -0.5), 0}, std::move(floor), 2, 1);
+            std::unique_ptr<btCollisionShape> shape = box(length / 2, half, half);
+            btVector3 moments;
+            shape->calculateLocalInertia(btScalar(mass), moments);
+            btRigidBody& arm = rig.body(mass, moments, {btScalar(length / 2), btScalar(half), 0},
+                                        std::move(shape), 1, 2);
+            Hinge hinge(arm, at({btScalar(-length / 2), btScalar(-half), 0}), law(strength));
+            rig.world->add(hinge);
+            arm.setAngularVelocity({0, 0, btScalar(spin)});
+            arm.setLinearVelocity({btScalar(-half * spin), btScalar(length / 2 * spin), 0});
+            rig.run(1, frame);
+            CHECK(hinge.absorbed_energy() == Approx(2 * strength * low).epsilon(0.01));
+            CHECK(rig.world->run().believed());
+        }
+    }
+}
+
 TEST_CASE("Frames: what falls keeps its speed until it touches, and then rests", "[frame]") {
     // a ball, whose contact Bullet knows 20 mm before it closes; falls from a low height, so that
     // in the part that ends there it still gains much of its speed

@@ -188,7 +188,7 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
         const bool boxes = are_boxes(*a, *b); // Bullet knows all their corners that overlap
         const auto note = [&] {
             if (boxes) return;
-            struck_.push_back({&of_a, &of_b, normal, now_b.at, std::min(gap, 0.0)});
+            struck_.push_back({&of_a, &of_b, normal, now_b.at, gap});
         };
         if (!(time_ > 0)) {
             const btScalar lever = now_b.at.distance(touches_);
