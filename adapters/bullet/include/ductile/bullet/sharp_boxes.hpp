@@ -71,7 +71,8 @@ struct Farthest {
 /// As near to `near` as may be.
 [[nodiscard]] inline Farthest farthest(const btCollisionObjectWrapper& of, const btVector3& normal,
                                        const btVector3& near) {
-    constexpr btScalar level = 4 * SIMD_EPSILON;
+    // a face that this tilts is no farther at one end than at the other by what counts
+    constexpr btScalar level = std::max(btScalar(1e-9), 8 * SIMD_EPSILON);
     const btTransform& at = of.getWorldTransform();
     const btVector3 half =
         static_cast<const btBoxShape*>(of.getCollisionShape())->getHalfExtentsWithMargin();
