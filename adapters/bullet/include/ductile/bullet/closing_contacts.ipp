@@ -99,7 +99,8 @@ DUCTILE_INLINE void ClosingContactsFinder::look_ahead(btDiscreteDynamicsWorld& w
 
 DUCTILE_INLINE void ClosingContactsFinder::show_struck(
     std::span<btPersistentManifold* const> manifolds) const {
-    for (const auto& [a, b, normal, on_b, gap] : struck_) {
+    for (const detail::StruckPoint& point : struck_) {
+        const btCollisionObject *a = point.a, *b = point.b;
         const auto theirs = [a, b](const btPersistentManifold* manifold) {
             const auto *one = manifold->getBody0(), *two = manifold->getBody1();
             return (one == a && two == b) || (one == b && two == a);
@@ -111,7 +112,7 @@ DUCTILE_INLINE void ClosingContactsFinder::show_struck(
             of_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
         btManifoldResult result(&of_a, &of_b);
         result.setPersistentManifold(*manifold);
-        result.addContactPoint(normal, on_b, btScalar(gap));
+        result.addContactPoint(point.normal, point.on_b, btScalar(point.gap));
     }
 }
 

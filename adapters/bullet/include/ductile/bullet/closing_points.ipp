@@ -181,14 +181,15 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
         const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
-        const auto [away, normal, on_a, on_b] = gap_at(point, *a, *b);
+        const Gap there = gap_at(point, *a, *b);
+        const auto& [away, normal, on_a, on_b] = there;
         if (!(away < -closed_gap)) return 0;
         const Point now_a = now(of_a, on_a), now_b = now(of_b, on_b);
         const double gap = away + double(normal.dot((now_a.at - on_a) - (now_b.at - on_b)));
         const bool boxes = are_boxes(*a, *b); // Bullet knows all their corners that overlap
         const auto note = [&] {
             if (boxes) return;
-            struck_.push_back({&of_a, &of_b, normal, now_b.at, gap});
+            struck_.push_back({&of_a, &of_b, there.normal, now_b.at, gap});
         };
         if (!(time_ > 0)) {
             const btScalar lever = now_b.at.distance(touches_);
