@@ -34,7 +34,7 @@ class StructureRig {
     using Body = dBodyID;
     using Joint = ode::PlasticJoint<UsualSixAxisJoint>;
     static constexpr bool single = sizeof(dReal) == sizeof(float);
-    static constexpr bool in_frames = false;       ///< a default World's steps
+    static constexpr bool in_frames = false; ///< a default World's steps
     /// How deep into the floor a body is made that is to rest on it: ODE lets contacts overlap [m].
     static constexpr double layer = 1e-3;
 
