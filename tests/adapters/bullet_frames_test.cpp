@@ -13,6 +13,7 @@
 
 #include "adapters/bullet_engine.hpp"
 #include "adapters/crushed_head.hpp"
+#include "adapters/thrown_arm.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world_parts.hpp"
@@ -25,6 +26,7 @@ using bullet::World;
 using bullet::WorldParameters;
 using ductile::test::crush_of_head;
 using ductile::test::message_of;
+using ductile::test::ThrownArm;
 using Law = OneAxisJoint<Perfect<double>>;
 using Hinge = bullet::PlasticHinge<Law>;
 using Slider = bullet::PlasticSlider<Law>;
@@ -176,17 +178,8 @@ TEST_CASE("Frames: an edge strikes where it is, not where closest points round i
 TEST_CASE("Frames: what slaps is struck on shapes of which Bullet knows one point a tick",
           "[frame]") {
     // an arm on its lower edge, thrown up: strength x angle on its way up and on its way down
-    constexpr double mass = 6, length = 0.8, half = 0.04, strength = 3, g = 9.81, spin = 4;
-    constexpr double inertia = mass * (length * length + 4 * half * half) / 3;
-    const auto needs = [](double angle) {
-        const double rise = length / 2 * std::sin(angle) + half * (std::cos(angle) - 1);
-        return strength * angle + mass * g * rise;
-    };
-    double low = 0, high = 1.5;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = (low + high) / 2;
-        (needs(middle) < inertia * spin * spin / 2 ? low : high) = middle;
-    }
+    constexpr double mass = ThrownArm::mass, length = ThrownArm::length, half = ThrownArm::half,
+                     strength = ThrownArm::strength, g = ThrownArm::g, spin = ThrownArm::spin;
     for (const bool plane : {true, false}) {
         for (const double frame : all_frames) {
             CAPTURE(plane, frame);
@@ -209,7 +202,7 @@ TEST_CASE("Frames: what slaps is struck on shapes of which Bullet knows one poin
             arm.setAngularVelocity({0, 0, btScalar(spin)});
             arm.setLinearVelocity({btScalar(-half * spin), btScalar(length / 2 * spin), 0});
             rig.run(1, frame);
-            CHECK(hinge.absorbed_energy() == Approx(2 * strength * low).epsilon(0.01));
+            CHECK(hinge.absorbed_energy() == Approx(ThrownArm::work()).epsilon(0.01));
             CHECK(rig.world->run().believed());
         }
     }

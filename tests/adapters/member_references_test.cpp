@@ -40,15 +40,7 @@ constexpr double frame = 1.0 / 60;
 }
 /// Of the energy of the blow, what a chain of joints absorbs.
 [[nodiscard]] double share_of_chain(int joints, double mass, double speed) {
-    ElasticPlasticChain chain({.segments = joints,
-                               .length = post_length,
-                               .mass = post_mass,
-                               .stiffness = post_stiffness,
-                               .strength = post_strength,
-                               .tip_mass = mass,
-                               .tip_speed = speed});
-    chain.go(0.15 + 2 * mass * speed * post_length / post_strength);
-    return chain.work() / (mass * speed * speed / 2);
+    return work_of_post(joints, mass, speed) / (mass * speed * speed / 2);
 }
 
 } // namespace

@@ -2,7 +2,8 @@
 //
 // A clamped cantilever as rigid rods with an elastic-perfectly-plastic spring at the root and
 // between them, half a rod's mass at either end, and a mass that sticks to its tip. Small
-// deflections, explicit steps of a fraction of the highest period. Knows nothing of the library.
+// deflections, explicit steps of a fraction of the highest period. Knows nothing of the library but
+// the numbers of the post (strips.hpp).
 //
 //   rotation at node i: (y_{i+1} - 2 y_i + y_{i-1})/s, stiffness EI/s; at the root y_1/s and 2 EI/s
 #pragma once
@@ -11,6 +12,8 @@
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include "core/member/strips.hpp"
 
 namespace ductile::test {
 
@@ -70,5 +73,18 @@ class ElasticPlasticChain {
     double s_, work_ = 0;
     std::vector<double> mass_, y_, v_, force_, plastic_;
 };
+
+/// What P39's post as a chain of `segments` absorbs of a mass that sticks to its tip [J].
+[[nodiscard]] inline double work_of_post(int segments, double mass, double speed) {
+    ElasticPlasticChain chain({.segments = segments,
+                               .length = post_length,
+                               .mass = post_mass,
+                               .stiffness = post_stiffness,
+                               .strength = post_strength,
+                               .tip_mass = mass,
+                               .tip_speed = speed});
+    chain.go(0.15 + 2 * mass * speed * post_length / post_strength);
+    return chain.work();
+}
 
 } // namespace ductile::test
