@@ -12,6 +12,7 @@
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
 #include <ductile/ode/joint_stops.ipp>
+#include <ductile/ode/local_scope.ipp>
 #include <ductile/ode/member.ipp>
 #include <ductile/ode/member_geoms.ipp>
 #include <ductile/ode/member_snapshot.ipp>

@@ -53,6 +53,7 @@ struct Pile {
                            .meter = meter,
                            .members = members,
                            .solve = [this](double dt) { solve(dt); },
+                           .step = [this](double dt) { step(dt); },
                            .book = [this](double dt) { book(dt); },
                            .number = [](const ode::PlasticConstraint&) { return 0u; },
                            .accept =
@@ -78,6 +79,8 @@ struct Pile {
             dBodySetAngularVel(above, 0, 0, dReal(0.5 * i));
         }
         dBodySetLinearVel(bodies[27], 3, 0, 1);
+        add({0, -50, 0}); // all is done in parts beside it, and put back
+        dBodySetKinematic(bodies.back());
         maker.emplace(ode::ContactParameters{.space = engine.space, .group = engine.contacts},
                       [this] { dSpaceCollide(engine.space, this, &Pile::near); });
         meter.open();
@@ -131,8 +134,11 @@ struct Pile {
     void solve(double dt) {
         for (auto* joint : joints) joint->prepare(dt);
         islands.before_step(contacts, dt, false);
-        options.quick ? dWorldQuickStep(engine.id, dReal(dt)) : dWorldStep(engine.id, dReal(dt));
+        step(dt);
         islands.after_step();
+    }
+    void step(double dt) const {
+        options.quick ? dWorldQuickStep(engine.id, dReal(dt)) : dWorldStep(engine.id, dReal(dt));
     }
     void book(double dt) {
         for (auto* joint : joints) joint->commit(dt);

@@ -100,6 +100,8 @@ class EnergyMeter {
     /// Starts a new account with what the world holds now.
     void open();
     [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
+    /// Books as from outside what somebody changed since the last step.
+    void see_changes();
     void before_step();
     /// The bodies were moved half a step ahead since before_step (frame/README.md): rows are solved
     /// where they are now.
@@ -121,8 +123,8 @@ class EnergyMeter {
     /// Keeps what the step just booked needs to be taken back of some of its bodies.
     void keep_step(double dt);
     /// From now on the lists are of some of the bodies alone, or again of all (`all`). What the
-    /// others hold is taken to stay.
-    void narrow(bool all = false);
+    /// others hold is taken to stay. `begins`: the next step begins one of all, done in turn.
+    void narrow(bool all = false, bool begins = false);
     /// Takes back what the kept step booked of the bodies listed now, which are as it left them.
     void take_back();
     /// They were put elsewhere, by what is no step.
@@ -218,7 +220,7 @@ class EnergyMeter {
     Kept kept_;
     Record record_;
     double sign_ = 1;     ///< -1: what is booked is taken back
-    bool narrow_ = false; ///< the lists are of some of the bodies alone
+    bool narrow_ = false; ///< the lists are of some of the bodies alone, and others were stepped
     PairAccounts pairs_;
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;

@@ -44,11 +44,16 @@ DUCTILE_INLINE HeldEnergy<double> EnergyMeter::held() const {
     return result;
 }
 
+DUCTILE_INLINE void EnergyMeter::see_changes() {
+    const HeldEnergy<double> now = held();
+    ledger_.supply(now.total() - last_.total());
+    last_ = now;
+}
+
 DUCTILE_INLINE void EnergyMeter::before_step() {
     step_plastic_ = step_others_ = 0;
     pairs_.begin_step(!narrow_);
-    // what somebody changed between the steps came from outside
-    ledger_.supply(held().total() - last_.total());
+    see_changes();
     course_numbers_.clear();
     courses_.clear();
     for (const MeteredBody& body : bodies_) {
@@ -162,9 +167,9 @@ DUCTILE_INLINE void EnergyMeter::keep_step(double dt) {
     record_.dt = dt;
 }
 
-DUCTILE_INLINE void EnergyMeter::narrow(bool all) {
+DUCTILE_INLINE void EnergyMeter::narrow(bool all, bool begins) {
     outside_ = {};
-    narrow_ = !all;
+    narrow_ = !all && !begins;
     if (all) return;
     const HeldEnergy<double> listed = held();
     outside_ = {last_.kinetic - listed.kinetic, last_.potential - listed.potential,

@@ -40,6 +40,7 @@
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/contact_rows.hpp"
+#include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -121,9 +122,9 @@ class ClosingContactsFinder {
     [[nodiscard]] bool any_stops() const noexcept { return any_stops_; }
 
     /// Into how many lengths `h` [s] has to be divided so that nothing passes an island unseen, not
-    /// rounded; >= 1.
+    /// rounded; >= 1. Where there is a `scope`, all others are out of the way.
     [[nodiscard]] double lengths(const ContactMaker& maker, std::span<const dBodyID> bodies,
-                                 double h) const;
+                                 const LocalScope* scope, double h) const;
 
   private:
     /// A point that touches.

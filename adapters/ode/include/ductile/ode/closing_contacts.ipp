@@ -331,7 +331,7 @@ DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double hurried,
 
 DUCTILE_INLINE double ClosingContactsFinder::lengths(const ContactMaker& maker,
                                                      std::span<const dBodyID> bodies,
-                                                     double h) const {
+                                                     const LocalScope* scope, double h) const {
     double result = 1;
     const auto need = [&](double speed, double thickness) {
         result = std::max(result, speed * h / (thickness / 2));
@@ -339,6 +339,8 @@ DUCTILE_INLINE double ClosingContactsFinder::lengths(const ContactMaker& maker,
     std::vector<detail::MovingGeom> here;
     double fastest = 0, thinnest = maker.parameters().thickness;
     for (dGeomID geom : maker.geoms()) {
+        const dBodyID body = dGeomGetBody(geom);
+        if (scope != nullptr && body != nullptr && !scope->has(body)) continue;
         const detail::MovingGeom& moving = here.emplace_back(geom);
         fastest = std::max(fastest, moving.speed());
         thinnest = std::min(thinnest, moving.thickness);

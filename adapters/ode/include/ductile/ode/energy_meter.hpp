@@ -19,8 +19,10 @@
 
 #include <ode/ode.h>
 
+#include <span>
 #include <vector>
 
+#include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/own_axes.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/vocabulary/address_book.hpp"
@@ -45,6 +47,13 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// Names a contact joint of the coming step, so that its work is booked as contact and
     /// friction.
     void add_contact(dJointID joint, const dContactGeom& geometry) { contacts_[joint] = geometry; }
+    /// Of the scope's bodies alone, or first of those that are out of it, which have no plastic
+    /// joint; null: of all. What the others hold is taken to stay.
+    void set_scope(const LocalScope* scope, bool out = false) {
+        scope_ = scope;
+        out_ = out;
+        narrow(scope == nullptr, out);
+    }
     /// Contacts of the step were named after `before_step`.
     void look_at_contacts() { watch_step(); }
     /// Energy that all rows of a joint took from the bodies since the meter was made [J].
@@ -72,7 +81,15 @@ class EnergyMeter final : public ductile::EnergyMeter {
                                                                     double dt) const override;
     void take_feedback_back();
 
+    /// Those of the scope.
+    [[nodiscard]] std::span<const dBodyID> listed() const {
+        if (scope_ == nullptr) return bodies_;
+        return out_ ? scope_->out() : scope_->in();
+    }
+
     dWorldID world_;
+    const LocalScope* scope_ = nullptr;
+    bool out_ = false;
     std::vector<dBodyID> bodies_;
     std::vector<const PlasticConstraint*> plastic_;
     AddressMap<dContactGeom> contacts_;    ///< by joint

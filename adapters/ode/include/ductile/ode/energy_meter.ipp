@@ -26,7 +26,7 @@ namespace detail {
 DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
     dVector3 gravity;
     dWorldGetGravity(world_, gravity);
-    for (const dBodyID body : bodies_) {
+    for (const dBodyID body : listed()) {
         MeteredBody& entry = bodies.emplace_back();
         entry.body = body;
         entry.position = to_core(dBodyGetPosition(body));
@@ -43,6 +43,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
 
 DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
     std::vector<MeteredPlasticJoint>& joints) const {
+    if (out_) return;
     for (const PlasticConstraint* constraint : plastic_) {
         const auto [a, b, reversed] = constraint->bodies();
         joints.push_back({&constraint->queries(), a, b});
@@ -53,10 +54,10 @@ DUCTILE_INLINE void EnergyMeter::watch_step() {
     take_feedback_back(); // of a step that was never made
     seen_.clear();
     std::size_t most = 0;
-    for (const dBodyID body : bodies_) most += std::size_t(dBodyGetNumJoints(body));
+    for (const dBodyID body : listed()) most += std::size_t(dBodyGetNumJoints(body));
     feedback_.assign(most, dJointFeedback{}); // its places stay where they are
     std::size_t lent = 0;
-    for (const dBodyID body : bodies_) {
+    for (const dBodyID body : listed()) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
             const dJointID id = dBodyGetJoint(body, i);
             if (dJointIsEnabled(id) == 0 || seen_.enter(id) < watched_.size()) continue;

@@ -6,11 +6,11 @@
 
 #include <ode/ode.h>
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "ductile/ode/convert.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
 
@@ -23,20 +23,28 @@ class HeldForces {
             const Held held{body, to_core(dBodyGetForce(body)), to_core(dBodyGetTorque(body))};
             if (!is_zero(held.force) || !is_zero(held.torque)) held_.push_back(held);
         }
+        number();
     }
     void apply() const {
         for (const auto& [body, force, torque] : held_) add_force(body, force, torque);
     }
+    /// To these alone.
+    void apply_to(std::span<const dBodyID> bodies) const {
+        if (held_.empty()) return;
+        for (dBodyID body : bodies) {
+            const std::size_t number = numbers_.find(body);
+            if (number == AddressBook::unknown) continue;
+            add_force(body, held_[number].force, held_[number].torque);
+        }
+    }
     /// To be called before a body is destroyed.
     void forget(dBodyID body) {
         std::erase_if(held_, [body](const Held& held) { return held.body == body; });
+        number();
     }
-    /// To these alone.
-    void apply_to(std::span<const dBodyID> bodies) const {
-        for (const auto& [body, force, torque] : held_) {
-            if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) continue;
-            add_force(body, force, torque);
-        }
+    [[nodiscard]] Vector3<double> force_on(dBodyID body) const {
+        const std::size_t number = numbers_.find(body);
+        return number != AddressBook::unknown ? held_[number].force : Vector3<double>(0, 0, 0);
     }
 
   private:
@@ -45,7 +53,13 @@ class HeldForces {
         Vector3<double> force, torque;
     };
 
+    void number() {
+        numbers_.clear();
+        for (const Held& held : held_) numbers_.enter(held.body);
+    }
+
     std::vector<Held> held_;
+    AddressBook numbers_; ///< of these
 };
 
 } // namespace ductile::ode

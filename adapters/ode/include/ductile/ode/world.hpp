@@ -168,6 +168,7 @@ class World final : public SteppedWorld {
     void start_frames(const WorldParameters& parameters);
     /// ODE's step, with what constraints do before it.
     void solve(double dt);
+    void step_engine(double dt);
     /// What they did in it; the breaking ones still hold on.
     void book(double dt);
     /// The step stands.

@@ -49,6 +49,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         .meter = *meter_,
         .members = members_,
         .solve = [this](double dt) { solve(dt); },
+        .step = [this](double dt) { step_engine(dt); },
         .book = [this](double dt) { book(dt); },
         .number =
             [this](const PlasticConstraint& joint) {
@@ -278,13 +279,16 @@ DUCTILE_INLINE void World::solve(double dt) {
     const bool frames = parts_ != nullptr;
     islands_->before_step(contacts_, dt, !frames,
                           frames ? members_->touched() : std::vector<dBodyID>{});
+    step_engine(dt);
+    islands_->after_step();
+    members_->after_solve();
+}
+DUCTILE_INLINE void World::step_engine(double dt) {
     if (solver_ == Solver::direct) {
         dWorldStep(world_, dReal(dt));
     } else {
         dWorldQuickStep(world_, dReal(dt));
     }
-    islands_->after_step();
-    members_->after_solve();
 }
 DUCTILE_INLINE void World::book(double dt) {
     for (SteppedConstraint* constraint : constraints_) constraint->commit(dt);

@@ -25,6 +25,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,7 @@
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/resting_islands.hpp"
 #include "ductile/ode/thrown_bodies.hpp"
@@ -58,7 +60,8 @@ class WorldParts final : public PartEngine {
         std::optional<ContactMaker>& maker;
         EnergyMeter& meter;
         const std::unique_ptr<Divisibles>& members;
-        std::function<void(double)> solve; ///< ODE's step [s]
+        std::function<void(double)> solve; ///< ODE's step, with what joints do before it [s]
+        std::function<void(double)> step;  ///< ODE's alone [s]
         std::function<void(double)> book;  ///< it is what the joints did [s]
         std::function<std::size_t(const PlasticConstraint&)> number;
         std::function<void(double)> accept; ///< a part of this length stands [s]
@@ -123,6 +126,9 @@ class WorldParts final : public PartEngine {
     void go_as_at(double time) const;
     void drive(const Vector3<double>& velocity, const Vector3<double>& spin, dBodyID body) const;
     void tick(double h, bool blow);
+    void go_ahead(double h, double half);
+    /// Of the contacts, by `step`.
+    void solve(double h, bool blow, const std::function<void(double)>& step);
     /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
     void keep_spins(double h);
     void damp(double share);
@@ -149,6 +155,26 @@ class WorldParts final : public PartEngine {
     const PartMotion& tell();
     [[nodiscard]] double next_gap(double h, double apart);
 
+    // ---- islands that are done in parts alone
+
+    /// Those that move, meet, and are stepped now.
+    [[nodiscard]] std::span<const dBodyID> bodies() const {
+        if (!local_) return of_.bodies;
+        return out_ ? scope_.out() : scope_.in();
+    }
+    [[nodiscard]] std::span<const dBodyID> aside() const {
+        if (!local_) return {};
+        return out_ ? scope_.in() : scope_.out();
+    }
+    /// As the frame begins: those that no part can be of go through all of it; true where there are
+    /// so many that it pays.
+    bool go_local();
+    void widen();
+    /// Those that are out go on by `h` [s], as one part.
+    void tick_out(double h);
+    /// Takes in who may be met within `h` [s], as they are by now.
+    void join_met(double h);
+
     Parts of_;
     double length_ = 1;               ///< of the frame [s]
     double time_ = 0, kept_time_ = 0; ///< since it began [s]
@@ -161,6 +187,10 @@ class WorldParts final : public PartEngine {
     std::vector<Damped> damped_;
     RestingIslands resting_;
     WorldSnapshot snapshot_, looked_from_;
+    LocalScope scope_, joining_;
+    WorldSnapshot began_; ///< those that are out, as the frame began
+    bool may_be_local_ = false, local_ = false;
+    bool out_ = false; ///< those that are out of it are at work
     ClosingContactsFinder closing_;
     std::vector<std::pair<AttachedBodies, SeenContact>> seen_, kept_seen_; ///< as a part starts
     std::vector<std::pair<AttachedBodies, Push>> pushes_, kept_pushes_;    ///< of the last part

@@ -28,7 +28,7 @@ class WorldParts::Settings {
         dWorldSetERP(world_, dReal(blow ? 0 : part_erp(double(erp_), h)));
         dWorldSetContactSurfaceLayer(world_, std::max(layer_, dReal(closed_depth)));
         if (blow) dWorldSetCFM(world_, cfm_ * dReal(blow_compliance(h)));
-        own_.rule(parts.of_.bodies, h, parts.length_, blow);
+        own_.rule(parts.bodies(), h, parts.length_, blow);
     }
     ~Settings() {
         own_.put_back();
@@ -53,6 +53,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     begin_driven();
     looked_ = false;
+    may_be_local_ = true;
     thrown_.find(of_.bodies, of_.joints);
     forces_.hold(of_.bodies);
     asleep_.clear();
@@ -78,6 +79,7 @@ DUCTILE_INLINE void WorldParts::leave_bodies() {
 }
 
 DUCTILE_INLINE void WorldParts::leave() {
+    widen();
     leave_bodies();
     for (const Driven& driven : driven_) {
         drive(driven.mean.velocity, driven.mean.spin, driven.body);
@@ -90,6 +92,7 @@ DUCTILE_INLINE void WorldParts::leave() {
 DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
     const auto is_it = [body](const auto& kept) { return kept.body == body; };
     forces_.forget(body);
+    scope_.forget(body);
     resting_.forget(body);
     std::erase(asleep_, body);
     thrown_.forget(body);
@@ -131,7 +134,9 @@ DUCTILE_INLINE void WorldParts::drive(const Vector3<double>& velocity, const Vec
 }
 
 DUCTILE_INLINE void WorldParts::end() {
+    const bool were_aside = local_;
     leave();
+    if (were_aside) look(); // what all hang together by
     const double before = of_.meter.held().total();
     if (resting_.look(of_.bodies, of_.joints, length_)) {
         of_.meter.bodies_rearranged(before, Account::sleep);
@@ -145,7 +150,7 @@ DUCTILE_INLINE void WorldParts::end() {
 }
 
 DUCTILE_INLINE void WorldParts::drop_forces() {
-    for (dBodyID body : of_.bodies) {
+    for (dBodyID body : bodies()) {
         dBodySetForce(body, 0, 0, 0);
         dBodySetTorque(body, 0, 0, 0);
     }
@@ -169,7 +174,7 @@ DUCTILE_INLINE void WorldParts::save() {
     closing_.save();
     kept_seen_ = seen_;
     kept_pushes_ = pushes_;
-    snapshot_.take(of_.bodies, of_.joints);
+    snapshot_.take(bodies(), of_.joints);
 }
 
 DUCTILE_INLINE void WorldParts::put_back() {
@@ -180,6 +185,30 @@ DUCTILE_INLINE void WorldParts::put_back() {
     pushes_ = kept_pushes_;
     time_ = kept_time_;
     looked_ = false;
+    if (go_local()) save();
+}
+
+/// Into the middle of a part.
+DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
+    forces_.apply_to(bodies());
+    of_.members->apply_forces();
+    of_.meter.before_step();
+    half_ahead_.move(bodies(), half);
+    if (!(half > 0)) return;
+    of_.meter.bodies_ahead();
+    keep_spins(h);
+}
+
+DUCTILE_INLINE void WorldParts::solve(double h, bool blow,
+                                      const std::function<void(double)>& step) {
+    for (const NamedContact& named : of_.contacts) {
+        of_.meter.add_contact(named.joint, named.contact.geom);
+    }
+    of_.meter.look_at_contacts();
+    damp(blow ? 0 : h / length_);
+    const Settings settings(*this, h, blow);
+    const StoodAside waiting(aside());
+    step(h);
 }
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
@@ -192,31 +221,16 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
         }
     }
     go_as_at(time_ + half / 2); // the mean of the first half
-    forces_.apply();
-    of_.members->apply_forces();
-    of_.meter.before_step();
-    half_ahead_.move(of_.bodies, half);
+    go_ahead(h, half);
     drive_as_at(end);
-    if (!blow) {
-        of_.meter.bodies_ahead();
-        keep_spins(h);
-        closing_.see_motions(of_.bodies);
-    }
+    if (!blow) closing_.see_motions(bodies());
     look(blow ? nullptr : &snapshot_);
     closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
     if (blow) open_others();
     of_.members->before_solve(of_.contacts);
-    for (const NamedContact& named : of_.contacts) {
-        of_.meter.add_contact(named.joint, named.contact.geom);
-    }
     if (!blow) begin_pushes();
-    of_.meter.look_at_contacts();
-    damp(blow ? 0 : h / length_);
-    {
-        const Settings settings(*this, h, blow);
-        of_.solve(h);
-    }
+    solve(h, blow, of_.solve);
     if (!blow) {
         closing_.see_forces(of_.contacts);
         remember_pushes();
@@ -236,6 +250,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     // so short a part closes what is left of a gap: its impulses are a blow's
     const bool instant = h < shortest_part();
+    if (h < length_ && go_local()) save();
     if (instant) begin_blow();
     const auto beyond = [&] {
         // a contact that began unforeseen pushed for too long: the frame cuts the part there first
@@ -294,6 +309,7 @@ DUCTILE_INLINE void WorldParts::close_held(Closing when) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+    (void)go_local();
     thrown_.strike();
     begin_blow();
     for (tick(blow_length, true); of_.members->look_blow(blow_length); tick(blow_length, true)) {
@@ -322,6 +338,7 @@ void WorldParts::rearrange(const Change& change) {
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) try {
+    may_be_local_ = may_be_local_ && h == 0;
     seen_.clear();
     const bool open = h > 0 && of_.members->any_open();
     if (open) of_.meter.rings_down(of_.members->count_vibration());
@@ -354,4 +371,5 @@ DUCTILE_INLINE double WorldParts::kinetic_energy() const { return of_.meter.held
 
 } // namespace ductile::ode
 
+#include "ductile/ode/world_parts_alone.ipp"    // IWYU pragma: keep
 #include "ductile/ode/world_parts_contacts.ipp" // IWYU pragma: keep

@@ -49,8 +49,11 @@ template <class Entry>
 
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
-    if (of_.maker) of_.maker->make(of_.bodies);
-    closing_.look(of_.contacts, of_.joints, of_.members->bodies());
+    {
+        const Untouched waiting(aside());
+        if (of_.maker) of_.maker->make(bodies());
+    }
+    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies());
 } catch (...) {
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
@@ -182,6 +185,7 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     touching_ = touching;
     apart_ = apart;
+    join_met(h);
     see_contacts();
     ClosingContacts found{.strikes = is_thrown()};
     const bool looks = of_.maker || closing_.any_stops();
@@ -206,13 +210,13 @@ DUCTILE_INLINE bool WorldParts::is_thrown() {
 DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
     constexpr double most = 4096;
     double next = std::numeric_limits<double>::infinity();
-    const double lengths = closing_.lengths(*of_.maker, of_.bodies, h);
+    const double lengths = closing_.lengths(*of_.maker, bodies(), local_ ? &scope_ : nullptr, h);
     if (!(lengths > 1)) return next; // the part itself is looked at twice
     const int looks = int(std::min(std::ceil(lengths), most));
-    looked_from_.take(of_.bodies, {});
+    looked_from_.take(bodies(), {});
     for (int i = 1; i <= looks && !(next < h); ++i) {
         const double time = std::min(i / lengths, 1.0) * h;
-        half_ahead_.move(of_.bodies, time);
+        half_ahead_.move(bodies(), time);
         look(&looked_from_);
         next = closing_.closed(time, 0, apart);
         looked_from_.put_poses_back();
@@ -224,7 +228,7 @@ DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
 /// Members reckon with ODE's own rule.
 DUCTILE_INLINE void WorldParts::keep_spins(double h) {
     if (!of_.members->empty()) return;
-    for (dBodyID body : of_.bodies) {
+    for (dBodyID body : bodies()) {
         if (!can_move(body) || dBodyIsEnabled(body) == 0) continue;
         const Vector3<double> spin = angular_velocity(body);
         if (!turns_far(spin, h)) continue;

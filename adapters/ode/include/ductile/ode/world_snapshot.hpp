@@ -51,6 +51,8 @@ class WorldSnapshot {
     void take(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> joints);
     /// To what was last taken. The bodies' forces are zero then.
     void put_back();
+    /// Some of the bodies alone.
+    void put_back(std::span<const dBodyID> bodies) const;
     /// The poses alone.
     void put_poses_back() const;
 

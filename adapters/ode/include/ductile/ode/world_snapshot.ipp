@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ductile/ode/world_snapshot.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
 
@@ -51,6 +52,14 @@ DUCTILE_INLINE void WorldSnapshot::put_back() {
     for (const auto& [body, as_it_was] : bodies_) as_it_was.put_back(body);
     for (PlasticConstraint* joint : joints_) joint->put_all_back();
     dRandSetSeed(seed_);
+}
+
+DUCTILE_INLINE void WorldSnapshot::put_back(std::span<const dBodyID> bodies) const {
+    AddressBook some;
+    for (dBodyID body : bodies) some.enter(body);
+    for (const auto& [body, as_it_was] : bodies_) {
+        if (some.has(body)) as_it_was.put_back(body);
+    }
 }
 
 } // namespace ductile::ode

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+//
+// Frames with a tolerance in ODE do in parts what hangs on plastic joints alone: all others go
+// through the frame once.
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "adapters/ode_engine.hpp"
+#include "ductile/ode/ode.hpp"
+
+namespace {
+
+using namespace ductile;
+using Law = OneAxisJoint<Perfect<double>>;
+using Hinge = ode::PlasticHinge<Law>;
+
+constexpr double frame = 1.0 / 60;
+
+/// A floor in a world of frames; contacts are counted by whom they are of.
+struct Site {
+    test::OdeEngine engine;
+    std::optional<ode::World> world;
+    std::vector<std::unique_ptr<Hinge>> hinges;
+    std::vector<dBodyID> mine, others;
+    int looks_at_others = 0; ///< pairs of geoms that ODE's space found near each other
+    int worst = 0;           ///< solves of a frame
+    double gained = 0;       ///< most that a frame leaves unexplained [J]
+
+    explicit Site(ode::Solver solver = ode::Solver::direct, bool hashed = true,
+                  double gravity = 9.81)
+        : engine(hashed) {
+        dWorldSetGravity(engine.id, 0, dReal(-gravity), 0);
+        dCreatePlane(engine.space, 0, 1, 0, 0);
+        world.emplace(engine.id,
+                      ode::WorldParameters{
+                          .solver = solver, .tolerance = 0.01, .rest_damping = 0, .warn = nullptr});
+        world->on_contacts({.space = engine.space, .group = engine.contacts},
+                           [this] { dSpaceCollide(engine.space, this, &Site::near); });
+    }
+
+    dBodyID box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
+        const auto side = [&half](int k) { return dReal(2 * half[k]); };
+        dMass inertia;
+        dMassSetBoxTotal(&inertia, dReal(mass), side(0), side(1), side(2));
+        return body(inertia, dCreateBox(engine.space, side(0), side(1), side(2)), at);
+    }
+    dBodyID ball(double mass, double radius, const Vector3<double>& at,
+                 const Vector3<double>& velocity) {
+        dMass inertia;
+        dMassSetSphereTotal(&inertia, dReal(mass), dReal(radius));
+        const dBodyID made = body(inertia, dCreateSphere(engine.space, dReal(radius)), at);
+        dBodySetLinearVel(made, dReal(velocity.x()), dReal(velocity.y()), dReal(velocity.z()));
+        return made;
+    }
+    dBodyID body(const dMass& inertia, dGeomID geom, const Vector3<double>& at) {
+        const dBodyID made = dBodyCreate(engine.id);
+        dBodySetMass(made, &inertia);
+        dGeomSetBody(geom, made);
+        dBodySetPosition(made, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        world->add(made);
+        return made;
+    }
+    Hinge& hinge(dBodyID a, dBodyID b, const Vector3<double>& anchor, double strength) {
+        hinges.push_back(std::make_unique<Hinge>(
+            engine.id, a, b, ode::HingeFrame{.anchor = anchor, .axis = {0, 0, 1}},
+            Law(Perfect<double>({.strength = strength}))));
+        world->add(*hinges.back());
+        return *hinges.back();
+    }
+    /// Five pieces on hinges, 2 m high, and a ball on its way to it where it is `struck`.
+    void post(bool struck) {
+        for (int i = 0; i < 5; ++i) {
+            const dBodyID below = i > 0 ? mine.back() : nullptr;
+            mine.push_back(box(12, {0.05, 0.2, 0.05}, {0, 0.25 + 0.4 * i, 0}));
+            hinge(mine.back(), below, {0, 0.05 + 0.4 * i, 0}, 4000);
+        }
+        mine.push_back(ball(100, 0.2, {-0.6, struck ? 1.9 : 50, 0}, {struck ? 5.0 : 0, 0, 0}));
+    }
+    /// Boxes in stacks of four that slide a little.
+    void stacks(int boxes) {
+        for (int i = 0; i < boxes; ++i) {
+            const int stack = i / 4;
+            others.push_back(
+                box(100, {0.5, 0.5, 0.5},
+                    {4 + 1.5 * (stack % 16), 0.5 + 1.02 * (i % 4), 4 + 1.5 * (stack / 16)}));
+            dBodySetLinearVel(others.back(), dReal(0.1 * (i % 3)), 0, 0);
+        }
+    }
+    static void near(void* data, dGeomID a, dGeomID b) {
+        Site& site = *static_cast<Site*>(data);
+        if (test::OdeEngine::are_joined(a, b)) return;
+        for (dGeomID geom : {a, b}) {
+            const dBodyID body = dGeomGetBody(geom);
+            site.looks_at_others +=
+                std::find(site.others.begin(), site.others.end(), body) != site.others.end();
+        }
+        dSurfaceParameters surface{};
+        surface.mode = dContactApprox1;
+        surface.mu = dReal(0.5);
+        site.engine.touch(a, b, surface, [&site](dJointID joint, const dContact& contact) {
+            site.world->add_contact(joint, contact);
+        });
+    }
+    void step() {
+        world->step(frame);
+        worst = std::max(worst, world->frame().solves());
+        gained = std::max(gained, std::abs(world->ledger().unexplained()));
+    }
+    [[nodiscard]] double work() const {
+        double sum = 0;
+        for (const auto& each : hinges) sum += each->absorbed_energy();
+        return sum;
+    }
+};
+
+/// Of places and velocities, bit by bit.
+[[nodiscard]] std::uint64_t hash_of(const std::vector<dBodyID>& bodies) {
+    std::uint64_t result = 1469598103934665603u;
+    const auto eat = [&result](const dReal* values, int count) {
+        for (int i = 0; i < count; ++i) {
+            const auto value = double(values[i]);
+            std::uint64_t bits = 0;
+            std::memcpy(&bits, &value, sizeof bits);
+            result = (result ^ bits) * 1099511628211u;
+        }
+    };
+    for (const dBodyID body : bodies) {
+        eat(dBodyGetPosition(body), 3);
+        eat(dBodyGetRotation(body), 12);
+        eat(dBodyGetLinearVel(body), 3);
+        eat(dBodyGetAngularVel(body), 3);
+    }
+    return result;
+}
+
+} // namespace
+
+TEST_CASE("Locality: others go through a frame once, to the bits that they have alone", "[frame]") {
+    for (const bool hashed : {false, true}) {
+        CAPTURE(hashed);
+        Site struck(ode::Solver::direct, hashed), quiet(ode::Solver::direct, hashed);
+        for (Site* site : {&struck, &quiet}) {
+            site->stacks(80);
+            site->post(site == &struck);
+        }
+        int differ = 0;
+        for (int i = 0; i < 60; ++i) {
+            struck.step();
+            quiet.step();
+            differ += hash_of(struck.others) != hash_of(quiet.others);
+        }
+        CHECK(differ == 0);
+        CHECK(struck.worst > 4);
+        CHECK(quiet.worst == 1);
+        CHECK(struck.work() > 1000);
+        // as often as in a frame of two parts, at most
+        CHECK(struck.looks_at_others < 2 * quiet.looks_at_others);
+        CHECK(struck.gained < 1e-6);
+    }
+}
+
+TEST_CASE("Locality: a post among others takes what it takes alone", "[frame]") {
+    for (const ode::Solver solver : {ode::Solver::direct, ode::Solver::quick}) {
+        CAPTURE(int(solver));
+        Site alone(solver), among(solver);
+        among.stacks(60);
+        for (Site* site : {&alone, &among}) site->post(true);
+        int differ = 0;
+        for (int i = 0; i < 60; ++i) {
+            alone.step();
+            among.step();
+            differ += hash_of(alone.mine) != hash_of(among.mine);
+        }
+        CHECK(alone.work() > 1000);
+        CHECK(among.work() == alone.work());
+        CHECK(differ == 0);
+        CHECK(among.world->run().parts == alone.world->run().parts);
+        CHECK(among.world->run().believed() == alone.world->run().believed());
+        CHECK(among.world->ledger().booked(Account::plastic) == Approx(alone.work()).epsilon(1e-9));
+        CHECK(among.gained < 1e-6);
+    }
+}
+
+TEST_CASE("Locality: others fall asleep beside what goes on in parts", "[frame]") {
+    Site site;
+    site.stacks(16);
+    for (const dBodyID body : site.others) {
+        dBodySetLinearVel(body, 0, 0, 0);
+        dBodySetAutoDisableFlag(body, 1);
+        dBodySetAutoDisableSteps(body, 10);
+        dBodySetAutoDisableTime(body, dReal(0.2));
+    }
+    // thrown anew in each frame, in which it comes to rest
+    const dBodyID rotor = site.box(10, {0.2, 0.2, 0.2}, {-5, 3, 0});
+    site.hinge(rotor, nullptr, {-5, 3, 0}, 40);
+    int in_parts = 0;
+    for (int i = 0; i < 60; ++i) {
+        dBodySetAngularVel(rotor, 0, 0, 2);
+        site.step();
+        in_parts += site.world->frame().solves() > 1;
+    }
+    CHECK(in_parts == 60);
+    for (const dBodyID body : site.others) CHECK(dBodyIsEnabled(body) == 0);
+}
+
+TEST_CASE("Locality: who is sent farther than could be foreseen meets the others", "[frame]") {
+    // a bar on a weak hinge is hit early in the frame; what lies on its tip flies off and meets a
+    // box of others in the same frame
+    const auto run = [](int boxes, bool asleep) {
+        Site site(ode::Solver::direct, true, 0);
+        const dBodyID bar = site.box(10, {0.5, 0.02, 0.05}, {0.5, 5, 0});
+        site.hinge(bar, nullptr, {0, 5, 0}, 20);
+        const dBodyID pebble = site.ball(0.01, 0.02, {0.98, 5.041, 0}, {0, 0, 0});
+        site.ball(2000, 0.1, {0.15, 4.8, 0}, {0, 60, 0});
+        const dBodyID target = site.box(20, {1, 1, 1}, {0.98, 9.3, 0});
+        site.mine = {bar, pebble, target};
+        for (int i = 0; i < boxes; ++i) {
+            site.others.push_back(site.box(20, {0.1, 0.1, 0.1}, {6.0 + i, 1, 4}));
+        }
+        if (asleep) dBodyDisable(target);
+        site.step();
+        const dReal* velocity = dBodyGetLinearVel(target);
+        CHECK(site.gained < 1e-6 * 2000 * 60 * 60);
+        CHECK(dBodyGetLinearVel(pebble)[1] < 60); // it came back from it
+        return std::pair(double(velocity[1]), site.work());
+    };
+    for (const bool asleep : {false, true}) {
+        CAPTURE(asleep);
+        const auto [speed, work] = run(0, asleep); // all is done in parts
+        const auto [among, among_work] = run(40, asleep);
+        CHECK(speed > 0.05);
+        CHECK(among == Approx(speed).epsilon(0.01));
+        CHECK(among_work == Approx(work).epsilon(0.01));
+    }
+}
