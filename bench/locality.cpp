@@ -3,8 +3,8 @@
 // What does a frame with a tolerance cost where nothing happens, and where one post of many bodies
 // is struck? Beside the same world without a tolerance.
 //
-//   locality-bullet-double [--quick] [--csv FILE]
-//   locality-bullet-double --count POSTS JOINTS TOLERANCE FRAMES      for callgrind
+//   locality-<engine> [--quick] [--csv FILE]
+//   locality-<engine> --count POSTS JOINTS TOLERANCE FRAMES      for callgrind
 //
 // Scenes
 //   intact     1000 hinges that stand, awake, as posts of one or five pieces, with a ledger or
@@ -15,7 +15,6 @@
 //              same world without a tolerance; its solves; the same scaled to 25 solves
 //
 // Columns of the CSV: scene,set_up,step_us,frame_us,ratio,solves,ratio_of_25.
-#include <btBulletDynamicsCommon.h>
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -27,102 +26,15 @@
 #include <string>
 #include <vector>
 
-#include "cpu_time.hpp"
-#include "ductile/bullet/bullet.hpp"
+#ifdef BENCH_ODE
+#include "locality/ode_site.hpp"
+#else
+#include "locality/bullet_site.hpp"
+#endif
 
 namespace {
 
-using namespace ductile;
-using Law = OneAxisJoint<Perfect<double>>;
-using Hinge = bullet::PlasticHinge<Law>;
-
-constexpr double frame = 1.0 / 60;
-
-class Site {
-  public:
-    Site(double tolerance, bool ledger) {
-        engine_.setGravity(btVector3(0, btScalar(-9.81), 0));
-        world_ = std::make_unique<bullet::World>(
-            engine_, bullet::WorldParameters{
-                         .ledger = ledger, .tolerance = tolerance, .rest_damping = 0, .warn = {}});
-        add(floor_, 0, {0, -1, 0});
-    }
-    ~Site() {
-        hinges_.clear();
-        world_.reset();
-        for (auto& body : bodies_) engine_.removeRigidBody(body.get());
-    }
-    Site(const Site&) = delete;
-    Site& operator=(const Site&) = delete;
-
-    /// Of pieces of 0.4 m.
-    void post(const btVector3& foot, int joints) {
-        btRigidBody* below = nullptr;
-        const btVector3 half(0, btScalar(0.2), 0);
-        for (int i = 0; i < joints; ++i) {
-            btRigidBody& piece = add(piece_, 12, foot + btVector3(0, btScalar(0.25 + 0.4 * i), 0));
-            piece.setActivationState(DISABLE_DEACTIVATION);
-            const Law law(Perfect<double>({.strength = 4000}));
-            hinges_.push_back(below != nullptr
-                                  ? std::make_unique<Hinge>(piece, *below, at(-half), at(half), law)
-                                  : std::make_unique<Hinge>(piece, at(-half), law));
-            world_->add(*hinges_.back());
-            below = &piece;
-        }
-    }
-    /// In rows of 32, beside the post.
-    void boxes(int count, bool awake) {
-        for (int i = 0; i < count; ++i) {
-            btRigidBody& made =
-                add(box_, 100,
-                    {btScalar(4 + 1.5 * (i % 32)), btScalar(0.5), btScalar(4 + 1.5 * (i / 32))});
-            if (awake) made.setActivationState(DISABLE_DEACTIVATION);
-        }
-    }
-    void strike() {
-        btRigidBody& ball = add(ball_, 100, {btScalar(-0.3), btScalar(1.9), 0});
-        ball.setGravity({0, 0, 0});
-        ball.setActivationState(DISABLE_DEACTIVATION);
-        ball.setLinearVelocity({5, 0, 0});
-    }
-    /// [s]
-    double timed_step() {
-        const double start = bench::cpu_now();
-        world_->step(frame);
-        return bench::cpu_now() - start;
-    }
-    [[nodiscard]] const bullet::World& world() const { return *world_; }
-
-  private:
-    static btTransform at(const btVector3& origin) {
-        btTransform result;
-        result.setIdentity();
-        result.setOrigin(origin);
-        return result;
-    }
-    btRigidBody& add(btCollisionShape& shape, double mass, const btVector3& place) {
-        btVector3 inertia(0, 0, 0);
-        if (mass > 0) shape.calculateLocalInertia(btScalar(mass), inertia);
-        btRigidBody::btRigidBodyConstructionInfo info(btScalar(mass), nullptr, &shape, inertia);
-        info.m_startWorldTransform = at(place);
-        bodies_.push_back(std::make_unique<btRigidBody>(info));
-        engine_.addRigidBody(bodies_.back().get());
-        return *bodies_.back();
-    }
-
-    btDefaultCollisionConfiguration configuration_;
-    btCollisionDispatcher dispatcher_{&configuration_};
-    btDbvtBroadphase broadphase_;
-    btSequentialImpulseConstraintSolver solver_;
-    btDiscreteDynamicsWorld engine_{&dispatcher_, &broadphase_, &solver_, &configuration_};
-    btBoxShape floor_{btVector3(500, 1, 500)},
-        piece_{btVector3(btScalar(0.05), btScalar(0.2), btScalar(0.05))},
-        box_{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
-    btSphereShape ball_{btScalar(0.2)};
-    std::vector<std::unique_ptr<btRigidBody>> bodies_;
-    std::unique_ptr<bullet::World> world_;
-    std::vector<std::unique_ptr<Hinge>> hinges_;
-};
+using bench::locality::Site;
 
 class Table {
   public:
@@ -151,7 +63,7 @@ class Table {
 std::unique_ptr<Site> standing(int posts, int joints, double tolerance, bool ledger) {
     auto site = std::make_unique<Site>(tolerance, ledger);
     for (int i = 0; i < posts; ++i) {
-        site->post({btScalar(2 * (i % 32)), 0, btScalar(2 * (i / 32))}, joints);
+        site->post(2 * (i % 32), 2 * (i / 32), joints);
     }
     return site;
 }
@@ -180,7 +92,7 @@ void struck(Table& table, int boxes, bool awake, int times) {
         Site without(0, true), with(0.01, true);
         for (Site* site : {&without, &with}) {
             site->boxes(boxes, awake);
-            site->post({0, 0, 0}, 5);
+            site->post(0, 0, 5);
         }
         for (int i = 0; i < before; ++i) {
             (void)without.timed_step();
