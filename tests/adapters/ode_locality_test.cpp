@@ -241,3 +241,45 @@ TEST_CASE("Locality: who is sent farther than could be foreseen meets the others
         CHECK(among_work == Approx(work).epsilon(0.01));
     }
 }
+
+TEST_CASE("Locality: contacts that the program makes by itself bring others in", "[frame]") {
+    // a rotor stops within a frame; by its own rule the program has it push a plate for a while
+    const auto run = [](int boxes) {
+        Site site(ode::Solver::direct, true, 0);
+        const dBodyID rotor = site.box(10, {0.2, 0.2, 0.2}, {-5, 3, 0});
+        site.hinge(rotor, nullptr, {-5, 3, 0}, 40);
+        const dBodyID first = site.box(10, {0.2, 0.2, 0.2}, {-9, 3, 0});
+        site.hinge(first, nullptr, {-9, 3, 0}, 40);
+        const dBodyID plate = site.box(1, {0.2, 0.2, 0.2}, {-4.8, 13, 0});
+        for (int i = 0; i < boxes; ++i) {
+            site.others.push_back(site.box(20, {0.1, 0.1, 0.1}, {6.0 + i, 1, 4}));
+        }
+        site.world->on_contacts(
+            {.space = site.engine.space, .group = site.engine.contacts}, [&site, rotor, plate] {
+                dSpaceCollide(site.engine.space, &site, &Site::near);
+                const double angle = 2 * double(dBodyGetQuaternion(rotor)[3]);
+                if (angle < 0.006 || angle > 0.012) return;
+                const dReal* place = dBodyGetPosition(rotor);
+                dContact contact{};
+                contact.geom.pos[0] = place[0] + dReal(0.2);
+                contact.geom.pos[1] = place[1];
+                contact.geom.normal[1] = 1; // on the plate
+                contact.geom.depth = dReal(1e-4);
+                const dJointID joint =
+                    dJointCreateContact(site.engine.id, site.engine.contacts, &contact);
+                dJointAttach(joint, plate, rotor);
+                site.world->add_contact(joint, contact);
+            });
+        dBodySetAngularVel(rotor, 0, 0, 2);
+        dBodySetAngularVel(first, 0, 0, 1); // whose stop ends a part
+        for (int i = 0; i < 3; ++i) site.step();
+        CHECK(site.gained < 1e-9);
+        CHECK(site.worst > 1);
+        return std::pair(double(dBodyGetLinearVel(plate)[1]), site.work());
+    };
+    const auto [speed, work] = run(0);
+    const auto [among, among_work] = run(40);
+    CHECK(speed > 0.1);
+    CHECK(among == speed);
+    CHECK(among_work == work);
+}

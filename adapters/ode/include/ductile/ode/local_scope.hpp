@@ -49,9 +49,10 @@ class LocalScope {
 
     /// What is out went through its frame: there it may have been anywhere between.
     void out_went();
-    /// Who is out and may be met within `h` [s], with all that hangs together with it or was near
-    /// it.
+    /// Who is out and may be met within `h` [s].
     [[nodiscard]] std::vector<dBodyID> met(const HeldForces& forces, double h) const;
+    /// Some that are out, with all that hangs together with them or was near them.
+    [[nodiscard]] std::vector<dBodyID> with_theirs(std::vector<dBodyID> bodies) const;
     /// They are in.
     void take_in(std::span<const dBodyID> bodies);
 

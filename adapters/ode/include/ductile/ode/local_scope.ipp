@@ -85,7 +85,8 @@ DUCTILE_INLINE bool LocalScope::find(dWorldID world, std::span<const dBodyID> bo
             if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);
         }
     }
-    if (!std::all_of(bodies.begin(), bodies.end(), can_move) || !gather(bodies, forces)) {
+    if (in_.empty() || !std::all_of(bodies.begin(), bodies.end(), can_move) ||
+        !gather(bodies, forces)) {
         clear();
         return false;
     }
@@ -190,36 +191,37 @@ DUCTILE_INLINE auto LocalScope::reached_in(const HeldForces& forces, double h) c
 }
 
 DUCTILE_INLINE std::vector<dBodyID> LocalScope::met(const HeldForces& forces, double h) const {
-    std::vector<Box> near = reached_in(forces, h);
+    const std::vector<Box> near = reached_in(forces, h);
     if (near.empty() || out_.empty()) return {};
     Box all = near.front();
     for (const Box& box : near) all.add(box);
     std::vector<dBodyID> result;
-    AddressBook found;
-    const auto take = [&](std::size_t i) {
-        if (found.enter(out_[i]) < result.size()) return;
-        result.push_back(out_[i]);
-        near.push_back(out_boxes_[i]);
-    };
     for (std::size_t i = 0; i < out_.size(); ++i) {
         if (!all.meets(out_boxes_[i])) continue;
         const auto meets = [&](const Box& box) { return box.meets(out_boxes_[i]); };
-        if (std::any_of(near.begin(), near.end(), meets)) take(i);
-    }
-    // and with it what it was near, or hangs on it
-    for (std::size_t at = 0; at < result.size(); ++at) {
-        const Box of = near[near.size() - result.size() + at];
-        const int count = dBodyGetNumJoints(result[at]);
-        for (std::size_t i = 0; i < out_.size(); ++i) {
-            bool hangs = of.meets(out_boxes_[i]);
-            for (int k = 0; k < count && !hangs; ++k) {
-                const dJointID joint = dBodyGetJoint(result[at], k);
-                hangs = dJointGetBody(joint, 0) == out_[i] || dJointGetBody(joint, 1) == out_[i];
-            }
-            if (hangs) take(i);
-        }
+        if (std::any_of(near.begin(), near.end(), meets)) result.push_back(out_[i]);
     }
     return result;
+}
+
+DUCTILE_INLINE std::vector<dBodyID> LocalScope::with_theirs(std::vector<dBodyID> bodies) const {
+    AddressBook found, places;
+    for (dBodyID body : bodies) found.enter(body);
+    for (dBodyID body : out_) places.enter(body);
+    for (std::size_t at = 0; at < bodies.size(); ++at) {
+        const auto take = [&](dBodyID other) {
+            if (places.has(other) && found.enter(other) == bodies.size()) bodies.push_back(other);
+        };
+        const Box of = out_boxes_[places.find(bodies[at])];
+        for (std::size_t i = 0; i < out_.size(); ++i) {
+            if (of.meets(out_boxes_[i])) take(out_[i]);
+        }
+        for (int i = 0, count = dBodyGetNumJoints(bodies[at]); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(bodies[at], i);
+            for (const int side : {0, 1}) take(dJointGetBody(joint, side));
+        }
+    }
+    return bodies;
 }
 
 DUCTILE_INLINE void LocalScope::take_in(std::span<const dBodyID> bodies) {

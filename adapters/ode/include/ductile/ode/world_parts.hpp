@@ -172,8 +172,11 @@ class WorldParts final : public PartEngine {
     void widen();
     /// Those that are out go on by `h` [s], as one part.
     void tick_out(double h);
-    /// Takes in who may be met within `h` [s], as they are by now.
-    void join_met(double h);
+    /// Some that are out come in, with theirs, as they are by now.
+    void join(std::vector<dBodyID> met);
+    /// Those that the last look found touching one that is in; false: none.
+    bool join_touched();
+    void leave_aside();
 
     Parts of_;
     double length_ = 1;               ///< of the frame [s]
@@ -190,7 +193,8 @@ class WorldParts final : public PartEngine {
     LocalScope scope_, joining_;
     WorldSnapshot began_; ///< those that are out, as the frame began
     bool may_be_local_ = false, local_ = false;
-    bool out_ = false; ///< those that are out of it are at work
+    bool out_ = false;             ///< those that are out of it are at work
+    std::vector<dBodyID> touched_; ///< that are out, by contacts of those that are in
     ClosingContactsFinder closing_;
     std::vector<std::pair<AttachedBodies, SeenContact>> seen_, kept_seen_; ///< as a part starts
     std::vector<std::pair<AttachedBodies, Push>> pushes_, kept_pushes_;    ///< of the last part

@@ -54,6 +54,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     begin_driven();
     looked_ = false;
     may_be_local_ = true;
+    touched_.clear();
     thrown_.find(of_.bodies, of_.joints);
     forces_.hold(of_.bodies);
     asleep_.clear();
@@ -258,6 +259,12 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         return instant ? of_.members->look_blow(h) : of_.members->look(h);
     };
     for (tick(h, false); beyond(); tick(h, false)) do_again();
+    while (!touched_.empty()) {
+        put_back();
+        (void)join_touched();
+        save();
+        tick(h, false);
+    }
     tell();
     motion_.rigid_work = of_.meter.step_of_plastic_joints();
     motion_.others_work = of_.meter.step_of_other_joints();

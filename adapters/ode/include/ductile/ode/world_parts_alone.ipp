@@ -3,6 +3,8 @@
 // Bodies of world_parts.hpp: the islands that are done in parts alone. A part of world_parts.ipp.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,7 @@ DUCTILE_INLINE bool WorldParts::go_local() {
     tick_out(length_);
     of_.meter.set_scope(&scope_);
     scope_.out_went();
+    (void)join_touched();
     return true;
 }
 
@@ -40,10 +43,8 @@ DUCTILE_INLINE void WorldParts::tick_out(double h) {
     out_ = looked_ = false;
 }
 
-DUCTILE_INLINE void WorldParts::join_met(double h) {
-    if (!local_) return;
-    std::vector<dBodyID> met = scope_.met(forces_, h);
-    if (met.empty()) return;
+DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
+    met = scope_.with_theirs(std::move(met));
     of_.meter.set_scope(nullptr);
     const double before = of_.meter.held().total();
     began_.put_back(met);
@@ -59,6 +60,32 @@ DUCTILE_INLINE void WorldParts::join_met(double h) {
     }
     scope_.take_in(met);
     of_.meter.set_scope(&scope_);
+}
+
+DUCTILE_INLINE bool WorldParts::join_touched() {
+    if (touched_.empty()) return false;
+    join(std::exchange(touched_, {}));
+    return true;
+}
+
+/// Contacts of those that stand aside are none of this part, though the user made them.
+DUCTILE_INLINE void WorldParts::leave_aside() {
+    if (!local_) return;
+    std::erase_if(of_.contacts, [this](const NamedContact& named) {
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        const bool of_in = scope_.has(a) || scope_.has(b);
+        bool of_out = false;
+        for (dBodyID body : {a, b}) {
+            if (body == nullptr || scope_.has(body)) continue;
+            of_out = true;
+            if (of_in) touched_.push_back(body);
+        }
+        if (out_ ? !of_in : !of_out) return false;
+        dJointDisable(named.joint);
+        return true;
+    });
+    std::sort(touched_.begin(), touched_.end(), std::less<dBodyID>());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
 }
 
 } // namespace ductile::ode

@@ -53,6 +53,7 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
         const Untouched waiting(aside());
         if (of_.maker) of_.maker->make(bodies());
     }
+    leave_aside();
     if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies());
 } catch (...) {
     of_.contacts.clear();
@@ -185,8 +186,11 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     touching_ = touching;
     apart_ = apart;
-    join_met(h);
-    see_contacts();
+    if (local_) {
+        if (std::vector<dBodyID> met = scope_.met(forces_, h); !met.empty()) join(std::move(met));
+    }
+    do see_contacts();
+    while (join_touched());
     ClosingContacts found{.strikes = is_thrown()};
     const bool looks = of_.maker || closing_.any_stops();
     if (found.strikes || !looks || !closing_.any_plastic()) return found;
