@@ -153,6 +153,41 @@ def cost_table(ours, peers):
     return table(head, lines)
 
 
+def doubled(series, tolerance):
+    """Error, solves and time of a peer whose parts are doubled until the answer changes by no more than the
+    tolerance, all runs paid for; errors taken to be on one side. None: it never ends."""
+    series = sorted(series, key=lambda row: int(row["parts"]))
+    for i in range(1, len(series)):
+        if abs(number(series[i], "error_rel") - number(series[i - 1], "error_rel")) <= tolerance:
+            paid = series[:i + 1]
+            return (number(series[i], "error_rel"), sum(number(row, "solves") for row in paid),
+                    sum(number(row, "cpu_s") for row in paid))
+    return None
+
+
+def doubled_table(ours, peers, tolerance):
+    """Peers that choose their parts by doubling, each by whichever solver is nearer."""
+    lines = []
+    for peer in PEERS:
+        found, over = {}, {"solves": [], "cpu_s": []}
+        for cell in ours:
+            ends = [end for (name, _), series in peers[cell].items() if name == peer
+                    if (end := doubled(series, tolerance))]
+            if ends:
+                found[cell] = min(ends)
+        for cell, (error, solves, time) in found.items():
+            if error <= 0.05:
+                over["solves"].append(number(ours[cell], "solves") / solves)
+                over["cpu_s"].append(number(ours[cell], "cpu_s") / time)
+        lines.append([peer, sum(any(name == peer for name, _ in peers[cell]) for cell in ours), len(found),
+                      *[sum(error <= target for error, *_ in found.values()) for target in TARGETS],
+                      sum(error > 0.05 for error, *_ in found.values()),
+                      *[f"{statistics.median(values):.2f}, {sum(v > DEAR for v in values)} of {len(values)}"
+                        for values in over.values()]])
+    return table(["peer", "cells", "ends", "within 5 %", "1 %", "wrong, unsaid", "ours / peer: solves", "time"],
+                 lines)
+
+
 def dear_cells(ours, peers):
     lines = []
     for target in TARGETS:
@@ -196,6 +231,7 @@ def report(rows, meta):
         f"{meta['processor']}, {meta['compiler']}, `{meta['flags']}`, Bullet {meta['bullet']}, {meta['date']}.", "",
         "## Cells that are right", "", *right_table(ours, peers), "",
         "## Cost beside the cheapest peer that is right", "", *cost_table(ours, peers), "",
+        "## Peers that double their parts until 1 % is kept", "", *doubled_table(ours, peers, float(USUAL)), "",
         "## Cells dearer than 1.5", "", *dear_cells(ours, peers),
         "## Tolerance", "", *tolerance_table(rows), ""])
 

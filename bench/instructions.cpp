@@ -5,18 +5,17 @@
 // divides the difference, in which making, warming up and ending cancel.
 //
 //   instructions-bullet-double JOINT SET-UP JOINTS STEPS
-//   instructions-bullet-double --list        engine, precision, library; then the joints, one per
-//   line
+//   instructions-bullet-double --list        engine, precision, library; then our joints and the
+//                                            set-ups that each is of interest in, a pair per line
 //
-//   set-up          pairs-flowing   JOINTS pairs of bodies that turn against each other, weak
-//   joints
-//                   pairs-at-rest   the same pairs, which strong joints stop in the first step
-//                   chain-at-rest   one chain of JOINTS + 1 bodies, strong joints
+//   set-up          pairs-flowing, pairs-at-rest, chain-at-rest, ground-flowing, post-standing,
+//                   fives-standing, fives-flowing, floor-sticking, floor-sliding: islands of
+//                   cost/field.hpp
 //   library         header-only, or compiled where the program is linked against the compiled
-//   library
+//                   library
 //
 // Solvers as in joint_cost: Bullet's sequential impulse with ten iterations; in ODE dWorldStep for
-// pairs, dWorldQuickStep with twenty iterations for a chain. plastic-hinge-ledger: plastic-hinge,
+// islands, dWorldQuickStep with twenty iterations for a chain. plastic-hinge-ledger: plastic-hinge,
 // each looked after by a ductile World that keeps the energy ledger.
 #include <array>
 #include <charconv>
@@ -29,10 +28,8 @@
 
 #ifdef BENCH_ODE
 #include "cost/ode_field.hpp"
-#include "instructions/ode_ledger_field.hpp"
 #else
 #include "cost/bullet_field.hpp"
-#include "instructions/bullet_ledger_field.hpp"
 #endif
 
 using namespace bench::cost;
@@ -46,13 +43,23 @@ constexpr std::string_view library = "compiled";
 constexpr std::string_view library = "header-only";
 #endif
 
-struct SetUp {
+struct Case {
     std::string_view name;
-    bool chain, flowing;
+    SetUp set_up;
+    bool flowing;
+    std::array<std::string_view, 3> joints; ///< of ours, of interest here
 };
-constexpr std::array<SetUp, 3> set_ups{{{"pairs-flowing", false, true},
-                                        {"pairs-at-rest", false, false},
-                                        {"chain-at-rest", true, false}}};
+constexpr std::string_view hinge = "plastic-hinge", six = "plastic-joint";
+constexpr std::array<Case, 9> cases{
+    {{"pairs-flowing", SetUp::pairs, true, {hinge, six, ledger_name}},
+     {"pairs-at-rest", SetUp::pairs, false, {hinge, six, ledger_name}},
+     {"chain-at-rest", SetUp::chain, false, {hinge, six, ledger_name}},
+     {"ground-flowing", SetUp::ground, true, {hinge}},
+     {"post-standing", SetUp::post, false, {six}},
+     {"fives-standing", SetUp::fives, false, {hinge}},
+     {"fives-flowing", SetUp::fives, true, {hinge}},
+     {"floor-sticking", SetUp::floor, false, {hinge}},
+     {"floor-sliding", SetUp::floor, true, {hinge}}}};
 
 int whole_number(const char* name, std::string_view text) {
     int value = 0;
@@ -64,37 +71,32 @@ int whole_number(const char* name, std::string_view text) {
     return value;
 }
 
-FieldSettings settings_of(std::string_view set_up, int joints) {
-    for (const SetUp& s : set_ups) {
-        if (s.name != set_up) continue;
-        return {
-            .count = joints, .chain = s.chain, .weak_every = s.flowing ? 1 : 0, .direct = !s.chain};
+FieldSettings settings_of(std::string_view joint, std::string_view name, int joints) {
+    for (const Case& c : cases) {
+        if (c.name != name || !Field::has(c.set_up)) continue;
+        const bool ledger = joint == ledger_name;
+        for (const auto& [kind, called] : joint_names) {
+            if (called != (ledger ? hinge : joint) || !Field::has(kind)) continue;
+            return {.joint = kind,
+                    .count = joints,
+                    .set_up = c.set_up,
+                    .weak_every = c.flowing ? 1 : 0,
+                    .direct = c.set_up != SetUp::chain,
+                    .ledger = ledger};
+        }
+        throw std::invalid_argument("JOINT = " + std::string(joint) + ": none has this name here");
     }
-    throw std::invalid_argument("SET-UP = " + std::string(set_up) + ": none has this name");
-}
-
-template <class AnyField>
-void run(const FieldSettings& settings, int steps) {
-    AnyField field(settings);
-    for (int i = 0; i < steps; ++i) field.step();
-}
-
-void run(std::string_view joint, FieldSettings settings, int steps) {
-    if (joint == ledger_name) return run<LedgerField>(settings, steps);
-    for (const auto& [kind, name] : joint_names) {
-        if (name != joint || !Field::has(kind)) continue;
-        settings.joint = kind;
-        return run<Field>(settings, steps);
-    }
-    throw std::invalid_argument("JOINT = " + std::string(joint) + ": none has this name here");
+    throw std::invalid_argument("SET-UP = " + std::string(name) + ": none has this name here");
 }
 
 void list() {
     std::printf("%s,%s,%s\n", Field::engine.data(), Field::precision.data(), library.data());
-    for (const auto& [kind, name] : joint_names) {
-        if (Field::has(kind)) std::printf("%s\n", name.data());
+    for (const Case& c : cases) {
+        if (!Field::has(c.set_up)) continue;
+        for (const std::string_view joint : c.joints) {
+            if (!joint.empty()) std::printf("%s %s\n", joint.data(), c.name.data());
+        }
     }
-    std::printf("%s\n", ledger_name.data());
 }
 
 } // namespace
@@ -108,8 +110,9 @@ int main(int argc, char** argv) try {
         std::fprintf(stderr, "usage: %s JOINT SET-UP JOINTS STEPS | --list\n", argv[0]);
         return 2;
     }
-    run(argv[1], settings_of(argv[2], whole_number("JOINTS", argv[3])),
-        whole_number("STEPS", argv[4]));
+    const int joints = whole_number("JOINTS", argv[3]), steps = whole_number("STEPS", argv[4]);
+    Field field(settings_of(argv[1], argv[2], joints));
+    for (int i = 0; i < steps; ++i) field.step();
     return 0;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

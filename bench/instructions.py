@@ -6,8 +6,8 @@ Runs the instructions program of every engine build in callgrind, prints a table
 instructions.csv in --out. Rows of other states stay there.
 
     --bin FOLDER       the programs that CMake built, with the compiler and flags of --build
-    --tree CHECKOUT    a checkout of this project instead, today's or an earlier one: bench/instructions.cpp
-                       of here is compiled against the headers and the bench/cost of that, header-only
+    --tree CHECKOUT    a checkout of this project instead, today's or an earlier one: the bench of here is
+                       compiled against the headers of that, header-only
     --state NAME       what the rows are called; default after
     --beside NAME      the state whose rows stand beside them in the last column; default before
     --only REGEX       of "engine precision joint set-up"
@@ -17,7 +17,7 @@ instructions.csv in --out. Rows of other states stay there.
 
 bodies is what the bodies alone take per joint; ours and own are what a joint takes beyond that, ours and the
 engine's own for the same task; ratio is ours / own. Each is the difference of two runs of 100 and 200 steps,
-so that making the field and coming to rest cancel, by joints and steps. Counts repeat to the last digit on
+on a floor of 20 and 60, so that making the field and coming to rest cancel, by joints and steps. Counts repeat to the last digit on
 one machine; another compiler, other flags, another C library or a processor for which that has other functions
 give others, by some per cent.
 
@@ -44,9 +44,6 @@ HERE = Path(__file__).resolve().parent
 COLUMNS = ("state", "commit", "processor", "compiler", "flags", "engine", "precision", "library", "joint",
            "own_joint", "set_up", "joints", "bodies", "ours", "own", "ratio")
 KEY = ("engine", "precision", "library", "joint", "set_up")
-SET_UPS = ("pairs-flowing", "pairs-at-rest", "chain-at-rest")
-OURS = ("plastic-hinge", "plastic-joint", "plastic-hinge-ledger")
-STEPS = (100, 200)
 RELEASE = "-O3 -DNDEBUG -ffp-contract=off"
 # program's suffix -> pkg-config's name, the adapter's folder, definitions
 BUILDS = {
@@ -84,15 +81,12 @@ def compile_against(tree, suffix, options, scratch):
     package, adapter, definitions = BUILDS[suffix]
     if not output("pkg-config", "--modversion", package):
         return None
-    # copied, because includes look beside the file first, and bench/cost shall be the checkout's
-    shutil.copy(HERE / "instructions.cpp", scratch)
-    shutil.copytree(HERE / "instructions", scratch / "instructions", dirs_exist_ok=True)
     program = scratch / f"instructions-{suffix}"
-    includes = [tree / "bench", tree / "include", tree / "adapters" / adapter / "include"]
+    includes = [HERE, tree / "include", tree / "adapters" / adapter / "include"]
     subprocess.run([options.cxx, "-std=c++20", *options.flags.split(), *definitions,
                     *(f"-I{folder}" for folder in includes),
                     *output("pkg-config", "--cflags", package, "eigen3").split(),
-                    scratch / "instructions.cpp", "-o", program,
+                    HERE / "instructions.cpp", "-o", program,
                     *output("pkg-config", "--libs", package).split()], check=True)
     return program
 
@@ -116,15 +110,15 @@ def programs(options, scratch):
 
 def instructions(program, joint, set_up, joints):
     """Instructions per joint and step, those of the bodies included."""
-    counts = []
-    for steps in STEPS:
+    counts, between = [], (20, 60) if set_up.startswith("floor") else (100, 200)
+    for steps in between:
         run = subprocess.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, joint,
                               set_up, str(joints), str(steps)], capture_output=True, text=True)
         match = re.search(r"Collected : (\d+)", run.stderr)
         if run.returncode != 0 or not match:
             sys.exit(f"{program} {joint} {set_up}: {run.stderr}")
         counts.append(int(match.group(1)))
-    return (counts[1] - counts[0]) / (STEPS[1] - STEPS[0]) / joints
+    return (counts[1] - counts[0]) / (between[1] - between[0]) / joints
 
 
 def own_joint(engine, joint, set_up):
@@ -133,15 +127,14 @@ def own_joint(engine, joint, set_up):
         return "hinge-motor"
     if engine == "bullet":
         return "spring2"
-    return "" if set_up == "pairs-flowing" else "fixed"
+    return "" if set_up.endswith("flowing") else "fixed"
 
 
 def measure(program, common, options):
-    first, *joints = output(program, "--list").splitlines()
+    first, *listed = output(program, "--list").splitlines()
     engine, precision, library = first.split(",")
-    wanted = [(joint, set_up) for joint in OURS for set_up in SET_UPS
-              if joint in joints and re.search(options.only, f"{engine} {precision} {joint} {set_up}")]
-    runs = {(joint, set_up) for joint, set_up in wanted}
+    wanted = [tuple(line.split()) for line in listed if re.search(options.only, f"{engine} {precision} {line}")]
+    runs = set(wanted)
     runs |= {("bodies-only", set_up) for _, set_up in wanted}
     runs |= {(own_joint(engine, *which), which[1]) for which in wanted if own_joint(engine, *which)}
     progress = Progress(f"instructions {engine} {precision}", len(runs))
@@ -166,13 +159,13 @@ def measure(program, common, options):
 
 def show(rows, beside, state):
     """Prints the table. `beside`: rows of the other state, by key."""
-    print(f"{'engine':<14} {'library':<11} {'joint':<20} {'own joint':<11} {'set-up':<13} {'bodies':>8} {'ours':>8} "
+    print(f"{'engine':<14} {'library':<11} {'joint':<20} {'own joint':<11} {'set-up':<14} {'bodies':>8} {'ours':>8} "
           f"{'own':>8} {'ratio':>6} {'/ ' + state:>9}")
     for row in rows:
         other = beside.get(tuple(row[column] for column in KEY))
         change = f"{float(row['ours']) / float(other['ours']):.3f}" if other else "-"
         print(f"{row['engine'] + ' ' + row['precision']:<14} {row['library']:<11} {row['joint']:<20} "
-              f"{row.get('own_joint') or '-':<11} {row['set_up']:<13} {row['bodies']:>8} {row['ours']:>8} "
+              f"{row.get('own_joint') or '-':<11} {row['set_up']:<14} {row['bodies']:>8} {row['ours']:>8} "
               f"{row.get('own') or '-':>8} {row.get('ratio') or '-':>6} {change:>9}")
 
 

@@ -52,11 +52,12 @@ int main(int argc, char** argv) try {
             std::vector<std::string_view> names;
             for (const auto& [joint, name] : joint_names) {
                 if (!Field::has(joint)) continue;
-                fields.push_back(std::make_unique<Field>(FieldSettings{.joint = joint,
-                                                                       .count = count,
-                                                                       .chain = chain,
-                                                                       .weak_every = chain ? 0 : 1,
-                                                                       .direct = !chain}));
+                fields.push_back(std::make_unique<Field>(
+                    FieldSettings{.joint = joint,
+                                  .count = count,
+                                  .set_up = chain ? SetUp::chain : SetUp::pairs,
+                                  .weak_every = chain ? 0 : 1,
+                                  .direct = !chain}));
                 names.push_back(name);
             }
             const auto times = step_times(fields, quick ? 7 : 21, quick ? 2e-3 : 1e-2);

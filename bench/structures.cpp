@@ -4,7 +4,7 @@
 // stand, sleep, fall or have lost a column, and chains of 10 to 1000 joints at rest and struck,
 // beside the same bodies with the engine's own fixed joints, and without joints.
 //
-//   structures-bullet-double [--quick] [--csv FILE]
+//   structures-bullet-double [--quick] [--scene NAME] [--csv FILE]
 //
 // Columns of the CSV:
 // engine,precision,solver,scene,method,joints,median_us,worst_us,absorbed_joule, sway_m,warnings.
@@ -23,6 +23,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cpu_time.hpp"
@@ -46,7 +47,7 @@ struct Scene {
 
 class Bench {
   public:
-    explicit Bench(const std::string& csv) {
+    Bench(const std::string& csv, std::string only) : only_(std::move(only)) {
         if (!csv.empty()) {
             file_.open(csv);
             if (!file_) throw std::invalid_argument("--csv = " + csv + ": cannot be written");
@@ -61,6 +62,7 @@ class Bench {
     /// Median of the elastic method [s].
     double run(const Scene& scene) {
         double ours = 0;
+        if (!only_.empty() && scene.name != only_) return ours;
         for (const std::string& solver : Site::solvers()) {
             std::vector<Running> all;
             for (const auto& [method, name] : method_names) {
@@ -121,6 +123,7 @@ class Bench {
     }
 
     std::ofstream file_;
+    std::string only_; ///< scene that is wanted; empty: all
 };
 
 /// Of a power law through the points, by least squares of the logarithms.
@@ -142,12 +145,13 @@ double exponent(const std::vector<std::pair<double, double>>& points) {
 int main(int argc, char** argv) try {
     CLI::App app("Cost of a step of structures and chains");
     bool quick = false;
-    std::string csv;
+    std::string csv, scene;
     app.add_flag("--quick", quick, "fewer joints and steps");
     app.add_option("--csv", csv, "file to write");
+    app.add_option("--scene", scene, "one alone");
     CLI11_PARSE(app, argc, argv);
 
-    Bench bench(csv);
+    Bench bench(csv, scene);
     constexpr double layer = Site::layer;
     const std::vector<int> stories = quick ? std::vector{1, 3} : std::vector{1, 3, 9, 28};
     for (const int frames : stories) {
@@ -158,6 +162,10 @@ int main(int argc, char** argv) try {
     }
     bench.run({.name = "column lost",
                .plan = frame({.layer = layer}),
+               .steps = 600,
+               .loses_column = true});
+    bench.run({.name = "column lost, hinges form",
+               .plan = frame({.slab = 6000, .layer = layer}),
                .steps = 600,
                .loses_column = true});
     bench.run({.name = "column lost with crates",
@@ -190,6 +198,7 @@ int main(int argc, char** argv) try {
                                              .steps = joints > 200 ? 100 : 300});
             points.emplace_back(joints, median);
         }
+        if (!scene.empty()) continue;
         fmt::print("{}: elastic, time in proportion to n^{:.2f}\n", name, exponent(points));
     }
     return 0;

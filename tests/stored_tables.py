@@ -124,11 +124,34 @@ def instructions(path):
     def cell(row):
         return f"{float(row['ours']):.0f} / {float(row['own']):.0f} = {float(row['ratio']):.2f}" if row else "-"
 
-    set_ups = [set_up for (set_up,) in each(rows, "set_up")]
+    set_ups = ["pairs-flowing", "pairs-at-rest", "chain-at-rest"]
     return table(["joint", "engine", *[set_up.replace("-", " ") for set_up in set_ups]],
                  [[f"`{joint}`", f"{engine} {precision}, {library}",
                    *[cell(found.get((engine, precision, library, joint, set_up))) for set_up in set_ups]]
                   for engine, precision, library, joint in each(rows, "engine", "precision", "library", "joint")])
+
+
+def small_islands(path):
+    """Of Bullet in double: ours / the engine's own = ratio, beside the aim."""
+    found = {(row["joint"], row["set_up"]): row for row in rows_of(path)
+             if row["state"] == "after" and row["engine"] == "bullet" and row["precision"] == "double"}
+    hinge, six = "plastic-hinge", "plastic-joint"
+    aims = {"hinge of a pair, flowing": (hinge, "pairs-flowing", 0.35),
+            "hinge of a pair at rest": (hinge, "pairs-at-rest", 0.65),
+            "hinge to the ground, flowing": (hinge, "ground-flowing", 0.33),
+            "six axes of a pair at rest": (six, "pairs-at-rest", 0.55),
+            "six axes of a pair, flowing": (six, "pairs-flowing", 1.2),
+            "lamp-post on its foot, six axes that hold": (six, "post-standing", 0.45),
+            "chain of five hinges that hold": (hinge, "fives-standing", 0.6),
+            "chain of five hinges, flowing": (hinge, "fives-flowing", 0.6),
+            "hinge of a pair on a floor that sticks": (hinge, "floor-sticking", 2),
+            "hinge of a pair on a floor that slides": (hinge, "floor-sliding", 3)}
+
+    def cells(row, aim):
+        return row["own_joint"], f"{float(row['ours']):.0f}", f"{float(row['own']):.0f}", row["ratio"], aim
+
+    return table(["joint", "own joint", "ours", "own", "ours / own", "aim"],
+                 [[name, *cells(found[joint, set_up], aim)] for name, (joint, set_up, aim) in aims.items()])
 
 
 def scaling(path):

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cost/field.hpp"
@@ -51,36 +52,49 @@ class Field {
     [[nodiscard]] static bool has(Joint joint) {
         return joint == Joint::none || size_of(joint) > 0;
     }
+    [[nodiscard]] static bool has(SetUp) { return true; }
 
-    explicit Field(const FieldSettings& settings) : settings_(settings) {
-        world_->setGravity(btVector3(0, 0, 0));
-        world_->getSimulationIslandManager()->setSplitIslands(settings.split_islands);
-        const int bodies = settings.chain ? settings.count + 1 : 2 * settings.count;
-        bodies_.reserve(std::size_t(bodies));
-        for (int i = 0; i < bodies; ++i) add_body(i);
-        if (settings.joint == Joint::plastic_hinge || settings.joint == Joint::plastic_joint) {
-            solves_.emplace(*world_, ductile::bullet::WorldParameters{.ledger = false});
-        }
-        const double before = heap_in_use();
-        constraints_.reserve(std::size_t(settings.count));
-        for (int i = 0; i < settings.count; ++i) add_joint(i);
-        heap_ = heap_in_use() - before;
-    }
+    explicit Field(const FieldSettings& settings) : Field(settings, plan_of(settings)) {}
     /// Joints go before their world, and that before its bodies: Bullet looks for all that is taken
     /// out of it one by one.
     ~Field() {
         constraints_.clear();
-        solves_.reset();
+        keeper_.reset();
         world_.reset();
     }
     Field(const Field&) = delete;
     Field& operator=(const Field&) = delete;
 
-    void step() { world_->stepSimulation(btScalar(dt), 0); }
+    void step() {
+        for (const auto& [body, force] : pushed_) body->applyCentralForce(force);
+        if (settings_.ledger) {
+            keeper_->step(dt_);
+        } else {
+            world_->stepSimulation(btScalar(dt_), 0);
+        }
+    }
     /// Heap that the joints took when they were made and added [bytes].
     [[nodiscard]] double heap() const { return heap_; }
 
   private:
+    Field(const FieldSettings& settings, const Plan& plan) : settings_(settings), dt_(plan.dt) {
+        world_->setGravity(ductile::bullet::to_bullet(plan.gravity));
+        world_->getSimulationIslandManager()->setSplitIslands(settings.split_islands);
+        bodies_.reserve(plan.bodies.size() + 1);
+        for (const Body& body : plan.bodies) {
+            add(body, plan.floor ? static_cast<btCollisionShape&>(cube_) : ball_, plan.floor);
+        }
+        if (plan.floor) add({.at = {0, 0, -1}, .mass = 0, .inertia = V3::Zero()}, floor_, true);
+        if (settings.joint == Joint::plastic_hinge || settings.joint == Joint::plastic_joint) {
+            keeper_.emplace(*world_, ductile::bullet::WorldParameters{.ledger = settings.ledger,
+                                                                      .warn = nullptr});
+        }
+        const double before = heap_in_use();
+        constraints_.reserve(plan.links.size());
+        for (const Link& link : plan.links) connect(link, plan);
+        heap_ = heap_in_use() - before;
+    }
+
     /// A constraint that stays in the world until that is gone.
     class Held {
       public:
@@ -101,62 +115,68 @@ class Field {
     class Ours final : public Held {
       public:
         template <class... Arguments>
-        explicit Ours(btDynamicsWorld& world, Arguments&&... arguments)
+        explicit Ours(Field& field, Arguments&&... arguments)
             : constraint_(std::forward<Arguments>(arguments)...) {
-            constraint_.add_to(world);
+            if (field.settings_.ledger) {
+                field.keeper_->add(constraint_);
+            } else {
+                constraint_.add_to(*field.world_);
+            }
         }
 
       private:
         Constraint constraint_;
     };
 
-    void add_body(int i) {
-        btRigidBody::btRigidBodyConstructionInfo info(
-            btScalar(body_mass), nullptr, &shape_,
-            btVector3(btScalar(body_inertia), btScalar(body_inertia), btScalar(body_inertia)));
-        const int side = i % 2 == 0 ? -1 : 1, row = 300; // pairs in a square field
-        const int pair = i / 2;
-        const btVector3 at =
-            settings_.chain ? btVector3(btScalar(2 * half_length * i), 0, 0)
-                            : btVector3(btScalar(pair_distance * (pair % row) + side * half_length),
-                                        btScalar(pair_distance * (pair / row)), 0);
-        info.m_startWorldTransform.setOrigin(at);
-        btRigidBody& body = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
-        body.setActivationState(DISABLE_DEACTIVATION);
-        world_->addRigidBody(&body, 0, 0);
-        if (settings_.chain) return;
-        body.setAngularVelocity(btVector3(0, 0, btScalar(side * pair_spin)));
-        body.setLinearVelocity(btVector3(0, btScalar(pair_spin * half_length), 0));
+    void add(const Body& body, btCollisionShape& shape, bool collides) {
+        using ductile::bullet::to_bullet;
+        btRigidBody::btRigidBodyConstructionInfo info(btScalar(body.mass), nullptr, &shape,
+                                                      to_bullet(body.inertia));
+        info.m_startWorldTransform.setOrigin(to_bullet(body.at));
+        btRigidBody& made = *bodies_.emplace_back(std::make_unique<btRigidBody>(info));
+        made.setActivationState(DISABLE_DEACTIVATION);
+        made.setFriction(btScalar(floor_friction));
+        if (collides) {
+            world_->addRigidBody(&made);
+        } else {
+            world_->addRigidBody(&made, 0, 0);
+        }
+        made.setAngularVelocity(to_bullet(body.spin));
+        made.setLinearVelocity(to_bullet(body.velocity));
+        if (!body.push.isZero()) pushed_.emplace_back(&made, to_bullet(body.push));
     }
 
-    void add_joint(int i) {
-        const std::size_t first = std::size_t(settings_.chain ? i : 2 * i);
-        btRigidBody &a = *bodies_[first], &b = *bodies_[first + 1];
-        btTransform in_a, in_b;
-        in_a.setIdentity();
-        in_b.setIdentity();
-        in_a.setOrigin(btVector3(btScalar(half_length), 0, 0));
-        in_b.setOrigin(btVector3(btScalar(-half_length), 0, 0));
-        const double strength = settings_.strength(i);
+    [[nodiscard]] btRigidBody& body(int i) const {
+        return i == ground ? btTypedConstraint::getFixedBody() : *bodies_[std::size_t(i)];
+    }
+    void connect(const Link& link, const Plan& plan) {
+        btRigidBody &a = body(link.a), &b = body(link.b);
+        const auto frame_in = [&link](const btRigidBody& of) {
+            btTransform frame = btTransform::getIdentity();
+            frame.setOrigin(ductile::bullet::to_bullet(link.at) - of.getCenterOfMassPosition());
+            return frame;
+        };
+        const btTransform in_a = frame_in(a), in_b = frame_in(b);
+        const double strength = link.strength;
         switch (settings_.joint) {
             case Joint::none:
                 return;
             case Joint::plastic_hinge:
                 constraints_.push_back(std::make_unique<Ours<Hinge>>(
-                    *world_, a, b, in_a, in_b,
+                    *this, a, b, in_a, in_b,
                     ductile::OneAxisJoint<ductile::Perfect<double>>(
                         ductile::Perfect<double>({.strength = strength}))));
                 return;
             case Joint::plastic_joint:
                 constraints_.push_back(std::make_unique<Ours<SixAxis>>(
-                    *world_, a, b, in_a, in_b,
+                    *this, a, b, in_a, in_b,
                     Six(ductile::Ellipsoid<double, 6>(
                             {.capacity = ductile::Vector6<double>::Constant(strength)}),
                         ductile::Perfect<double>({.strength = 1}))));
                 return;
             case Joint::hinge_motor: {
                 auto hinge = std::make_unique<btHingeConstraint>(a, b, in_a, in_b, true);
-                hinge->enableAngularMotor(true, 0, btScalar(strength * dt));
+                hinge->enableAngularMotor(true, 0, btScalar(strength * dt_));
                 add(std::move(hinge));
                 return;
             }
@@ -165,7 +185,7 @@ class Field {
                 for (int axis = 0; axis < 6; ++axis) {
                     spring->setLimit(axis, 1, 0);
                     spring->enableSpring(axis, true);
-                    spring->setStiffness(axis, 100, false);
+                    spring->setStiffness(axis, btScalar(plan.stiffness), false);
                     spring->setDamping(axis, 0, false);
                 }
                 spring->setEquilibriumPoint();
@@ -184,15 +204,20 @@ class Field {
     }
 
     FieldSettings settings_;
+    double dt_; ///< [s]
     btDefaultCollisionConfiguration configuration_;
     btCollisionDispatcher dispatcher_{&configuration_};
     btDbvtBroadphase broadphase_;
     btSequentialImpulseConstraintSolver solver_;
-    std::optional<btDiscreteDynamicsWorld> world_{std::in_place, &dispatcher_, &broadphase_, &solver_,
-                                                  &configuration_};
-    std::optional<ductile::bullet::World> solves_; ///< islands of plastic joints
-    btSphereShape shape_{btScalar(0.1)};
+    std::optional<btDiscreteDynamicsWorld> world_{std::in_place, &dispatcher_, &broadphase_,
+                                                  &solver_, &configuration_};
+    std::optional<ductile::bullet::World> keeper_; ///< of islands of plastic joints
+    btSphereShape ball_{btScalar(0.1)};
+    btBoxShape cube_{
+        btVector3(btScalar(half_length), btScalar(half_length), btScalar(half_length))};
+    btBoxShape floor_{btVector3(1000, 1000, 1)};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
+    std::vector<std::pair<btRigidBody*, btVector3>> pushed_; ///< and their forces [N]
     std::vector<std::unique_ptr<Held>> constraints_;
     double heap_ = 0;
 };

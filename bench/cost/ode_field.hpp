@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cost/field.hpp"
@@ -44,19 +45,10 @@ class Field {
         }
     }
     [[nodiscard]] static bool has(Joint joint) { return joint != Joint::spring2; }
+    /// Contacts are the user's there.
+    [[nodiscard]] static bool has(SetUp set_up) { return set_up != SetUp::floor; }
 
-    explicit Field(const FieldSettings& settings)
-        : settings_(settings),
-          stepper_(world_,
-                   settings.direct ? ductile::ode::Solver::direct : ductile::ode::Solver::quick) {
-        const int bodies = settings.chain ? settings.count + 1 : 2 * settings.count;
-        bodies_.reserve(std::size_t(bodies));
-        for (int i = 0; i < bodies; ++i) add_body(i);
-        const double before = heap_in_use();
-        ours_.reserve(std::size_t(settings.count));
-        for (int i = 0; i < settings.count; ++i) add_joint(i);
-        heap_ = heap_in_use() - before;
-    }
+    explicit Field(const FieldSettings& settings) : Field(settings, plan_of(settings)) {}
     ~Field() {
         ours_.clear();
         dWorldDestroy(world_);
@@ -64,36 +56,54 @@ class Field {
     Field(const Field&) = delete;
     Field& operator=(const Field&) = delete;
 
-    void step() { stepper_.step(dt); }
+    void step() {
+        for (const auto& [body, force] : pushed_) {
+            dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
+        }
+        stepper_.step(dt_);
+    }
     /// Heap that the joints took when they were made and added [bytes].
     [[nodiscard]] double heap() const { return heap_; }
 
   private:
-    void add_body(int i) {
-        dBodyID body = dBodyCreate(world_);
-        dMass m;
-        const auto inertia = dReal(body_inertia);
-        dMassSetParameters(&m, dReal(body_mass), 0, 0, 0, inertia, inertia, inertia, 0, 0, 0);
-        dBodySetMass(body, &m);
-        const int side = i % 2 == 0 ? -1 : 1, row = 300, pair = i / 2; // pairs in a square field
-        if (settings_.chain) {
-            dBodySetPosition(body, dReal(2 * half_length * i), 0, 0);
-        } else {
-            dBodySetPosition(body, dReal(pair_distance * (pair % row) + side * half_length),
-                             dReal(pair_distance * (pair / row)), 0);
-            dBodySetAngularVel(body, 0, 0, dReal(side * pair_spin));
-            dBodySetLinearVel(body, 0, dReal(pair_spin * half_length), 0);
-        }
-        bodies_.push_back(body);
+    Field(const FieldSettings& settings, const Plan& plan)
+        : settings_(settings),
+          dt_(plan.dt),
+          stepper_(world_, {.solver = settings.direct ? ductile::ode::Solver::direct
+                                                      : ductile::ode::Solver::quick,
+                            .ledger = settings.ledger,
+                            .warn = nullptr}) {
+        dWorldSetGravity(world_, dReal(plan.gravity.x()), dReal(plan.gravity.y()),
+                         dReal(plan.gravity.z()));
+        bodies_.reserve(plan.bodies.size());
+        for (const Body& body : plan.bodies) add(body);
+        const double before = heap_in_use();
+        ours_.reserve(plan.links.size());
+        for (const Link& link : plan.links) connect(link);
+        heap_ = heap_in_use() - before;
     }
 
-    void add_joint(int i) {
-        const std::size_t first = std::size_t(settings_.chain ? i : 2 * i);
-        dBodyID a = bodies_[first], b = bodies_[first + 1];
-        const double strength = settings_.strength(i);
-        const ductile::Vector3<double> anchor = ductile::ode::to_core(dBodyGetPosition(a)) +
-                                                ductile::Vector3<double>(half_length, 0, 0);
-        const ductile::Vector3<double> z = ductile::Vector3<double>::UnitZ();
+    void add(const Body& wanted) {
+        dBodyID body = dBodyCreate(world_);
+        dMass m;
+        const V3 &inertia = wanted.inertia, &at = wanted.at, &v = wanted.velocity, &w = wanted.spin;
+        dMassSetParameters(&m, dReal(wanted.mass), 0, 0, 0, dReal(inertia.x()), dReal(inertia.y()),
+                           dReal(inertia.z()), 0, 0, 0);
+        dBodySetMass(body, &m);
+        dBodySetPosition(body, dReal(at.x()), dReal(at.y()), dReal(at.z()));
+        dBodySetAngularVel(body, dReal(w.x()), dReal(w.y()), dReal(w.z()));
+        dBodySetLinearVel(body, dReal(v.x()), dReal(v.y()), dReal(v.z()));
+        bodies_.push_back(body);
+        if (!wanted.push.isZero()) pushed_.emplace_back(body, wanted.push);
+    }
+
+    [[nodiscard]] dBodyID body(int i) const {
+        return i == ground ? nullptr : bodies_[std::size_t(i)];
+    }
+    void connect(const Link& link) {
+        dBodyID a = body(link.a), b = body(link.b);
+        const double strength = link.strength;
+        const V3 &anchor = link.at, z = V3::UnitZ();
         switch (settings_.joint) {
             case Joint::plastic_hinge: {
                 auto hinge = std::make_unique<Hinge>(
@@ -150,10 +160,12 @@ class Field {
     };
 
     FieldSettings settings_;
+    double dt_; ///< [s]
     Library library_;
     dWorldID world_ = dWorldCreate();
     ductile::ode::World stepper_;
     std::vector<dBodyID> bodies_;
+    std::vector<std::pair<dBodyID, V3>> pushed_; ///< and their forces [N]
     std::vector<std::unique_ptr<ductile::ode::PlasticConstraint>> ours_;
     double heap_ = 0;
 };

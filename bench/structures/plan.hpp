@@ -59,6 +59,7 @@ struct Plan {
 
 struct FramePlan {
     int frames = 1;        ///< one on the other, gravity shared by them
+    double slab = 3000;    ///< that each beam bears [kg]
     int crates = 0;        ///< of 1 t on every beam
     bool loose = false;    ///< on footings that lie on the ground
     bool contacts = false; ///< members collide
@@ -97,7 +98,7 @@ struct FramePlan {
             const V3 middle((x[b] + x[next]) / 2, (y[b] + y[next]) / 2, top);
             const V3 way =
                 is_x ? V3(x[next] > x[b] ? 1 : -1, 0, 0) : V3(0, y[next] > y[b] ? 1 : -1, 0);
-            const int beam = plan.add({42.2 * length + 3000,
+            const int beam = plan.add({42.2 * length + wanted.slab,
                                        is_x ? V3(half, 0.075, 0.15) : V3(0.075, half, 0.15), middle,
                                        wanted.contacts || wanted.crates > 0, true});
             for (const bool end : {false, true}) {

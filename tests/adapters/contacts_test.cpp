@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -44,7 +45,8 @@ void settle(StructureRig& rig, double friction) {
 
 /// P38's block of 1 x 1 x 2 m and 1000 kg, in two halves that a plastic joint holds.
 struct Block {
-    Block(const V3& gravity, double friction) {
+    Block(const V3& gravity, double friction, const engine::WorldParameters& parameters = {})
+        : rig(g, parameters) {
         rig.set_gravity(gravity);
         lower = rig.box(500, V3(0.5, 0.5, 0.5), V3(0, 0, 0.5 - StructureRig::layer));
         upper = rig.box(500, V3(0.5, 0.5, 0.5), V3(0, 0, 1.5 - StructureRig::layer));
@@ -126,6 +128,41 @@ TEST_CASE("P38 a block on a tilted ground tips at 26.5651 degrees and slides at 
         CHECK(StructureRig::place(tail).x() == Approx(rate).epsilon(0.01).margin(still));
         CHECK(rig.lines().empty());
     }
+}
+
+TEST_CASE("P38 a block rocks with its period, and landing takes half of its energy", "[contacts]") {
+    // alpha: from its diagonal to upright; p^2 = 3 g/(4 R)
+    const double alpha = std::atan(0.5), p2 = 0.75 * g / std::hypot(0.5, 1.0);
+    struct Case {
+        double first, period, next; ///< amplitude [alpha], without loss [s], after landing [rad]
+    };
+    const Case c = GENERATE(Case{0.2, 1.094443, 0.0430262}, Case{0.5, 2.066521, 0.0956508},
+                            Case{0.8, 3.583321, 0.127562});
+    CAPTURE(c.first);
+    engine::WorldParameters parameters;
+    parameters.tolerance = 0.01;
+    Block block(V3(0, 0, -g), 2, parameters);
+    // from the floor, about its edge
+    const double first = c.first * alpha,
+                 spin = std::sqrt(2 * p2 * (std::cos(alpha - first) - std::cos(alpha)));
+    for (const Body half : {block.lower, block.upper}) {
+        const V3 arm = StructureRig::place(half) - V3(0.5, 0, -StructureRig::layer);
+        StructureRig::set_velocity(half, V3(0, spin, 0).cross(arm), V3(0, spin, 0));
+    }
+    double most = 0, landed = 0, least = 0, before = 0;
+    for (int i = 1; i * dt < c.period; ++i) {
+        block.rig.step(dt);
+        const double angle = std::asin(block.leans());
+        if (landed == 0 && angle < 0) landed = dt * (i - angle / (angle - before));
+        most = std::max(most, angle);
+        least = std::min(least, angle);
+        before = angle;
+    }
+    CHECK(most == Approx(first).epsilon(0.01));
+    CHECK(landed == Approx(c.period / 2).epsilon(0.01));
+    // it lands on a floor that is a layer above its edge
+    CHECK(-least == Approx(c.next).epsilon(0.01).margin(2 * StructureRig::layer));
+    CHECK(block.rig.lines().empty());
 }
 
 TEST_CASE("A moment on what lies on a floor turns it or not, and does not push it", "[contacts]") {
