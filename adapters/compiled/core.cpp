@@ -12,6 +12,7 @@
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>
+#include <ductile/solve/lagged_friction.ipp>
 #include <ductile/solve/one_pair.ipp>
 #include <ductile/solve/proximal_newton.ipp>
 #include <ductile/structure/built_structure.ipp>

@@ -86,9 +86,9 @@ struct EllipsoidForm {
         aim_at(v, aim, metric);
         double square = 0, slack = 0;
         for (int i = 0; i < v.count(); ++i) {
-            if (aim[i] == 0) continue;
+            if (aim[i] == 0 || !v.live(i)) continue;
             square += (aim[i] / v.size(i)) * (aim[i] / v.size(i));
-            if (v.size(i) > 0) slack = std::max(slack, least / (metric[i] * v.size(i)));
+            slack = std::max(slack, least / (metric[i] * v.size(i)));
         }
         const double gauge = std::sqrt(square);
         if (v.on_surface()) {

@@ -14,9 +14,10 @@
 // gives. Among rows that repeat each other the shares stay those of the softness.
 //
 // Friction is more: its slips shift what the normals are asked for (contact_form.hpp). Warm active
-// set first (active_set.hpp); where that does not settle Newton on a convex function
-// (proximal_newton.hpp), polished by the active set. At the end the certificate, of Coulomb's law
-// itself.
+// set first (active_set.hpp), or, where a contact slid, with the normals of one round as the
+// friction's bounds of the next (lagged_friction.hpp); where neither settles Newton on a convex
+// function (proximal_newton.hpp), polished by the active set. At the end the certificate, of
+// Coulomb's law itself.
 //
 // What is not solved says so, and of the answer, the start and no impulse at all the one is taken
 // that leaves the least energy: where bounds enclose zero an island never gains any, whatever went
@@ -33,6 +34,7 @@
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
 #include "ductile/solve/island_system.hpp"
+#include "ductile/solve/lagged_friction.hpp"
 #include "ductile/solve/proximal_newton.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -45,6 +47,7 @@ class IslandSolver {
 
   private:
     bool polished(IslandReport& report);
+    bool lagged(IslandReport& report);
     void fall_back(IslandReport& report);
     void finish(IslandReport& report);
     void give_up();
@@ -53,6 +56,7 @@ class IslandSolver {
 
     IslandSystem system_;
     ActiveSet active_set_;
+    LaggedFriction lagged_friction_;
     ProximalNewton proximal_newton_;
     std::vector<double> start_, best_;
 };

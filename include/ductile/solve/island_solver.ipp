@@ -57,7 +57,17 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         finish(report);
         return report;
     }
-    if (!polished(report)) fall_back(report);
+    const auto touches = [](const IslandBlock& block) { return block.kind == BlockKind::contact; };
+    const auto slides = [&touches](const IslandBlock& block) {
+        return touches(block) && block.state == BlockState::surface;
+    };
+    const auto any = [&island](const auto& is) {
+        return std::any_of(island.blocks.begin(), island.blocks.end(), is);
+    };
+    const bool lagged_first = any(slides);
+    const bool solved = lagged_first ? lagged(report) || polished(report)
+                                     : polished(report) || (any(touches) && lagged(report));
+    if (!solved) fall_back(report);
     finish(report);
     return report;
 }
@@ -65,6 +75,15 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
 DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
     const bool settled = active_set_.solve(system_);
     report.rounds += active_set_.rounds();
+    return settled;
+}
+
+/// From the start.
+DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report) {
+    for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
+    put(start_);
+    const bool settled = lagged_friction_.solve(system_);
+    report.factorisations += lagged_friction_.factorisations();
     return settled;
 }
 
@@ -107,7 +126,7 @@ DUCTILE_INLINE void IslandSolver::finish(IslandReport& report) {
     report.solved =
         report.residual <= std::max(solved_residual * report.scale, system_.round_off(4));
     if (!report.solved) give_up();
-    report.factorisations = system_.factorisations();
+    report.factorisations += system_.factorisations();
 }
 
 /// Of the answer, the start and nothing the one that leaves the least energy.

@@ -67,6 +67,7 @@ class IslandSystem {
 
     [[nodiscard]] Island& island() const noexcept { return *island_; }
     [[nodiscard]] std::vector<Row>& rows() noexcept { return rows_; }
+    [[nodiscard]] const std::vector<Row>& rows() const noexcept { return rows_; }
     [[nodiscard]] std::vector<Block>& blocks() noexcept { return blocks_; }
     /// True of rows that belong to no block.
     [[nodiscard]] bool alone(std::size_t row) const noexcept { return block_of_[row] < 0; }

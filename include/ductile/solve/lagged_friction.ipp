@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of lagged_friction.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ductile/solve/contact_form.hpp"
+#include "ductile/solve/lagged_friction.hpp"
+
+namespace ductile::solve {
+
+DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
+    constexpr int most = 20;         // rounds
+    constexpr double settled = 1e-9; // of the largest velocity
+    constexpr int patience = 4;      // rounds without coming closer by half
+    begin(system);
+    const double enough = std::max(system.round_off(40), settled * system.scale());
+    double least = std::numeric_limits<double>::infinity();
+    int left = patience;
+    for (int round = 0; round < most && left > 0; ++round) {
+        set_radii(system.island());
+        const bool solved = active_set_.solve(system_);
+        factorisations_ = system_.factorisations();
+        if (!solved) return false;
+        const double moved = read(system);
+        if (moved <= enough) {
+            give(system);
+            return true;
+        }
+        left = moved < least / 2 ? patience : left - 1;
+        least = std::min(least, moved);
+        ahead_.advance(radii_, normals_);
+        for (double& radius : radii_) radius = std::max(radius, 0.0);
+    }
+    return false;
+}
+
+DUCTILE_INLINE void LaggedFriction::begin(IslandSystem& system) {
+    const Island& island = system.island();
+    flat_ = island;
+    contacts_.clear();
+    radii_.clear();
+    ahead_.restart();
+    factorisations_ = 0;
+    for (std::size_t k = 0; k < flat_.blocks.size(); ++k) {
+        IslandBlock& block = flat_.blocks[k];
+        if (block.kind != BlockKind::contact) continue;
+        contacts_.push_back(k);
+        IslandRow& normal = flat_.rows[std::size_t(block.first)];
+        normal.lower = 0;
+        normal.upper = std::numeric_limits<double>::infinity();
+        normal.side = block.state == BlockState::apex ? Side::lower : Side::free;
+        radii_.push_back(std::max(normal.impulse, 0.0));
+        for (int i = 1; i < block.count; ++i) { // the same in all directions
+            const auto row = std::size_t(block.first + i);
+            flat_.rows[row].compliance = system.rows()[row].compliance;
+        }
+        block.kind = BlockKind::ellipsoid;
+        if (block.state == BlockState::apex) block.state = BlockState::inside;
+        block.multiplier = 0;
+        ++block.first;
+        --block.count;
+    }
+    system_.open(flat_);
+}
+
+DUCTILE_INLINE void LaggedFriction::set_radii(const Island& island) {
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        IslandBlock& disc = flat_.blocks[contacts_[c]];
+        const IslandBlock& cone = island.blocks[contacts_[c]];
+        for (std::size_t i = 0; i < std::size_t(disc.count); ++i) {
+            disc.size[i] = cone.size[i + 1] * radii_[c];
+        }
+    }
+}
+
+/// The normals; the largest velocity by which friction is off [m/s].
+DUCTILE_INLINE double LaggedFriction::read(const IslandSystem& system) {
+    const Island& island = system.island();
+    normals_.clear();
+    double moved = 0;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+        const IslandBlock& cone = island.blocks[contacts_[c]];
+        const auto first = std::size_t(cone.first);
+        const double normal = std::max(flat_.rows[first].impulse, 0.0);
+        normals_.push_back(normal);
+        double square = 0, metric = 0; // of t/f
+        for (std::size_t i = 1; i < std::size_t(cone.count); ++i) {
+            const double share = flat_.rows[first + i].impulse / cone.size[i];
+            square += share * share;
+            metric = std::max(metric, cone.size[i] * system_.rows()[first + i].metric);
+        }
+        const bool held = flat_.blocks[contacts_[c]].state == BlockState::inside && radii_[c] > 0;
+        const double off = held ? std::sqrt(square) - normal : std::abs(normal - radii_[c]);
+        moved = std::max(moved, off * metric);
+    }
+    return moved;
+}
+
+DUCTILE_INLINE void LaggedFriction::give(IslandSystem& system) const {
+    Island& island = system.island();
+    for (std::size_t i = 0; i < island.rows.size(); ++i) {
+        island.rows[i].impulse = flat_.rows[i].impulse;
+        island.rows[i].side = flat_.rows[i].side;
+        system.rows()[i].shift = system.rows()[i].kept = 0;
+    }
+    system.update_velocities();
+    system.update_residuals();
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system, k);
+        view.block.state = flat_.blocks[k].state;
+        view.block.multiplier = flat_.blocks[k].multiplier;
+        if (view.block.kind != BlockKind::contact) continue;
+        if (!(view.row[0].impulse > 0)) view.block.state = BlockState::apex;
+        view.block.multiplier = 0;
+        if (view.on_surface()) ContactForm::guess(view);
+    }
+}
+
+} // namespace ductile::solve
