@@ -105,10 +105,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     force_ = forces;
     commit_joint(end_, a, b, dt);
     if (all_rigid_) {
-        if (!ahead_) {
-            look_for_blow(dt);
-        } else if (blow_.may_have()) {
+        if (ahead_ || broken()) { // a frame strikes what closes in it
             blow_.forget();
+        } else {
+            blow_.see(force_, last().plastic_work > 0, dt, plastic_,
+                      [this](std::size_t i) { return strength(JointAxis(i)); });
         }
         S fastest = 0;
         for (std::size_t i = 0; i < plastic_.size(); ++i) {
@@ -123,22 +124,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
 }
 
 template <std::floating_point S>
-void AnyLink<S>::look_for_blow(S dt) noexcept {
-    if (broken()) {
-        blow_.forget();
-        borne_ = 0;
-        return;
-    }
-    borne_ = blow_.see(force_, last().plastic_work > 0, dt, plastic_,
-                       [this](std::size_t i) { return strength(JointAxis(i)); });
-}
-
-template <std::floating_point S>
 S AnyLink<S>::borne_error() const noexcept {
-    if (!(borne_ > 0)) return 0;
+    if (!(borne_blow() > 0)) return 0;
     S least = std::numeric_limits<S>::infinity();
     for (const JointAxis axis : axes()) least = std::min(least, strength(axis));
-    const S error = borne_ / (totals().plastic_work + least * least_travel());
+    const S error = borne_blow() / (totals().plastic_work + least * least_travel());
     return error > allowed_.step_error ? error : S(0);
 }
 
