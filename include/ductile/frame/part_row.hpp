@@ -7,7 +7,8 @@
 // braked by a constant force is exact, whatever the length of the part. Off is
 //
 //   a row that stopped    its strength R acted for the whole part, and would have for a share of
-//                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2
+//                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2;
+//                         where it went along with u, as a load turned the row round, -|f| for |f|
 //   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|; however slow it is then, its
 //                         force was that of its flow back
 //   one that its load     lacks the speed Δ that it should go back with, in all that follows: that
@@ -206,8 +207,10 @@ struct PartBefore {
     if (row.elastic) {
         result = misplaced_by_spring(row, h, before, changed, below);
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
-        result.travel = start * h * (1 - share) / 2;
-        double stop = share * h;
+        const double pushed = row.pushes() ? std::min(share, row.own_share) : 0;
+        const double braked = share - 2 * pushed;
+        result.travel = start * h * (1 - braked) / 2;
+        double stop = braked * h;
         constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
         const bool turned = row.start * row.end < 0;
         if (turned && (std::abs(row.end) > row.noise || (row.pushes() && share >= whole))) {
