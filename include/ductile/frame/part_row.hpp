@@ -67,17 +67,19 @@ struct PartRow {
     double least = 0;      ///< travel that nobody misses [m | rad]
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
-    double broke = 0;      ///< how long its joint held in the part that broke it [s]
-    double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
-    double freed = 0;      ///< that its springs held as it broke [J]
-    bool alone = false;    ///< of a joint of one axis: `astray` is all of its work then
-    bool snapped = false;  ///< it broke before it flowed
-    double run = 0;        ///< its way then, until it broke [m | rad]
-    double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
-    bool elastic = false;  ///< below its strength it is a spring
-    double spring = 0;     ///< what that holds at yield [J]
-    bool swings = false;   ///< as a spring of one axis, not at its strength all along
-    bool yielded = false;  ///< that, or before
+    double unfit = 0;     ///< that rigid rows of its joint took of velocities given from elsewhere,
+                          ///< which they do not allow, told once [J]
+    double broke = 0;     ///< how long its joint held in the part that broke it [s]
+    double astray = 0;    ///< of its work then: it had a share of its strength all along [J]
+    double freed = 0;     ///< that its springs held as it broke [J]
+    bool alone = false;   ///< of a joint of one axis: `astray` is all of its work then
+    bool snapped = false; ///< it broke before it flowed
+    double run = 0;       ///< its way then, until it broke [m | rad]
+    double misfit = 0;    ///< of its work, that its strength on the way would not have taken [J]
+    bool elastic = false; ///< below its strength it is a spring
+    double spring = 0;    ///< what that holds at yield [J]
+    bool swings = false;  ///< as a spring of one axis, not at its strength all along
+    bool yielded = false; ///< that, or before
 
     /// Of what it stopped in a part of h, with its mean force [J]; nothing where that goes on.
     [[nodiscard]] double stopped(double h) const noexcept {

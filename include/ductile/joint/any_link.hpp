@@ -252,6 +252,10 @@ class AnyLink {
     /// What that is of the work so far, where it is more than the joint's parameters allow, else 0
     /// [-].
     [[nodiscard]] S borne_error() const noexcept;
+    /// What the rigid rows took in the last part of a frame of velocities that were given to the
+    /// bodies from elsewhere, and that they do not allow: of each |Δf Δu| h/2, by what force and
+    /// velocity changed [J].
+    [[nodiscard]] S unfit() const noexcept { return unfit_; }
     /// LinkPose's of the last step [rad].
     [[nodiscard]] S unseen_turn() const noexcept { return unseen_turn_; }
     /// That of the joint, and unreliable where a rigid row was left unsolved or a turn unseen.
@@ -326,7 +330,13 @@ class AnyLink {
     /// The velocities with which a step of `dt` [s] starts would strain a row noticeably, and
     /// neither the joint nor its last step gave them to its bodies.
     [[nodiscard]] bool is_kicked(S dt) const noexcept;
+    /// `unfit` of a part of `dt` [s] that changed the rows' forces by these.
+    [[nodiscard]] S struck(const BodyState<S>& a, const Vector6<S>& forces, S dt) const noexcept;
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
+    /// Whether a row is off by no more than its joint's parameters allow.
+    [[nodiscard]] bool within(S residual, S speed) const noexcept {
+        return residual <= allowed_.absolute_residual + allowed_.relative_residual * speed;
+    }
 
     /// What `keep` keeps.
     struct Kept {
@@ -342,6 +352,7 @@ class AnyLink {
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
     Vector6<S> turned_ = Vector6<S>::Zero();      ///< u' of the rows as they are now
     S length_ = 0;                                ///< of the last step [s]
+    S unfit_ = 0;                                 ///< [J]
     Vector6<S> before_blow_ = Vector6<S>::Zero(); ///< u' of the last step in which time passed
     RowTurning<S> turning_;                       ///< between prepare and commit
     bool ahead_ = false;                          ///< they were half a step ahead in it

@@ -88,6 +88,9 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     const Vector6<S> velocity = pose_.twist(a, b);
     end_ = turning_.after(velocity);
     constexpr S instant = S(1e-8); // a blow is no longer
+    // a force that was there before, such as a weight, is none of what was given
+    const bool told = length_ > instant;
+    unfit_ = ahead_ ? struck(a, told ? Vector6<S>(forces - force_) : forces, dt) : S(0);
     if (dt > instant) before_blow_ = end_;
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
@@ -148,6 +151,19 @@ bool AnyLink<S>::is_kicked(S dt) const noexcept {
 }
 
 template <std::floating_point S>
+S AnyLink<S>::struck(const BodyState<S>& a, const Vector6<S>& forces, S dt) const noexcept {
+    S sum = 0;
+    for (std::size_t i = 0; i < plastic_.size(); ++i) {
+        const auto k = Eigen::Index(i);
+        const S given = std::abs(start_[k] - before_blow_[k]);
+        if (plastic_[i] || !(given > allowed_.absolute_residual)) continue;
+        if (within(given, i < 3 ? pose_.speed_of_a(a) : norm(a.spin))) continue;
+        sum += std::abs(forces[k]) * given * dt / 2;
+    }
+    return sum;
+}
+
+template <std::floating_point S>
 BreakRelease<S> AnyLink<S>::release(const BodyState<S>& a, const BodyState<S>& b) const noexcept {
     if (!(last().release > 0)) return {};
     return break_release(pose_.at_joint(a), pose_.at_joint(b), pose_.in_world(flow()),
@@ -180,11 +196,7 @@ inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
         worst[i / 3] = worse(worst[i / 3], residual);
     }
     rigid_residual_ = worse(worst[0], worst[1]);
-    const Allowed& allow = allowed_;
-    const auto within = [&](S residual, S speed) {
-        return residual <= allow.absolute_residual + allow.relative_residual * speed;
-    };
-    rigid_unsolved_ = !(rigid_residual_ <= allow.absolute_residual) &&
+    rigid_unsolved_ = !(rigid_residual_ <= allowed_.absolute_residual) &&
                       !(within(worst[0], pose_.speed_of_a(a)) && within(worst[1], norm(a.spin)));
 }
 
