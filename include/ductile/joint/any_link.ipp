@@ -155,9 +155,11 @@ S AnyLink<S>::struck(const BodyState<S>& a, const Vector6<S>& forces, S dt) cons
     S sum = 0;
     for (std::size_t i = 0; i < plastic_.size(); ++i) {
         const auto k = Eigen::Index(i);
-        const S given = std::abs(start_[k] - before_blow_[k]);
-        if (plastic_[i] || !(given > allowed_.absolute_residual)) continue;
-        if (within(given, i < 3 ? pose_.speed_of_a(a) : norm(a.spin))) continue;
+        // what turning leaves is neither of what was given nor of the part before
+        const S given = std::min(std::abs(start_[k]), std::abs(start_[k] - before_blow_[k]));
+        const S left = i < 3 ? turning_speed() : S(0);
+        if (plastic_[i] || !(given > allowed_.absolute_residual + left)) continue;
+        if (within(given - left, i < 3 ? pose_.speed_of_a(a) : norm(a.spin))) continue;
         sum += std::abs(forces[k]) * given * dt / 2;
     }
     return sum;
