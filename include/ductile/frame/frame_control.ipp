@@ -206,16 +206,14 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
                                                const PartMotion& motion) const noexcept {
     if (!detail::was_there(past_, motion, row)) return {};
     const Past& past = past_[row];
-    const bool swings = past.row.swings && past.row.moves();
-    const bool fast = past.fast || used() > detail::of_swings;
     return {.acceleration = past.acceleration,
             .length = before_,
             .end = past.row.end,
             .force = past.row.force,
             .mass = past.mass,
-            .swings = swings,
+            .swings = past.row.swings && past.row.moves(),
             .driven = past.driven,
-            .fast = fast};
+            .fast = past.fast || used() > detail::of_swings};
 }
 
 /// Rigid rows take more of what the engine rounds than all that flows could, in any part.
@@ -307,9 +305,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.error += judged.given + judged.astray;
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
     judged.struck = std::max(judged.struck, motion.rigid_work);
-    const double took = judged.struck + std::min(taken_, 0.0);
-    const bool rested = unmissed > 0 && !lets_go && took > judged.least;
-    judged.moves = judged.moves || rested;
+    const bool rested = judged.struck + std::min(taken_, 0.0) > judged.least;
+    judged.moves = judged.moves || (rested && unmissed > 0 && !lets_go);
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && judged.struck > 0 && !fitted_;
