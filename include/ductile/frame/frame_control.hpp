@@ -106,6 +106,7 @@ class FrameControl {
         double tolerated = 0; ///< that does not
         double least = 0;     ///< strength x travel that nobody misses, of all rows
         double of_one = 0;    ///< the largest of these
+        double struck = 0;    ///< of velocities that rigid rows do not allow, by these
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         double turned = 0;   ///< of turns that were too far, in those that a part may have; 0: none

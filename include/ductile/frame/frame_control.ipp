@@ -184,7 +184,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         if (tries >= 3 && h < of_length * first && error > of_error * first_error) {
             // velocities that do not fit, as hands gave them between frames, are struck
             const bool unfit =
-                report_.parts == 0 && !fitted_ && motion.rigid_work > of_error * judged.error;
+                report_.parts == 0 && !fitted_ && judged.struck > of_error * judged.error;
             jump = !unfit;
             at_event = at_gap && jump;
             h = jump ? first : shortest;
@@ -206,16 +206,14 @@ DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
                                                const PartMotion& motion) const noexcept {
     if (!detail::was_there(past_, motion, row)) return {};
     const Past& past = past_[row];
-    const bool swings = past.row.swings && past.row.moves();
-    const bool fast = past.fast || used() > detail::of_swings;
     return {.acceleration = past.acceleration,
             .length = before_,
             .end = past.row.end,
             .force = past.row.force,
             .mass = past.mass,
-            .swings = swings,
+            .swings = past.row.swings && past.row.moves(),
             .driven = past.driven,
-            .fast = fast};
+            .fast = past.fast || used() > detail::of_swings};
 }
 
 /// Rigid rows take more of what the engine rounds than all that flows could, in any part.
@@ -275,6 +273,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.given += row.given;
         lets_go = lets_go || row.broke > 0;
         judged.error += row.misfit;
+        judged.struck += row.unfit;
         if (!row.moves()) continue;
         const double later = flow_after(row, held, h);
         judged.astray += later;
@@ -305,14 +304,15 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     }
     judged.error += judged.given + judged.astray;
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
-    const double took = motion.rigid_work + std::min(taken_, 0.0);
-    const bool rested = unmissed > 0 && !lets_go && took > judged.least;
-    judged.moves = judged.moves || rested;
+    judged.struck = std::max(judged.struck, motion.rigid_work);
+    const bool rested = judged.struck + std::min(taken_, 0.0) > judged.least;
+    judged.moves = judged.moves || (rested && unmissed > 0 && !lets_go);
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
-        judged.fitted = h <= shortest && motion.rigid_work > 0 && !fitted_;
+        judged.fitted = h <= shortest && judged.struck > 0 && !fitted_;
         if (!judged.fitted) {
-            judged.error += std::abs(motion.rigid_work) + std::max(motion.others_work, 0.0);
+            judged.error += std::max(judged.struck, -motion.rigid_work);
+            judged.error += std::max(motion.others_work, 0.0);
         }
         if (!(h <= shortest)) {
             judged.error += detail::contact_share * std::abs(motion.contact_work);

@@ -7,7 +7,8 @@
 // braked by a constant force is exact, whatever the length of the part. Off is
 //
 //   a row that stopped    its strength R acted for the whole part, and would have for a share of
-//                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2
+//                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2;
+//                         where it went along with u, as a load turned the row round, -|f| for |f|
 //   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|; however slow it is then, its
 //                         force was that of its flow back
 //   one that its load     lacks the speed Δ that it should go back with, in all that follows: that
@@ -66,17 +67,19 @@ struct PartRow {
     double least = 0;      ///< travel that nobody misses [m | rad]
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
-    double broke = 0;      ///< how long its joint held in the part that broke it [s]
-    double astray = 0;     ///< of its work then: it had a share of its strength all along [J]
-    double freed = 0;      ///< that its springs held as it broke [J]
-    bool alone = false;    ///< of a joint of one axis: `astray` is all of its work then
-    bool snapped = false;  ///< it broke before it flowed
-    double run = 0;        ///< its way then, until it broke [m | rad]
-    double misfit = 0;     ///< of its work, that its strength on the way would not have taken [J]
-    bool elastic = false;  ///< below its strength it is a spring
-    double spring = 0;     ///< what that holds at yield [J]
-    bool swings = false;   ///< as a spring of one axis, not at its strength all along
-    bool yielded = false;  ///< that, or before
+    double unfit = 0;     ///< that rigid rows of its joint took of velocities given from elsewhere,
+                          ///< which they do not allow, told once [J]
+    double broke = 0;     ///< how long its joint held in the part that broke it [s]
+    double astray = 0;    ///< of its work then: it had a share of its strength all along [J]
+    double freed = 0;     ///< that its springs held as it broke [J]
+    bool alone = false;   ///< of a joint of one axis: `astray` is all of its work then
+    bool snapped = false; ///< it broke before it flowed
+    double run = 0;       ///< its way then, until it broke [m | rad]
+    double misfit = 0;    ///< of its work, that its strength on the way would not have taken [J]
+    bool elastic = false; ///< below its strength it is a spring
+    double spring = 0;    ///< what that holds at yield [J]
+    bool swings = false;  ///< as a spring of one axis, not at its strength all along
+    bool yielded = false; ///< that, or before
 
     /// Of what it stopped in a part of h, with its mean force [J]; nothing where that goes on.
     [[nodiscard]] double stopped(double h) const noexcept {
@@ -206,8 +209,10 @@ struct PartBefore {
     if (row.elastic) {
         result = misplaced_by_spring(row, h, before, changed, below);
     } else if (moved && (row.start * row.end <= 0 || std::abs(row.end) <= row.noise)) {
-        result.travel = start * h * (1 - share) / 2;
-        double stop = share * h;
+        const double pushed = row.pushes() ? std::min(share, row.own_share) : 0;
+        const double braked = share - 2 * pushed;
+        result.travel = start * h * (1 - braked) / 2;
+        double stop = braked * h;
         constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
         const bool turned = row.start * row.end < 0;
         if (turned && (std::abs(row.end) > row.noise || (row.pushes() && share >= whole))) {

@@ -126,8 +126,8 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_, force_, start_,          end_,         before_blow_,   swing_,
-                 blow_, borne_, rigid_residual_, unseen_turn_, rigid_unsolved_};
+        kept_ = {pose_,  force_, start_,          end_,         before_blow_,
+                 swing_, blow_,  rigid_residual_, unseen_turn_, rigid_unsolved_};
         keep_joint();
     }
     /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
@@ -139,7 +139,6 @@ class AnyLink {
         before_blow_ = kept_->before_blow;
         swing_ = kept_->swing;
         blow_ = kept_->blow;
-        borne_ = kept_->borne;
         rigid_residual_ = kept_->rigid_residual;
         unseen_turn_ = kept_->unseen_turn;
         rigid_unsolved_ = kept_->rigid_unsolved;
@@ -151,7 +150,7 @@ class AnyLink {
     void pause() noexcept {
         pause_joint();
         blow_.forget();
-        rigid_residual_ = unseen_turn_ = borne_ = 0;
+        rigid_residual_ = unseen_turn_ = 0;
         rigid_unsolved_ = false;
     }
 
@@ -249,10 +248,14 @@ class AnyLink {
     /// Largest violation of the rigid rows in the last step [m/s | rad/s].
     [[nodiscard]] S rigid_residual() const noexcept { return rigid_residual_; }
     /// The most of a blow that the step before the last bore, and should not have; 0: none [J].
-    [[nodiscard]] S borne_blow() const noexcept { return borne_; }
+    [[nodiscard]] S borne_blow() const noexcept { return blow_.most(); }
     /// What that is of the work so far, where it is more than the joint's parameters allow, else 0
     /// [-].
     [[nodiscard]] S borne_error() const noexcept;
+    /// What the rigid rows took in the last part of a frame of velocities that were given to the
+    /// bodies from elsewhere, and that they do not allow: of each |Δf Δu| h/2, by what force and
+    /// velocity changed [J].
+    [[nodiscard]] S unfit() const noexcept { return unfit_; }
     /// LinkPose's of the last step [rad].
     [[nodiscard]] S unseen_turn() const noexcept { return unseen_turn_; }
     /// That of the joint, and unreliable where a rigid row was left unsolved or a turn unseen.
@@ -287,7 +290,6 @@ class AnyLink {
     void forget_velocities() noexcept {
         before_blow_.setConstant(std::numeric_limits<S>::quiet_NaN());
         blow_.forget();
-        borne_ = 0;
     }
     /// How far each axis is from rest: of a translation from q_p, of a rotation from R_p [m | rad].
     [[nodiscard]] Vector6<S> strain() const noexcept;
@@ -328,9 +330,13 @@ class AnyLink {
     /// The velocities with which a step of `dt` [s] starts would strain a row noticeably, and
     /// neither the joint nor its last step gave them to its bodies.
     [[nodiscard]] bool is_kicked(S dt) const noexcept;
-    /// Looks whether the step before this one, of `dt` [s], bore a blow.
-    void look_for_blow(S dt) noexcept;
+    /// `unfit` of a part of `dt` [s] that changed the rows' forces by these.
+    [[nodiscard]] S struck(const BodyState<S>& a, const Vector6<S>& forces, S dt) const noexcept;
     void certify_rigid_rows(const BodyState<S>& a, const Vector6<S>& velocity) noexcept;
+    /// Whether a row is off by no more than its joint's parameters allow.
+    [[nodiscard]] bool within(S residual, S speed) const noexcept {
+        return residual <= allowed_.absolute_residual + allowed_.relative_residual * speed;
+    }
 
     /// What `keep` keeps.
     struct Kept {
@@ -338,7 +344,7 @@ class AnyLink {
         Vector6<S> force, start, end, before_blow;
         SwingState<S> swing;
         BorneBlow<S> blow;
-        S borne, rigid_residual, unseen_turn;
+        S rigid_residual, unseen_turn;
         bool rigid_unsolved;
     };
 
@@ -346,12 +352,12 @@ class AnyLink {
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
     Vector6<S> turned_ = Vector6<S>::Zero();      ///< u' of the rows as they are now
     S length_ = 0;                                ///< of the last step [s]
+    S unfit_ = 0;                                 ///< [J]
     Vector6<S> before_blow_ = Vector6<S>::Zero(); ///< u' of the last step in which time passed
     RowTurning<S> turning_;                       ///< between prepare and commit
     bool ahead_ = false;                          ///< they were half a step ahead in it
     bool sound_ = true;                           ///< the bodies of the last prepare were somewhere
     BorneBlow<S> blow_;
-    S borne_ = 0; ///< [J]
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
     bool rigid_unsolved_ = false;

@@ -88,6 +88,9 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     const Vector6<S> velocity = pose_.twist(a, b);
     end_ = turning_.after(velocity);
     constexpr S instant = S(1e-8); // a blow is no longer
+    // a force that was there before, such as a weight, is none of what was given
+    const bool told = length_ > instant;
+    unfit_ = ahead_ ? struck(a, told ? Vector6<S>(forces - force_) : forces, dt) : S(0);
     if (dt > instant) before_blow_ = end_;
     const bool sound = sound_ && is_finite(velocity) && is_finite(forces);
     certify_rigid_rows(a, velocity);
@@ -105,10 +108,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
     force_ = forces;
     commit_joint(end_, a, b, dt);
     if (all_rigid_) {
-        if (!ahead_) {
-            look_for_blow(dt);
-        } else if (blow_.may_have()) {
+        if (ahead_ || broken()) { // a frame strikes what closes in it
             blow_.forget();
+        } else {
+            blow_.see(force_, last().plastic_work > 0, dt, plastic_,
+                      [this](std::size_t i) { return strength(JointAxis(i)); });
         }
         S fastest = 0;
         for (std::size_t i = 0; i < plastic_.size(); ++i) {
@@ -123,22 +127,11 @@ const Step<S>& AnyLink<S>::commit_rows(const BodyState<S>& a, const BodyState<S>
 }
 
 template <std::floating_point S>
-void AnyLink<S>::look_for_blow(S dt) noexcept {
-    if (broken()) {
-        blow_.forget();
-        borne_ = 0;
-        return;
-    }
-    borne_ = blow_.see(force_, last().plastic_work > 0, dt, plastic_,
-                       [this](std::size_t i) { return strength(JointAxis(i)); });
-}
-
-template <std::floating_point S>
 S AnyLink<S>::borne_error() const noexcept {
-    if (!(borne_ > 0)) return 0;
+    if (!(borne_blow() > 0)) return 0;
     S least = std::numeric_limits<S>::infinity();
     for (const JointAxis axis : axes()) least = std::min(least, strength(axis));
-    const S error = borne_ / (totals().plastic_work + least * least_travel());
+    const S error = borne_blow() / (totals().plastic_work + least * least_travel());
     return error > allowed_.step_error ? error : S(0);
 }
 
@@ -155,6 +148,21 @@ bool AnyLink<S>::is_kicked(S dt) const noexcept {
         }
     }
     return false;
+}
+
+template <std::floating_point S>
+S AnyLink<S>::struck(const BodyState<S>& a, const Vector6<S>& forces, S dt) const noexcept {
+    S sum = 0;
+    for (std::size_t i = 0; i < plastic_.size(); ++i) {
+        const auto k = Eigen::Index(i);
+        // what turning leaves is neither of what was given nor of the part before
+        const S given = std::min(std::abs(start_[k]), std::abs(start_[k] - before_blow_[k]));
+        const S left = i < 3 ? turning_speed() : S(0);
+        if (plastic_[i] || !(given > allowed_.absolute_residual + left)) continue;
+        if (within(given - left, i < 3 ? pose_.speed_of_a(a) : norm(a.spin))) continue;
+        sum += std::abs(forces[k]) * given * dt / 2;
+    }
+    return sum;
 }
 
 template <std::floating_point S>
@@ -190,11 +198,7 @@ inline void AnyLink<S>::certify_rigid_rows(const BodyState<S>& a,
         worst[i / 3] = worse(worst[i / 3], residual);
     }
     rigid_residual_ = worse(worst[0], worst[1]);
-    const Allowed& allow = allowed_;
-    const auto within = [&](S residual, S speed) {
-        return residual <= allow.absolute_residual + allow.relative_residual * speed;
-    };
-    rigid_unsolved_ = !(rigid_residual_ <= allow.absolute_residual) &&
+    rigid_unsolved_ = !(rigid_residual_ <= allowed_.absolute_residual) &&
                       !(within(worst[0], pose_.speed_of_a(a)) && within(worst[1], norm(a.spin)));
 }
 

@@ -41,13 +41,12 @@ class BorneBlow {
         }
     }
     /// After a step of `dt` [s] with these forces of the rows, of which `strength(axis)` could have
-    /// been borne and those of an axis that is not plastic do not count; returns the most that it
-    /// may be that the step before bore [J].
+    /// been borne and those of an axis that is not plastic do not count.
     template <class Strength>
-    [[nodiscard]] S see(const Vector6<S>& force, bool flowed, S dt,
-                        const std::array<bool, 6>& plastic, const Strength& strength) noexcept {
+    void see(const Vector6<S>& force, bool flowed, S dt, const std::array<bool, 6>& plastic,
+             const Strength& strength) noexcept {
         constexpr S share = S(0.1); // of the strength
-        S most = 0;
+        most_ = 0;
         bool rose = false;
         for (std::size_t i = 0; i < plastic.size(); ++i) {
             if (!plastic[i]) continue;
@@ -55,7 +54,7 @@ class BorneBlow {
             const S noticed = share * strength(i);
             const S before = pulse(borne_[k], before_[k], force[k]);
             if (may_have_ && before > noticed && mass_[k] > 0) {
-                most = std::max(most, before * before * dt_ * dt_ / (2 * mass_[k]));
+                most_ = std::max(most_, before * before * dt_ * dt_ / (2 * mass_[k]));
             }
             rose = rose || pulse(force[k], borne_[k], S(0)) > noticed;
         }
@@ -63,8 +62,9 @@ class BorneBlow {
         before_ = borne_;
         borne_ = force;
         dt_ = dt;
-        return most;
     }
+    /// The most that it may be that the step before that one bore; 0: nothing [J].
+    [[nodiscard]] S most() const noexcept { return most_; }
     /// What comes next has no step before it.
     void forget() noexcept { *this = {}; }
 
@@ -78,6 +78,7 @@ class BorneBlow {
     Vector6<S> before_ = Vector6<S>::Zero(), borne_ = Vector6<S>::Zero(); ///< f₁, f₂
     Vector6<S> mass_ = Vector6<S>::Zero();                                ///< M
     S dt_ = 0;                                                            ///< of the last step [s]
+    S most_ = 0;                                                          ///< E [J]
     bool may_have_ = false;
 };
 

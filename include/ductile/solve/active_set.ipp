@@ -18,7 +18,7 @@ namespace detail {
 inline constexpr double exactness = 1e-12;  ///< of the largest velocity: a row is solved
 inline constexpr double sufficient = 1e-7;  ///< the same where round-off allows no more
 inline constexpr double acceptance = 1e-11; ///< of the largest velocity: a row is on the right side
-inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip has settled
+inline constexpr double settled = 1e-7;     ///< of the fastest row: a slip has settled
 
 /// What rows give adds up along a chain, as round-off does not [-].
 [[nodiscard]] DUCTILE_INLINE double adds_up(const Island& island) noexcept {
@@ -44,7 +44,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
         // before a guess takes the place of what was solved
         const double moved = slips_.read(system);
         const int wrong = change_over() + (solved ? 0 : 1);
-        if (wrong == 0 && moved <= detail::settled * system.scale()) return true;
+        if (wrong == 0 && moved <= detail::settled * system.fastest()) return true;
         same = wrong == 0;
         if (wrong == 0) { // contacts alone have to settle
             slips_.follow_ahead(system);

@@ -39,7 +39,7 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         const IslandBlock& block = island.blocks[k];
         for (int i = 0; i < block.count; ++i) block_of_[std::size_t(block.first + i)] = int(k);
     }
-    scale_ = 0;
+    scale_ = fastest_ = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
@@ -55,7 +55,9 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         row.metric = row.own + row.compliance;
         const double size =
             std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
-        if (row.own != 0 && !(size <= scale_) && !std::isnan(scale_)) scale_ = size;
+        if (row.own == 0) continue;
+        if (!(size <= scale_) && !std::isnan(scale_)) scale_ = size;
+        fastest_ = std::max(fastest_, size * row.own / row.metric);
     }
     for (const IslandBlock& block : island.blocks) {
         if (block.kind == BlockKind::contact) make_isotropic(block);

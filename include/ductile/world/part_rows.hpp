@@ -72,6 +72,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     const bool spring = link.axes().size() == 1 && !link.all_rigid();
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
     double misfit = acts ? link.last().misfit : 0, freed = link.last().lost;
+    double unfit = acts ? link.unfit() : 0;
     double astray = 0; // by its break
     const std::size_t first = rows.size();
     const bool snaps = acts && link.snaps();
@@ -104,6 +105,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.start = link.start_velocities()[i];
         row.end = link.end_velocities()[i];
         row.misfit = std::exchange(misfit, 0);
+        row.unfit = std::exchange(unfit, 0);
         row.share = share;
         row.swings = spring && swings(link.totals().flowing, share);
         row.yielded = link.totals().plastic_work > 0;

@@ -626,3 +626,34 @@ TEST_CASE("a strong axis of a surface that flows may turn with its bodies", "[fr
     row.own_share = 0.5; // it flows itself
     CHECK(row.moves());
 }
+
+TEST_CASE("A row that a new load turns round within a part resisted until then", "[frame]") {
+    // 1 kg on a row of 100 N and a spring of 100 N/m, by 200 N there, then by 350 N back, beside
+    // what slides all the time
+    constexpr double strength = 100, stiff = 100, swing = 10, there = 200, back = 350;
+    constexpr double time = 1.0 / 30;
+    const auto middle = [](double force) { return force / stiff; }; // of a swing
+    const double first = middle(there - strength), braked = middle(-back - strength),
+                 last = middle(-back + strength);
+    const double at = first * (1 - std::cos(swing * time));
+    const double speed = first * swing * std::sin(swing * time);
+    const double stops = std::atan2(speed / swing, at - braked) / swing;
+    const double farthest = braked + std::hypot(at - braked, speed / swing);
+    const double left = swing * (time - stops);
+    const double end = last + (farthest - last) * std::cos(left);
+    for (const double length : {1.0 / 240, 1.0 / 120, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(length);
+        Engine engine;
+        engine.masses = {{.mass = 1, .force = there, .spring = stiff},
+                         {.mass = 100, .velocity = 3}};
+        engine.rows = {{ground, 0, strength}, {ground, 1, 5 * strength}};
+        FrameControl control;
+        run(engine, control, time - length / 2, length);
+        engine.masses[0].force = -back;
+        run(engine, control, time - length / 2, length);
+        CHECK(engine.rows[0].work == Approx(strength * (2 * farthest - end)).epsilon(0.01));
+        CHECK(engine.masses[0].velocity ==
+              Approx(-swing * (farthest - last) * std::sin(left)).epsilon(0.01));
+        CHECK(control.run().believed());
+    }
+}

@@ -23,8 +23,8 @@ struct Held {
 
     Held() { link.start(rotor, ground); }
     /// Most of what the joint bore that it should have yielded to [J].
-    double bear(double share) {
-        link.prepare(rotor, ground, dt, 0);
+    double bear(double share, bool ahead = false) {
+        link.prepare(rotor, ground, dt, 0, ahead);
         Vector6<double> forces = Vector6<double>::Zero();
         forces[5] = share * moment;
         link.commit_rows(rotor, ground, forces, dt);
@@ -73,4 +73,14 @@ TEST_CASE("a step that is put back has borne nothing", "[joint][link]") {
     held.link.put_back();
     CHECK(held.bear(0) == 0);
     CHECK(held.bear(0) == 0);
+}
+
+TEST_CASE("a joint that goes over to frames has borne nothing", "[joint][link]") {
+    Held held;
+    held.bear(0);
+    held.bear(0.9);
+    held.bear(0);
+    CHECK(held.link.borne_error() > 0);
+    CHECK(held.bear(0, true) == 0);
+    CHECK_FALSE(held.link.borne_error() > 0);
 }
