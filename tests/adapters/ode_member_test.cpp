@@ -1042,3 +1042,16 @@ TEST_CASE("bodies that end leave nothing to those that lie where they lay", "[od
     }
     CHECK((seen[0] == seen[1]));
 }
+
+TEST_CASE("a clamped member may stand in the ground that it has contacts with", "[ode][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        BallOnPost scene(heavy_post(), 100, 2, tolerance);
+        dCreatePlane(scene.rig.space, 0, 0, 1, dReal(1e-6));
+        if (tolerance == 0)
+            scene.world.on_contacts({.space = scene.rig.space, .group = scene.rig.contacts},
+                                    [&] { scene.rig.collide(scene.world); });
+        scene.go(0.7, tolerance > 0 ? 1.0 / 60 : 1e-3);
+        CHECK(scene.post->whole());
+        CHECK(scene.post->absorbed_energy() > 50);
+    }
+}

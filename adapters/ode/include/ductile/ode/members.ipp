@@ -157,7 +157,9 @@ DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {
     std::vector<dBodyID> found;
     for (const Course& course : members_) {
         for (const Touch& touch : course.touches) {
-            found.push_back(can_move(touch.bodies.a) ? touch.bodies.a : touch.bodies.b);
+            for (dBodyID body : {touch.bodies.a, touch.bodies.b}) {
+                if (can_move(body)) found.push_back(body);
+            }
         }
     }
     return found;
