@@ -276,7 +276,9 @@ DUCTILE_INLINE void ClosingContactsFinder::forget(dBodyID body) {
     const auto has = [body](const Pair& pair) { return pair.first == body || pair.second == body; };
     std::erase_if(before_, has);
     for (auto* const pushes : {&pushing_, &began_, &kept_pushing_}) {
-        std::erase_if(*pushes, [&](const Push& push) { return has(push.first.first); });
+        for (Push& push : *pushes) { // what pushed it is lost
+            if (has(push.first.first)) push.first.first = {nullptr, nullptr};
+        }
     }
 }
 
