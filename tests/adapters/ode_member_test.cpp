@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "ductile/material/named.hpp"
+#include "ductile/ode/structure_in_time.hpp"
+#include "ductile/section/rectangle.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -1053,5 +1056,48 @@ TEST_CASE("a clamped member may stand in the ground that it has contacts with", 
         scene.go(0.7, tolerance > 0 ? 1.0 / 60 : 1e-3);
         CHECK(scene.post->whole());
         CHECK(scene.post->absorbed_energy() > 50);
+    }
+}
+
+TEST_CASE("a driven body that passes through what does not move of a member is said to do so",
+          "[ode][member]") {
+    const Rectangle<double> section({.width = 0.1, .height = 0.1});
+    StructureModel model({.elastic = false});
+    const NodeId foot = model.node({0, 0, 0}), top = model.node({0, 0, 3});
+    model.member("column", foot, top, section, Material<double>(s355<double>()));
+    model.support(foot);
+    for (const bool structure : {false, true}) {
+        for (const double tolerance : {0.0, 0.01}) {
+            for (const double away : {0.0, 0.5}) { // through it, and past it
+                Rig rig;
+                std::vector<std::string> said;
+                World world(rig.id,
+                            {.tolerance = tolerance,
+                             .warn = [&said](const std::string& line) { said.push_back(line); }});
+                rig.meet(world);
+                std::unique_ptr<ode::Member> post;
+                std::unique_ptr<ode::StructureInTime> column;
+                if (structure) {
+                    column = std::make_unique<ode::StructureInTime>(world, rig.space, model);
+                } else {
+                    const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
+                    rig.boxes(body, heavy_post(), 0.05);
+                    post = std::make_unique<ode::Member>(body, heavy_post(), here);
+                    world.add(*post);
+                }
+                const dBodyID truck = rig.body(0, {0, 0, 0}, {away, -1, 1});
+                rig.box(truck, {0.2, 0.2, 0.2});
+                set_velocity(truck, {0, 2, 0});
+                world.add(truck);
+                for (int i = 0; i < 60; ++i) world.step(1.0 / 60);
+                CAPTURE(structure, tolerance, away);
+                const bool through = away == 0;
+                CHECK((world.watch().unreliable_steps(0) > 0) == through);
+                REQUIRE(said.size() == (through ? 1 : 0));
+                if (through)
+                    CHECK(said[0].find("a driven body passes through it") != std::string::npos);
+                if (tolerance > 0) CHECK(world.run().believed() == !through);
+            }
+        }
     }
 }

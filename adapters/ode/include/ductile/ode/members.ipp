@@ -111,7 +111,10 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     list_contacts(contacts);
     for (const Course& course : members_) require_named(course);
     held_by_.clear();
-    for (const Course& course : members_) course.of->before_solve(held_by_);
+    for (const Course& course : members_) {
+        course.of->before_solve(held_by_);
+        see_driven(course);
+    }
     // of a step that was not looked at joints kept what is another's now; its contacts may be gone
     for (dJointID joint : held_by_) {
         const bool kept =
@@ -151,6 +154,14 @@ DUCTILE_INLINE void Members::require_named(const Course& course) {
     if (contacts == course.touches.size()) return;
     throw std::logic_error(
         "World.step: a contact of a member was not named: World::add_contact each, once");
+}
+
+DUCTILE_INLINE void Members::see_driven(const Course& course) {
+    constexpr double noticed = 1e-6; // [m/s]
+    for (const Touch& touch : course.touches) {
+        const bool stand = !can_move(touch.bodies.a) && !can_move(touch.bodies.b);
+        if (stand && touch.closing > noticed) course.of->driven_through();
+    }
 }
 
 DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {
