@@ -1101,3 +1101,19 @@ TEST_CASE("a driven body that passes through what does not move of a member is s
         }
     }
 }
+
+TEST_CASE("halves of a member that lie against each other open further", "[ode][member]") {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-4, 1e-4, 2e-4});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 500}),
+                                         TravelLimit<double>({.limit = 0.1})));
+    double fine = 0;
+    for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        BallOnPost scene(Member(p), 100, 5, 0.01, 0.05, 0.00713, 0.5, false);
+        scene.go(0.5, frame);
+        if (fine == 0) fine = scene.post->absorbed_energy();
+        CHECK(fine > 150);
+        CHECK(scene.post->absorbed_energy() == Approx(fine).epsilon(1e-3));
+    }
+}

@@ -224,12 +224,16 @@ DUCTILE_INLINE void Members::open_found(bool ahead) {
             attached.push_back({dJointGetBody(touch.joint, 0), dJointGetBody(touch.joint, 1)});
         }
         course.of->open(course.found, ahead);
-        for (std::size_t i = 0; i < attached.size(); ++i) {
-            const Touch& touch = course.touches[i];
-            const bool first = touch.of_a != touch.bodies.reversed;
-            (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
-            dJointAttach(touch.joint, attached[i].a, attached[i].b);
-            wake(touch.joint);
+        // one between two of its pieces comes twice, one after the other
+        for (std::size_t i = 0, next = 0; i < attached.size(); i = next) {
+            const dJointID joint = course.touches[i].joint;
+            for (; next < attached.size() && course.touches[next].joint == joint; ++next) {
+                const Touch& touch = course.touches[next];
+                const bool first = touch.of_a != touch.bodies.reversed;
+                (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
+            }
+            dJointAttach(joint, attached[i].a, attached[i].b);
+            wake(joint);
         }
         for (const int section : course.found) {
             happened_.push_back({course.of, section, EventKind::split});
