@@ -254,6 +254,9 @@ inline void set_velocity(btRigidBody* body, const Vector3<double>& v) {
 inline void push_behind(bullet::Member& member, double force) {
     member.pieces().front()->applyCentralForce({0, btScalar(force), 0});
 }
+inline void turn(bullet::Member& member, double spin) {
+    member.pieces().front()->setAngularVelocity({btScalar(spin), 0, 0});
+}
 inline void change_mass(bullet::Member& member, double factor) {
     btRigidBody& body = *member.pieces().front();
     body.setMassProps(body.getMass() * btScalar(factor), body.getLocalInertia());

@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -591,6 +592,25 @@ TEST_CASE("a member that was saved goes on bit for bit, open, half-way and whole
         CHECK(differs(runs[1]) == int(runs[0].size()));
         CHECK(differs(runs[2]) == int(runs[0].size()));
     }
+}
+
+TEST_CASE("a member that was kept where it moved at no finite speed is not put back", "[member]") {
+    LaidOn scene(strip(10, false), 60, 0.3);
+    const Snapshot before(*scene.bar);
+    for (const double spin :
+         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        turn(*scene.bar, spin);
+        const Snapshot nowhere(*scene.bar);
+        before.put_back(*scene.bar);
+        const double there = across(*scene.bar, 3);
+        CHECK(message_of([&] { nowhere.put_back(*scene.bar); }) ==
+              "MemberSnapshot.bodies[0].spin = " + std::string(std::isnan(spin) ? "nan" : "inf") +
+                  " rad/s: must be finite");
+        CHECK(across(*scene.bar, 3) == there);
+        scene.go(0.1, 1.0 / 60);
+    }
+    scene.go(0.5, 1.0 / 60);
+    CHECK(scene.bar->absorbed_energy() > 100);
 }
 
 TEST_CASE("what follows a member that was put back is what followed it first", "[member]") {

@@ -238,6 +238,9 @@ inline dBodyID ball_of(const Rig& rig, double mass, const V3& at) {
 inline void push_behind(ode::Member& member, double force) {
     dBodyAddForce(member.body_of(0), 0, dReal(force), 0);
 }
+inline void turn(ode::Member& member, double spin) {
+    dBodySetAngularVel(member.body_of(0), dReal(spin), 0, 0);
+}
 inline void change_mass(ode::Member& member, double factor) {
     dMass mass;
     dBodyGetMass(member.body_of(0), &mass);

@@ -6,10 +6,16 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "ductile/material/named.hpp"
+#include "ductile/ode/structure_in_time.hpp"
+#include "ductile/section/rectangle.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -976,5 +982,138 @@ TEST_CASE("a member may be removed when it splits, and its world goes on", "[ode
         CHECK(removed);
         CHECK(scene.post->whole());
         CHECK(dBodyGetLinearVel(scene.ball)[1] < 0.1); // the rest of it stands
+    }
+}
+
+namespace {
+
+/// Where ODE's bodies lie while this lives: what ended leaves its place to what comes next, or to
+/// none.
+class Places {
+  public:
+    explicit Places(bool again) {
+        again_ = again;
+        dSetAllocHandler([](std::size_t size) {
+            auto& free = free_[size];
+            if (!again_ || free.empty()) return std::malloc(size);
+            void* const place = free.back();
+            free.pop_back();
+            return place;
+        });
+        dSetReallocHandler([](void* from, std::size_t size, std::size_t more) {
+            void* const to = std::malloc(more);
+            std::memcpy(to, from, std::min(size, more));
+            free_[size].push_back(from);
+            return to;
+        });
+        dSetFreeHandler([](void* place, std::size_t size) {
+            if (place != nullptr) free_[size].push_back(place);
+        });
+    }
+    ~Places() {
+        dSetAllocHandler(nullptr);
+        dSetReallocHandler(nullptr);
+        dSetFreeHandler(nullptr);
+        for (const auto& [size, places] : free_) {
+            for (void* place : places) std::free(place);
+        }
+        free_.clear();
+    }
+    Places(const Places&) = delete;
+    Places& operator=(const Places&) = delete;
+
+  private:
+    static inline bool again_;
+    static inline std::map<std::size_t, std::vector<void*>> free_;
+};
+
+} // namespace
+
+TEST_CASE("bodies that end leave nothing to those that lie where they lay", "[ode][member]") {
+    std::vector<double> seen[2];
+    for (const bool again : {false, true}) {
+        const Places places(again);
+        LaidOn scene(strip(10, false), 60, 0.3);
+        for (int i = 0; i < 30; ++i) {
+            scene.world.step(1.0 / 30);
+            seen[again].push_back(scene.bar->absorbed_energy());
+            for (int k = 0; k < 10; ++k) {
+                for (const double x : scene.bar->pose(k).origin) seen[again].push_back(x);
+            }
+        }
+        CHECK(scene.bar->absorbed_energy() > 100);
+    }
+    CHECK((seen[0] == seen[1]));
+}
+
+TEST_CASE("a clamped member may stand in the ground that it has contacts with", "[ode][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        BallOnPost scene(heavy_post(), 100, 2, tolerance);
+        dCreatePlane(scene.rig.space, 0, 0, 1, dReal(1e-6));
+        if (tolerance == 0)
+            scene.world.on_contacts({.space = scene.rig.space, .group = scene.rig.contacts},
+                                    [&] { scene.rig.collide(scene.world); });
+        scene.go(0.7, tolerance > 0 ? 1.0 / 60 : 1e-3);
+        CHECK(scene.post->whole());
+        CHECK(scene.post->absorbed_energy() > 50);
+    }
+}
+
+TEST_CASE("a driven body that passes through what does not move of a member is said to do so",
+          "[ode][member]") {
+    const Rectangle<double> section({.width = 0.1, .height = 0.1});
+    StructureModel model({.elastic = false});
+    const NodeId foot = model.node({0, 0, 0}), top = model.node({0, 0, 3});
+    model.member("column", foot, top, section, Material<double>(s355<double>()));
+    model.support(foot);
+    for (const bool structure : {false, true}) {
+        for (const double tolerance : {0.0, 0.01}) {
+            for (const double away : {0.0, 0.5}) { // through it, and past it
+                Rig rig;
+                std::vector<std::string> said;
+                World world(rig.id,
+                            {.tolerance = tolerance,
+                             .warn = [&said](const std::string& line) { said.push_back(line); }});
+                rig.meet(world);
+                std::unique_ptr<ode::Member> post;
+                std::unique_ptr<ode::StructureInTime> column;
+                if (structure) {
+                    column = std::make_unique<ode::StructureInTime>(world, rig.space, model);
+                } else {
+                    const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
+                    rig.boxes(body, heavy_post(), 0.05);
+                    post = std::make_unique<ode::Member>(body, heavy_post(), here);
+                    world.add(*post);
+                }
+                const dBodyID truck = rig.body(0, {0, 0, 0}, {away, -1, 1});
+                rig.box(truck, {0.2, 0.2, 0.2});
+                set_velocity(truck, {0, 2, 0});
+                world.add(truck);
+                for (int i = 0; i < 60; ++i) world.step(1.0 / 60);
+                CAPTURE(structure, tolerance, away);
+                const bool through = away == 0;
+                CHECK((world.watch().unreliable_steps(0) > 0) == through);
+                REQUIRE(said.size() == (through ? 1 : 0));
+                if (through)
+                    CHECK(said[0].find("a driven body passes through it") != std::string::npos);
+                if (tolerance > 0) CHECK(world.run().believed() == !through);
+            }
+        }
+    }
+}
+
+TEST_CASE("halves of a member that lie against each other open further", "[ode][member]") {
+    MemberParameters p;
+    p.segments = lumped_segments(2, 24, 10, {1e-4, 1e-4, 2e-4});
+    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 500}),
+                                         TravelLimit<double>({.limit = 0.1})));
+    double fine = 0;
+    for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        BallOnPost scene(Member(p), 100, 5, 0.01, 0.05, 0.00713, 0.5, false);
+        scene.go(0.5, frame);
+        if (fine == 0) fine = scene.post->absorbed_energy();
+        CHECK(fine > 150);
+        CHECK(scene.post->absorbed_energy() == Approx(fine).epsilon(1e-3));
     }
 }

@@ -158,12 +158,13 @@ class DividedMember {
         }
         return state;
     }
-    /// All of it but its bodies, as an engine's snapshot keeps it. Plain value.
+    /// As an engine's snapshot keeps it. Plain value.
     struct Saved {
         MemberState state;
         MemberVibration vibration;
         RedundantForces redundant;
         std::vector<HingeState> joints; ///< of open sections, from the start
+        std::vector<PlacedBody> bodies; ///< by piece
     };
     /// Largest share of what acted on it that was left over in the last step that was looked at
     /// closely (internal_forces.hpp): impulses that it does not know of.
@@ -223,8 +224,8 @@ class DividedMember {
         }
         return all;
     }
-    [[nodiscard]] Saved save() const {
-        Saved saved{state(), course_.vibration(), course_.redundant(), {}};
+    [[nodiscard]] Saved save(std::vector<PlacedBody> bodies) const {
+        Saved saved{state(), course_.vibration(), course_.redundant(), {}, std::move(bodies)};
         for (std::size_t section = 0; section < saved.state.size(); ++section) {
             for (const OpenSection& open : joints_) {
                 if (open.section == int(section)) saved.joints.push_back(open.hinge->state());
@@ -233,12 +234,14 @@ class DividedMember {
         return saved;
     }
     /// The adapter then makes its bodies, and calls put_joints_back.
-    /// @throws std::invalid_argument where that was of a member of other sections.
+    /// @throws std::invalid_argument where that was of a member of other sections, or a body was
+    /// nowhere or moved at no finite velocity.
     void put_back(const Saved& saved) {
         if (saved.state.size() != std::size_t(description().sections())) {
             check::fail("MemberSnapshot.member.sections", double(description().sections()), "",
                         std::to_string(saved.state.size()) + ", as of the member that was saved");
         }
+        require_finite("MemberSnapshot", saved.bodies);
         joints_.clear(); // all anew: what follows must not hang on what there is now
         course_.restore(saved.state);
         course_.restore(saved.vibration);

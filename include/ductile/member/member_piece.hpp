@@ -20,12 +20,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ductile/joint/link_types.hpp"
 #include "ductile/member/member_state.hpp"
+#include "ductile/vocabulary/check.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
 namespace ductile {
@@ -69,6 +72,29 @@ struct BodyMotion {
         return sum(velocity, cross(spin, r));
     }
 };
+
+/// A body, or several that are one, somewhere. Plain value.
+struct PlacedBody {
+    JointFrame<double> pose;
+    BodyMotion motion;
+};
+
+/// Of a snapshot, which calls them `bodies`.
+/// @throws std::invalid_argument where one is nowhere or moves at no finite velocity.
+inline void require_finite(const std::string& snapshot, std::span<const PlacedBody> bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        const std::string field = snapshot + ".bodies[" + std::to_string(i) + "].";
+        const auto require = [&field](const char* what, const Vector3<double>& v,
+                                      const char* unit) {
+            for (const double x : v) check::finite(field + what, x, unit);
+        };
+        const auto& [pose, motion] = bodies[i];
+        require("place", pose.origin, "m");
+        for (int k = 0; k < 3; ++k) require("axes", column(pose.axes, k), "");
+        require("velocity", motion.velocity, "m/s");
+        require("spin", motion.spin, "rad/s");
+    }
+}
 
 /// Plain value.
 struct MemberPiece {

@@ -22,12 +22,6 @@
 
 namespace ductile {
 
-/// A body of a plan, or several, somewhere. Plain value.
-struct PlacedBody {
-    JointFrame<double> pose;
-    BodyMotion motion;
-};
-
 /// The axes nearest to these, which round-off has turned out of square.
 [[nodiscard]] inline Matrix3<double> squared_up(const Matrix3<double>& axes) {
     const auto unit = [](const Vector3<double>& v) { return scaled(1 / norm(v), v); };

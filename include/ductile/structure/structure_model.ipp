@@ -3,6 +3,9 @@
 // Bodies of structure_model.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_model.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -57,6 +60,14 @@ DUCTILE_INLINE void StructureModel::add(std::string name, NodeId start, NodeId e
     }
     check::size_of_beam("StructureModel.member(" + name + ")", length,
                         p.mass_per_length.value_or(section.density * section.area));
+    // wider than any beam and than it is long, whatever it is told to weigh
+    constexpr double widest = 10;
+    const double across =
+        std::sqrt(std::max(section.second_moment_x, section.second_moment_y) / section.area);
+    if (across > std::max(widest, length)) {
+        check::fail(field + "section.radius_of_gyration", across, "m",
+                    "<= 10 m, or its length: a section's dimensions are metres");
+    }
     check::non_negative(field + "carried_mass", p.carried_mass, "kg");
     check::positive_or_infinite(field + "largest_bending", p.largest_bending, "rad");
     check::positive_or_infinite(field + "largest_twist", p.largest_twist, "rad");

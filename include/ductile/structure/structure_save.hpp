@@ -4,13 +4,11 @@
 // and where its bodies were. An engine's snapshot adds what holds on to it.
 #pragma once
 
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
-#include "ductile/vocabulary/finite.hpp"
 
 namespace ductile {
 
@@ -39,20 +37,10 @@ class StructureSave {
             detail::refuse("StructureSnapshot.structure", plan.joints[j].name,
                            "removed or there as when it was saved");
         }
-        for (std::size_t c = 0; c < bodies_.size(); ++c) {
-            const std::string field = "StructureSnapshot.bodies[" + std::to_string(c) + "].";
-            require(field + "place", bodies_[c].pose.origin, "m");
-            for (int i = 0; i < 3; ++i)
-                require(field + "axes", column(bodies_[c].pose.axes, i), "");
-            require(field + "velocity", bodies_[c].motion.velocity, "m/s");
-            require(field + "spin", bodies_[c].motion.spin, "rad/s");
-        }
+        require_finite("StructureSnapshot", bodies_);
     }
 
   private:
-    static void require(const std::string& field, const Vector3<double>& v, const char* unit) {
-        for (int i = 0; i < 3; ++i) check::finite(field, v[i], unit);
-    }
     /// By which a model is known again.
     [[nodiscard]] static std::vector<double> marks(const StructurePlan& plan) {
         std::vector<double> all;

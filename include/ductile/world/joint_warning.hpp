@@ -23,7 +23,7 @@ namespace ductile {
             return "had to bear more than it can along its axis, about it or across the plane in "
                    "which it bends, of which it knows nothing";
         case Unmodelled::driven:
-            return "does not move, and a driven body passes through it: the engine makes no "
+            return "does not move, and a driven body passes through it: the engine solves no "
                    "contacts between them";
         default:
             return "moved as the loads that it knows of do not explain";

@@ -26,6 +26,10 @@ class LeftMotions {
     }
     /// All were told.
     void sort() { std::sort(left_.begin(), left_.end(), is_before); }
+    /// To be called before it is destroyed.
+    void forget(const void* body) {
+        std::erase_if(left_, [body](const Body& left) { return left.body == body; });
+    }
     /// It moves, and is joined, as it was left.
     [[nodiscard]] bool is_left(const void* body, const ContactBody& motion,
                                std::size_t joints) const {

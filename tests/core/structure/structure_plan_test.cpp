@@ -9,6 +9,7 @@
 #include <string>
 
 #include "ductile/material/named.hpp"
+#include "ductile/section/box.hpp"
 #include "ductile/section/i_section.hpp"
 #include "ductile/section/l_section.hpp"
 #include "ductile/section/rectangle.hpp"
@@ -324,6 +325,16 @@ TEST_CASE("What is wrong is named with its value and what it may be", "[structur
     CHECK(
         message_of([&] { long_one.member("beam", start, end, bar, steel); }) ==
         "StructureModel.member(beam).length = 4000 m: must be in (0, 1000] m: lengths are metres");
+    // a box of 100 x 100 x 4 mm that is told what it weighs
+    const Box<double> millimetres(
+        {.width = 100, .height = 100, .web_thickness = 4, .flange_thickness = 4});
+    StructureModel wide = model;
+    const std::string said = message_of([&] {
+        wide.member("beam", NodeId{0}, NodeId{1}, millimetres, steel, {.mass_per_length = 12});
+    });
+    CHECK(said.find("StructureModel.member(beam).section.radius_of_gyration = 39.2258") == 0);
+    CHECK(said.find("m: must be <= 10 m, or its length: a section's dimensions are metres") <
+          said.size());
     CHECK(adding({.carried_mass = NAN}) ==
           "StructureModel.member(beam).carried_mass = nan kg: must be finite and >= 0");
     CHECK(adding({.gap = 2}) ==

@@ -23,17 +23,14 @@ class MemberSnapshot {
   public:
     explicit MemberSnapshot(const Member& member);
     /// Between steps.
-    /// @throws std::invalid_argument where the member has other sections; std::logic_error where it
+    /// @throws std::invalid_argument where the member has other sections, or a body that was saved
+    /// was nowhere or moved at no finite velocity; std::logic_error where it
     /// is in no World.
     void put_back(Member& member) const;
 
   private:
-    struct Body {
-        btTransform pose;
-        btVector3 velocity, spin;
-    };
+    [[nodiscard]] static std::vector<PlacedBody> bodies_of(const Member& member);
     Member::Saved saved_;
-    std::vector<Body> bodies_; ///< by piece
 };
 
 } // namespace ductile::bullet

@@ -10,11 +10,17 @@
 
 namespace ductile::bullet {
 
-DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member) : saved_(member.save()) {
+DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
+    : saved_(member.save(bodies_of(member))) {}
+
+DUCTILE_INLINE std::vector<PlacedBody> MemberSnapshot::bodies_of(const Member& member) {
+    std::vector<PlacedBody> bodies;
     for (const PieceBody& piece : member.pieces_) {
-        bodies_.push_back({piece.body->getCenterOfMassTransform(), piece.body->getLinearVelocity(),
-                           piece.body->getAngularVelocity()});
+        const btRigidBody& body = *piece.body;
+        bodies.push_back({to_core(body.getCenterOfMassTransform()),
+                          {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())}});
     }
+    return bodies;
 }
 
 DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
@@ -24,26 +30,27 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     member.put_back(saved_);
     const MemberCourse& course = member.course_;
     std::vector<PlacedPiece> pieces;
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < saved_.bodies.size(); ++i) {
         const MemberPiece& piece = course.pieces()[i];
         PlacedPiece& placed_piece = pieces.emplace_back();
         placed_piece.piece = &piece;
-        placed_piece.pose = piece.held ? member.held_ : to_core(bodies_[i].pose);
-        if (bodies_.size() == 1 && !piece.held && course.is_straight()) {
+        placed_piece.pose = piece.held ? member.held_ : saved_.bodies[i].pose;
+        if (saved_.bodies.size() == 1 && !piece.held && course.is_straight()) {
             placed_piece.pose = placed(placed_piece.pose, member.maker_->first_in_body());
         }
         if (piece.held) continue;
-        placed_piece.motion = {to_core(bodies_[i].velocity), to_core(bodies_[i].spin)};
+        placed_piece.motion = saved_.bodies[i].motion;
     }
     for (Member::Attachment& attachment : member.attachments_) attachment.drop(*member.world_);
     for (PieceBody& piece : member.pieces_) piece.run = {no_section, no_section};
     member.become(pieces, {});
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (std::size_t i = 0; i < saved_.bodies.size(); ++i) {
         if (course.pieces()[i].held) continue;
         btRigidBody& body = *member.pieces_[i].body;
-        body.setCenterOfMassTransform(bodies_[i].pose);
-        body.setInterpolationWorldTransform(bodies_[i].pose);
-        set_motion(body, {to_core(bodies_[i].velocity), to_core(bodies_[i].spin)});
+        const btTransform pose = to_bullet(saved_.bodies[i].pose);
+        body.setCenterOfMassTransform(pose);
+        body.setInterpolationWorldTransform(pose);
+        set_motion(body, saved_.bodies[i].motion);
     }
     member.put_joints_back(saved_);
     member.rearranged_();

@@ -94,6 +94,8 @@ class ClosingContactsFinder {
         force_ = kept_force_;
         pushing_ = kept_pushing_;
     }
+    /// To be called before a body is destroyed: another one may lie where it lay.
+    void forget(dBodyID body);
     /// Whether bodies that pushed each other, in the last part or when it began, have no contact
     /// among those looked at: one slid off the other, or was pushed off.
     [[nodiscard]] bool lost();

@@ -272,6 +272,16 @@ DUCTILE_INLINE auto ClosingContactsFinder::mates(const NamedContact& named) -> M
             std::minmax(geom.g1, geom.g2, std::less<dGeomID>())};
 }
 
+DUCTILE_INLINE void ClosingContactsFinder::forget(dBodyID body) {
+    const auto has = [body](const Pair& pair) { return pair.first == body || pair.second == body; };
+    std::erase_if(before_, has);
+    for (auto* const pushes : {&pushing_, &began_, &kept_pushing_}) {
+        for (Push& push : *pushes) { // what pushed it is lost
+            if (has(push.first.first)) push.first.first = {nullptr, nullptr};
+        }
+    }
+}
+
 DUCTILE_INLINE bool ClosingContactsFinder::lost() {
     const auto is_lost = [this](const Push& push) {
         constexpr double noticed = 0.01; // of the largest force

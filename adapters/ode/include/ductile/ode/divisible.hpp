@@ -78,6 +78,8 @@ class Divisible {
     virtual void drop_forces() = 0;
     /// The bodies are where they are solved. Joints of the user's whose feedback is to be read.
     virtual void before_solve(std::vector<dJointID>& joints) = 0;
+    /// In the coming solve a driven body passes through what does not move of it.
+    virtual void driven_through() = 0;
     /// The bodies have their new velocities.
     virtual void after_solve() = 0;
     /// Sections to open after a step of `dt` [s] on which these contacts acted, or a blow.

@@ -30,6 +30,7 @@ DUCTILE_INLINE void IslandSolver::add(PlasticConstraint& joint) {
 }
 DUCTILE_INLINE void IslandSolver::remove(PlasticConstraint& joint) {
     std::erase_if(members_, [&joint](const Member& member) { return member.joint == &joint; });
+    kept_.erase(&joint);
     indexed_ = false;
 }
 

@@ -122,6 +122,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;
+    void driven_through() override { course_.doubt(Unmodelled::driven); }
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;

@@ -28,17 +28,14 @@ class MemberSnapshot {
     explicit MemberSnapshot(const Member& member);
     /// Between steps. Joints of the user's that there are no more are left out; what holds a joint
     /// at its other end need not be put back before.
-    /// @throws std::invalid_argument where the member has other sections; std::logic_error where it
-    /// is in no World.
+    /// @throws std::invalid_argument where the member has other sections, or a body that was saved
+    /// was nowhere or moved at no finite velocity; std::logic_error where it is in no World.
     void put_back(Member& member) const;
 
   private:
-    struct Piece {
-        JointFrame<double> pose;
-        BodySnapshot body;
-    };
+    [[nodiscard]] static std::vector<PlacedBody> bodies_of(const Member& member);
     Member::Saved saved_;
-    std::vector<Piece> pieces_;
+    std::vector<BodySnapshot> bodies_; ///< by piece
     std::vector<SavedHold> holds_;
     PressedTouches pressed_;
 };

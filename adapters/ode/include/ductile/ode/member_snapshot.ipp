@@ -12,11 +12,17 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
-    : saved_(member.save()), pressed_(member.pressed_) {
-    for (std::size_t i = 0; i < member.pieces_.size(); ++i) {
-        pieces_.push_back({member.frame_of(i), BodySnapshot(member.pieces_[i].body)});
-    }
+    : saved_(member.save(bodies_of(member))), pressed_(member.pressed_) {
+    for (const Member::PieceBody& piece : member.pieces_) bodies_.emplace_back(piece.body);
     for (const Member::Hold& hold : member.holds_) holds_.emplace_back(hold);
+}
+
+DUCTILE_INLINE std::vector<PlacedBody> MemberSnapshot::bodies_of(const Member& member) {
+    std::vector<PlacedBody> bodies;
+    for (std::size_t i = 0; i < member.pieces_.size(); ++i) {
+        bodies.push_back({member.frame_of(i), detail::motion_of(member.pieces_[i].body)});
+    }
+    return bodies;
 }
 
 DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
@@ -30,13 +36,13 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     if (was_whole && course.whole() && !course.member().clamped()) member.take_out();
     member.geoms_->put_straight();
     std::vector<PlacedPiece> pieces;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        pieces.push_back({&course.pieces()[i], pieces_[i].pose, {}});
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        pieces.push_back({&course.pieces()[i], saved_.bodies[i].pose, {}});
     }
     for (Member::PieceBody& piece : member.pieces_) piece.run = {no_section, no_section};
     member.become(pieces, false);
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        pieces_[i].body.put_back(member.pieces_[i].body);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        bodies_[i].put_back(member.pieces_[i].body);
     }
     member.put_joints_back(saved_);
     for (const SavedHold& hold : holds_) {

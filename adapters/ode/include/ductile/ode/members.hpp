@@ -84,6 +84,8 @@ class Members final : public Divisibles {
     [[nodiscard]] bool look(double dt, bool blow);
     void list_contacts(std::span<const NamedContact> contacts);
     static void require_named(const Course& course);
+    /// ODE makes nothing of contacts between what does not move and what is driven.
+    static void see_driven(const Course& course);
     [[nodiscard]] const dJointFeedback* feedback_of(dJointID joint);
     void take_feedback_back();
 

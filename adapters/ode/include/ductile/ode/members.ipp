@@ -111,7 +111,10 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     list_contacts(contacts);
     for (const Course& course : members_) require_named(course);
     held_by_.clear();
-    for (const Course& course : members_) course.of->before_solve(held_by_);
+    for (const Course& course : members_) {
+        course.of->before_solve(held_by_);
+        see_driven(course);
+    }
     // of a step that was not looked at joints kept what is another's now; its contacts may be gone
     for (dJointID joint : held_by_) {
         const bool kept =
@@ -153,11 +156,21 @@ DUCTILE_INLINE void Members::require_named(const Course& course) {
         "World.step: a contact of a member was not named: World::add_contact each, once");
 }
 
+DUCTILE_INLINE void Members::see_driven(const Course& course) {
+    constexpr double noticed = 1e-6; // [m/s]
+    for (const Touch& touch : course.touches) {
+        const bool stand = !can_move(touch.bodies.a) && !can_move(touch.bodies.b);
+        if (stand && touch.closing > noticed) course.of->driven_through();
+    }
+}
+
 DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {
     std::vector<dBodyID> found;
     for (const Course& course : members_) {
         for (const Touch& touch : course.touches) {
-            found.push_back(can_move(touch.bodies.a) ? touch.bodies.a : touch.bodies.b);
+            for (dBodyID body : {touch.bodies.a, touch.bodies.b}) {
+                if (can_move(body)) found.push_back(body);
+            }
         }
     }
     return found;
@@ -211,12 +224,16 @@ DUCTILE_INLINE void Members::open_found(bool ahead) {
             attached.push_back({dJointGetBody(touch.joint, 0), dJointGetBody(touch.joint, 1)});
         }
         course.of->open(course.found, ahead);
-        for (std::size_t i = 0; i < attached.size(); ++i) {
-            const Touch& touch = course.touches[i];
-            const bool first = touch.of_a != touch.bodies.reversed;
-            (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
-            dJointAttach(touch.joint, attached[i].a, attached[i].b);
-            wake(touch.joint);
+        // one between two of its pieces comes twice, one after the other
+        for (std::size_t i = 0, next = 0; i < attached.size(); i = next) {
+            const dJointID joint = course.touches[i].joint;
+            for (; next < attached.size() && course.touches[next].joint == joint; ++next) {
+                const Touch& touch = course.touches[next];
+                const bool first = touch.of_a != touch.bodies.reversed;
+                (first ? attached[i].a : attached[i].b) = course.of->body_of(touch.segment);
+            }
+            dJointAttach(joint, attached[i].a, attached[i].b);
+            wake(joint);
         }
         for (const int section : course.found) {
             happened_.push_back({course.of, section, EventKind::split});

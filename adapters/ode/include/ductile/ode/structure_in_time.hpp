@@ -150,6 +150,7 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     DUCTILE_INLINE void apply_forces() override;
     void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;
+    void driven_through() override { driven_through_ = true; }
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;

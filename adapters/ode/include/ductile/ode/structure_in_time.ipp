@@ -255,6 +255,7 @@ DUCTILE_INLINE void StructureInTime::apply_forces() {
 
 DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& joints) {
     course_.begin_step();
+    driven_through_ = false;
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     courses_.clear();
     for (dBodyID body : bodies_) courses_.emplace_back(body);

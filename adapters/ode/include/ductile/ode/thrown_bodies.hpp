@@ -43,7 +43,10 @@ class ThrownBodies {
     /// They are struck.
     void strike() noexcept { thrown_.clear(); }
     /// To be called before it is destroyed.
-    void forget(dBodyID body) { std::erase(thrown_, body); }
+    void forget(dBodyID body) {
+        std::erase(thrown_, body);
+        left_.forget(body);
+    }
 
   private:
     [[nodiscard]] static bool is_joined(dBodyID body) {

@@ -100,6 +100,10 @@ DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
     std::erase_if(damped_, is_it);
     std::erase_if(driven_, is_it);
     std::erase_if(last_driven_, is_it);
+    const auto has = [body](const auto& of) { return of.first.a == body || of.first.b == body; };
+    for (auto* const seen : {&seen_, &kept_seen_}) std::erase_if(*seen, has);
+    for (auto* const pushes : {&pushes_, &kept_pushes_}) std::erase_if(*pushes, has);
+    closing_.forget(body);
 }
 
 DUCTILE_INLINE void WorldParts::begin_driven() {
