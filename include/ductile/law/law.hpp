@@ -20,8 +20,6 @@
 #include <concepts>
 #include <limits>
 
-#include "ductile/vocabulary/leftover.hpp"
-
 namespace ductile {
 
 /// `value(p)` is the strength R(p) >= 0 [N | N m], `slope(p)` its derivative [N/m | N m/rad] (the

@@ -10,7 +10,6 @@
 
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
-#include "ductile/vocabulary/finite.hpp"
 
 namespace ductile {
 

@@ -50,7 +50,6 @@
 
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ductile/bullet/driven_ways.hpp"

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/closing_points.ipp" // IWYU pragma: keep

@@ -9,11 +9,8 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
-#include <algorithm>
 #include <tuple>
 #include <typeinfo>
-#include <utility>
-#include <vector>
 
 namespace ductile::bullet {
 

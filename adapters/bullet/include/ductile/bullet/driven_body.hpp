@@ -15,11 +15,7 @@
 
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "ductile/bullet/convert.hpp"
-#include "ductile/joint/rotation.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/driven_velocity.hpp"
 

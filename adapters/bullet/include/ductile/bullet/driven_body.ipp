@@ -3,8 +3,11 @@
 // Bodies of driven_body.hpp.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "ductile/bullet/driven_body.hpp"
-#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/joint/rotation.hpp"
 
 namespace ductile::bullet {
 

@@ -13,7 +13,6 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 

@@ -8,9 +8,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
-#include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {

@@ -21,7 +21,6 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
 #include <array>
-#include <cstddef>
 #include <span>
 #include <vector>
 

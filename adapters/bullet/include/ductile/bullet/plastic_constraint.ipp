@@ -9,7 +9,6 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,7 +16,6 @@
 #include "ductile/bullet/draw.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/precision_check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 

@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <span>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/divisibles.hpp"

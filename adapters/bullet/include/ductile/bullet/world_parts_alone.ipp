@@ -5,16 +5,6 @@
 
 #include <LinearMath/btAabbUtil2.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include "ductile/bullet/divisibles.hpp"
-#include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/moving_bodies.hpp"
-
 namespace ductile::bullet {
 
 DUCTILE_INLINE void WorldParts::decide() {

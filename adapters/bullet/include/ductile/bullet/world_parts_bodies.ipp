@@ -3,8 +3,6 @@
 // Bodies of world_parts.hpp: what a part asks of each body by itself. A part of world_parts.ipp.
 #pragma once
 
-#include <cmath>
-
 #include "ductile/joint/gyroscopic.hpp"
 
 namespace ductile::bullet {

@@ -8,7 +8,6 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 #include "ductile/bullet/held_forces.hpp"

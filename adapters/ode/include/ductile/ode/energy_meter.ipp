@@ -8,7 +8,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

@@ -9,7 +9,6 @@
 #include <ode/ode.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 #include "ductile/ode/convert.hpp"

@@ -3,6 +3,8 @@
 // Bodies of joint_stops.hpp.
 #pragma once
 
+#include <cmath>
+
 #include "ductile/ode/joint_stops.hpp"
 
 namespace ductile::ode {

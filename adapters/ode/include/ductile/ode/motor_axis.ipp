@@ -5,14 +5,12 @@
 
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "ductile/joint/rotation.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

@@ -5,7 +5,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/motor_pose.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

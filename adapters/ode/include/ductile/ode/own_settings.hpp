@@ -11,7 +11,6 @@
 
 #include <ode/ode.h>
 
-#include <limits>
 #include <span>
 #include <vector>
 

@@ -10,7 +10,6 @@
 #include "ductile/ode/plastic_motor.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/finite.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/world/part_rows.hpp"
 

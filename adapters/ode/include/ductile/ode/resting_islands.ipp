@@ -3,8 +3,6 @@
 // Bodies of resting_islands.hpp.
 #pragma once
 
-#include <algorithm>
-
 #include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/resting_islands.hpp"
 

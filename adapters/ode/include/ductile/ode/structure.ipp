@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/piece.hpp"

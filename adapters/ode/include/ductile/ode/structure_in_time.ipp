@@ -3,9 +3,7 @@
 // Bodies of structure_in_time.hpp.
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/structure_in_time.hpp"

@@ -9,7 +9,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/user_joint.hpp"
-#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
 

@@ -4,13 +4,7 @@
 // of world_parts.ipp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <utility>
-
 #include "ductile/joint/gyroscopic.hpp"
-#include "ductile/ode/convert.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
