@@ -16,6 +16,19 @@ namespace ductile::ode {
     return {double(v[0]), double(v[1]), double(v[2])};
 }
 
+/// What ODE tells of a joint by a call like dJointGetHingeAxis.
+[[nodiscard]] inline Vector3<double> told(dJointID joint, void (*what)(dJointID, dVector3)) {
+    dVector3 result;
+    what(joint, result);
+    return to_core(result);
+}
+/// [m/s²]
+[[nodiscard]] inline Vector3<double> gravity_of(dWorldID world) {
+    dVector3 result;
+    dWorldGetGravity(world, result);
+    return to_core(result);
+}
+
 /// ODE stores 3×3 matrices by rows of four.
 [[nodiscard]] inline Matrix3<double> matrix_to_core(const dReal* m) noexcept {
     Matrix3<double> result;
@@ -137,9 +150,7 @@ inline void wake(dJointID joint) noexcept {
     BodyState<double> result = body_state(body);
     Vector3<double> acceleration = scaled(result.inverse_mass, to_core(dBodyGetForce(body)));
     if (dBodyGetGravityMode(body) != 0) {
-        dVector3 gravity;
-        dWorldGetGravity(dBodyGetWorld(body), gravity);
-        acceleration = sum(acceleration, to_core(gravity));
+        acceleration = sum(acceleration, gravity_of(dBodyGetWorld(body)));
     }
     const Vector3<double> turn = sum(scaled(dt, to_core(dBodyGetTorque(body))),
                                      gyroscopic_impulse(body, inertia(body), result.spin, dt));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "ductile/ode/joint_calls.hpp"
 #include "ductile/ode/joint_stops.hpp"
 
 namespace ductile::ode {
@@ -13,7 +14,6 @@ namespace detail {
 
 /// What ODE tells of one axis.
 struct AxisCalls {
-    dReal (*parameter)(dJointID, int);
     int group; ///< of its parameters
     dReal (*at)(dJointID);
     dReal (*rate)(dJointID);
@@ -34,13 +34,12 @@ struct AxisCalls {
 }
 
 DUCTILE_INLINE void add_axis(dJointID joint, const AxisCalls& calls, StoppedAxes& axes) {
-    const auto least = double(calls.parameter(joint, dParamLoStop + calls.group));
-    const auto most = double(calls.parameter(joint, dParamHiStop + calls.group));
+    const auto parameter = joint_calls(dJointGetType(joint)).get;
+    const auto least = double(parameter(joint, dParamLoStop + calls.group));
+    const auto most = double(parameter(joint, dParamHiStop + calls.group));
     if (!std::isfinite(least) && !std::isfinite(most)) return;
-    dVector3 axis;
-    calls.axis(joint, axis);
     axes.axes[axes.count++] = {least, most, double(calls.at(joint)), double(calls.rate(joint)),
-                               yields_along(joint, to_core(axis), calls.turns)};
+                               yields_along(joint, told(joint, calls.axis), calls.turns)};
 }
 
 } // namespace detail
@@ -50,28 +49,26 @@ DUCTILE_INLINE StoppedAxes stopped_axes(dJointID joint) {
     const auto add = [&](const detail::AxisCalls& calls) { detail::add_axis(joint, calls, axes); };
     switch (dJointGetType(joint)) {
         case dJointTypeHinge:
-            add({dJointGetHingeParam, 0, dJointGetHingeAngle, dJointGetHingeAngleRate,
-                 dJointGetHingeAxis, true});
+            add({0, dJointGetHingeAngle, dJointGetHingeAngleRate, dJointGetHingeAxis, true});
             break;
         case dJointTypeSlider:
-            add({dJointGetSliderParam, 0, dJointGetSliderPosition, dJointGetSliderPositionRate,
-                 dJointGetSliderAxis, false});
+            add({0, dJointGetSliderPosition, dJointGetSliderPositionRate, dJointGetSliderAxis,
+                 false});
             break;
         case dJointTypeUniversal:
-            add({dJointGetUniversalParam, 0, dJointGetUniversalAngle1, dJointGetUniversalAngle1Rate,
-                 dJointGetUniversalAxis1, true});
-            add({dJointGetUniversalParam, dParamGroup, dJointGetUniversalAngle2,
-                 dJointGetUniversalAngle2Rate, dJointGetUniversalAxis2, true});
+            add({0, dJointGetUniversalAngle1, dJointGetUniversalAngle1Rate, dJointGetUniversalAxis1,
+                 true});
+            add({dParamGroup, dJointGetUniversalAngle2, dJointGetUniversalAngle2Rate,
+                 dJointGetUniversalAxis2, true});
             break;
         case dJointTypeHinge2:
-            add({dJointGetHinge2Param, 0, dJointGetHinge2Angle1, dJointGetHinge2Angle1Rate,
-                 dJointGetHinge2Axis1, true});
+            add({0, dJointGetHinge2Angle1, dJointGetHinge2Angle1Rate, dJointGetHinge2Axis1, true});
             break;
         case dJointTypePiston:
-            add({dJointGetPistonParam, 0, dJointGetPistonPosition, dJointGetPistonPositionRate,
-                 dJointGetPistonAxis, false});
-            add({dJointGetPistonParam, dParamGroup, dJointGetPistonAngle, dJointGetPistonAngleRate,
-                 dJointGetPistonAxis, true});
+            add({0, dJointGetPistonPosition, dJointGetPistonPositionRate, dJointGetPistonAxis,
+                 false});
+            add({dParamGroup, dJointGetPistonAngle, dJointGetPistonAngleRate, dJointGetPistonAxis,
+                 true});
             break;
         default:
             break;

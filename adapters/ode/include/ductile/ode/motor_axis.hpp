@@ -39,6 +39,7 @@
 
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/joint_calls.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
@@ -66,13 +67,16 @@ class MotorAxis {
     [[nodiscard]] bool turns() const noexcept {
         return kind_ != dJointTypeSlider && kind_ != dJointTypeLMotor;
     }
-    [[nodiscard]] dJointType kind() const noexcept { return kind_; }
     /// True where the position is a function of where the bodies are, false where it is summed up.
     [[nodiscard]] bool measured() const noexcept { return measured_; }
 
     /// A motor parameter: dParamVel, dParamFMax, dParamCFM, dParamLoStop, ...
-    void set(int parameter, double value) const { set_motor(number_, parameter, value); }
-    [[nodiscard]] double get(int parameter) const { return get_motor(number_, parameter); }
+    void set(int parameter, double value) const {
+        calls_.set(joint_, parameter + dParamGroup * number_, dReal(value));
+    }
+    [[nodiscard]] double get(int parameter) const {
+        return double(calls_.get(joint_, parameter + dParamGroup * number_));
+    }
 
     /// Axis of the row, world, unit.
     [[nodiscard]] Vector3<double> axis() const { return axis_of(number_); }
@@ -126,9 +130,6 @@ class MotorAxis {
     static Matrix3<double> gram(const Matrix3<double>& axes);
     void require_independent_axes() const;
 
-    void set_motor(int number, int parameter, double value) const;
-    [[nodiscard]] double get_motor(int number, int parameter) const;
-
     [[nodiscard]] Vector3<double> axis_of(int number) const;
 
     [[nodiscard]] Vector3<double> linear_axis(int number) const;
@@ -138,6 +139,7 @@ class MotorAxis {
 
     dJointID joint_;
     dJointType kind_;
+    JointCalls calls_;
     int number_;
     int motors_;
     int relative_to_ = 0; ///< of linear motors: 0 world, 1 first body, 2 second body

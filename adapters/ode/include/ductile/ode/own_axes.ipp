@@ -11,12 +11,6 @@ namespace ductile::ode {
 
 namespace detail {
 
-[[nodiscard]] DUCTILE_INLINE Vector3<double> told(dJointID joint,
-                                                  void (*what)(dJointID, dVector3)) {
-    dVector3 result;
-    what(joint, result);
-    return to_core(result);
-}
 [[nodiscard]] DUCTILE_INLINE Vector3<double> centre_of(dBodyID body,
                                                        const Vector3<double>& otherwise) {
     return body != nullptr ? to_core(dBodyGetPosition(body)) : otherwise;
@@ -35,26 +29,26 @@ DUCTILE_INLINE OwnAxes OwnAxes::of(dJointID joint, const AttachedBodies& bodies)
             return axes;
         case dJointTypeHinge:
             axes.powered = dJointGetHingeParam(joint, dParamFMax) > 0;
-            axes.turns = detail::told(joint, dJointGetHingeAxis);
-            pin = pin_b = detail::told(joint, dJointGetHingeAnchor);
+            axes.turns = told(joint, dJointGetHingeAxis);
+            pin = pin_b = told(joint, dJointGetHingeAnchor);
             break;
         case dJointTypeSlider:
             axes.powered = dJointGetSliderParam(joint, dParamFMax) > 0;
-            axes.slides = detail::told(joint, dJointGetSliderAxis);
+            axes.slides = told(joint, dJointGetSliderAxis);
             break;
         case dJointTypeUniversal:
             axes.powered = dJointGetUniversalParam(joint, dParamFMax) > 0 ||
                            dJointGetUniversalParam(joint, dParamFMax2) > 0;
-            axes.turns = detail::told(joint, dJointGetUniversalAxis1);
-            axes.turns_too = detail::told(joint, dJointGetUniversalAxis2);
-            pin = pin_b = detail::told(joint, dJointGetUniversalAnchor);
+            axes.turns = told(joint, dJointGetUniversalAxis1);
+            axes.turns_too = told(joint, dJointGetUniversalAxis2);
+            pin = pin_b = told(joint, dJointGetUniversalAnchor);
             break;
         case dJointTypeHinge2:
             axes.powered = true; // its spring
-            axes.slides = axes.turns = detail::told(joint, dJointGetHinge2Axis1);
-            axes.turns_too = detail::told(joint, dJointGetHinge2Axis2);
-            pin = detail::told(joint, dJointGetHinge2Anchor); // which its spring draws apart
-            pin_b = detail::told(joint, dJointGetHinge2Anchor2);
+            axes.slides = axes.turns = told(joint, dJointGetHinge2Axis1);
+            axes.turns_too = told(joint, dJointGetHinge2Axis2);
+            pin = told(joint, dJointGetHinge2Anchor); // which its spring draws apart
+            pin_b = told(joint, dJointGetHinge2Anchor2);
             if (bodies.reversed) std::swap(pin, pin_b);
             break;
         default:

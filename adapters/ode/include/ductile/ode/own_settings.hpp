@@ -27,23 +27,13 @@ class OwnSettings {
     DUCTILE_INLINE void put_back();
 
   private:
-    using Get = dReal (*)(dJointID, int);
-    using Set = void (*)(dJointID, int, dReal);
-    struct Access {
-        Get get = nullptr;
-        Set set = nullptr;
-        int stops = 0;           ///< axes that may have some
-        bool rows = false;       ///< all of them
-        bool suspension = false; ///< of its first axis
-    };
     struct Own {
         dJointID joint;
-        Set set;
+        void (*set)(dJointID, int, dReal);
         int erp_name, cfm_name;
         Softness usual;
         bool spring; ///< a share of what the frame removes, not of each part
     };
-    [[nodiscard]] static DUCTILE_INLINE Access access(dJointID joint);
     DUCTILE_INLINE void find(dJointID joint);
 
     std::vector<Own> own_;

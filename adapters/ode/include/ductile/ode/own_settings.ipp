@@ -5,62 +5,24 @@
 
 #include <cmath>
 
+#include "ductile/ode/joint_calls.hpp"
 #include "ductile/ode/own_settings.hpp"
 
 namespace ductile::ode {
 
-DUCTILE_INLINE OwnSettings::Access OwnSettings::access(dJointID joint) {
-    switch (dJointGetType(joint)) {
-        case dJointTypeBall:
-            return {.get = dJointGetBallParam, .set = dJointSetBallParam, .rows = true};
-        case dJointTypeFixed:
-            return {.get = dJointGetFixedParam, .set = dJointSetFixedParam, .rows = true};
-        case dJointTypeDBall:
-            return {.get = dJointGetDBallParam, .set = dJointSetDBallParam, .rows = true};
-        case dJointTypeDHinge:
-            return {.get = dJointGetDHingeParam, .set = dJointSetDHingeParam, .rows = true};
-        case dJointTypeTransmission:
-            return {
-                .get = dJointGetTransmissionParam, .set = dJointSetTransmissionParam, .rows = true};
-        case dJointTypeHinge:
-            return {.get = dJointGetHingeParam, .set = dJointSetHingeParam, .stops = 1};
-        case dJointTypeSlider:
-            return {.get = dJointGetSliderParam, .set = dJointSetSliderParam, .stops = 1};
-        case dJointTypeUniversal:
-            return {.get = dJointGetUniversalParam, .set = dJointSetUniversalParam, .stops = 2};
-        case dJointTypeHinge2:
-            return {.get = dJointGetHinge2Param,
-                    .set = dJointSetHinge2Param,
-                    .stops = 1,
-                    .suspension = true};
-        case dJointTypePR:
-            return {.get = dJointGetPRParam, .set = dJointSetPRParam, .stops = 2};
-        case dJointTypePU:
-            return {.get = dJointGetPUParam, .set = dJointSetPUParam, .stops = 3};
-        case dJointTypePiston:
-            return {.get = dJointGetPistonParam, .set = dJointSetPistonParam, .stops = 2};
-        case dJointTypeAMotor:
-            return {.get = dJointGetAMotorParam, .set = dJointSetAMotorParam, .stops = 3};
-        case dJointTypeLMotor:
-            return {.get = dJointGetLMotorParam, .set = dJointSetLMotorParam, .stops = 3};
-        default:
-            return {};
-    }
-}
-
 DUCTILE_INLINE void OwnSettings::find(dJointID joint) {
-    const Access access = OwnSettings::access(joint);
+    const JointCalls calls = joint_calls(dJointGetType(joint));
     const auto add = [&](int erp_name, int cfm_name, bool spring) {
-        const Softness usual{double(access.get(joint, erp_name)),
-                             double(access.get(joint, cfm_name))};
-        own_.push_back({joint, access.set, erp_name, cfm_name, usual, spring});
+        const Softness usual{double(calls.get(joint, erp_name)),
+                             double(calls.get(joint, cfm_name))};
+        own_.push_back({joint, calls.set, erp_name, cfm_name, usual, spring});
     };
-    if (access.rows) add(dParamERP, dParamCFM, false);
-    if (access.suspension) add(dParamSuspensionERP, dParamSuspensionCFM, true);
-    for (int axis = 0; axis < access.stops; ++axis) {
+    if (calls.rows) add(dParamERP, dParamCFM, false);
+    if (calls.suspension) add(dParamSuspensionERP, dParamSuspensionCFM, true);
+    for (int axis = 0; axis < calls.stops; ++axis) {
         const int group = dParamGroup * axis;
-        const bool stops = std::isfinite(access.get(joint, dParamLoStop + group)) ||
-                           std::isfinite(access.get(joint, dParamHiStop + group));
+        const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
+                           std::isfinite(calls.get(joint, dParamHiStop + group));
         if (stops) add(dParamStopERP + group, dParamStopCFM + group, true);
     }
 }
