@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -68,6 +69,25 @@ class LocalScope {
     std::vector<btPersistentManifold*> manifolds_;
     std::vector<int> numbers_; ///< by place in the world
 };
+
+// ---- what of a world there is in a scope; null: all, of bodies those that are not static
+
+[[nodiscard]] inline std::span<btRigidBody* const> bodies_of(const btDiscreteDynamicsWorld& world,
+                                                             const LocalScope* scope) {
+    return scope != nullptr ? scope->bodies() : MovingBodies::all(world);
+}
+[[nodiscard]] inline std::span<btTypedConstraint* const> constraints_of(
+    btDiscreteDynamicsWorld& world, const LocalScope* scope) {
+    if (scope != nullptr) return scope->constraints();
+    const auto& all = AllConstraints::of(world);
+    if (all.size() == 0) return {};
+    return {&all[0], std::size_t(all.size())};
+}
+[[nodiscard]] inline std::span<btPersistentManifold* const> manifolds_of(btDispatcher& dispatcher,
+                                                                         const LocalScope* scope) {
+    if (scope != nullptr) return scope->manifolds();
+    return {dispatcher.getInternalManifoldPointer(), std::size_t(dispatcher.getNumManifolds())};
+}
 
 } // namespace ductile::bullet
 

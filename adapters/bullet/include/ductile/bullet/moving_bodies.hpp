@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The bodies of a world that are not static; Bullet keeps such a list and does not show it. And
-// where a body goes by its velocities.
+// The bodies of a world that are not static, and its constraints; Bullet keeps such lists and does
+// not show them. And where a body goes by its velocities.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -22,6 +22,13 @@ struct MovingBodies : btDiscreteDynamicsWorld {
         const auto& bodies = of(world);
         if (bodies.size() == 0) return {};
         return {&bodies[0], std::size_t(bodies.size())};
+    }
+};
+
+struct AllConstraints : btDiscreteDynamicsWorld {
+    [[nodiscard]] static btAlignedObjectArray<btTypedConstraint*>& of(
+        btDiscreteDynamicsWorld& world) {
+        return world.*(&AllConstraints::m_constraints);
     }
 };
 

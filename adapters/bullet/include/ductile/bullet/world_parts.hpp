@@ -103,6 +103,7 @@ class WorldParts final : public PartEngine {
     /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
     void keep_spins(double h);
     [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
+    [[nodiscard]] const LocalScope* scope() const noexcept { return local_ ? &scope_ : nullptr; }
 
     // ---- islands that are done again alone
 

@@ -210,8 +210,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         if (at_risk_) {
             held_.see(manifolds(), half_, [this](const auto& body) { return concerns(body); });
         }
-        half_ahead_.move(local_ ? scope_.bodies() : MovingBodies::all(world_), btScalar(h), ways_,
-                         btScalar(time_));
+        half_ahead_.move(bodies_of(world_, scope()), btScalar(h), ways_, btScalar(time_));
         held_.let_go(manifolds(), half_ + h / 2,
                      [this](const auto& body) { return concerns(body); });
         time_ += h;
@@ -276,9 +275,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
 }
 
 DUCTILE_INLINE std::span<btPersistentManifold* const> WorldParts::manifolds() {
-    if (local_) return scope_.manifolds();
-    btDispatcher& dispatcher = *world_.getDispatcher();
-    return {dispatcher.getInternalManifoldPointer(), std::size_t(dispatcher.getNumManifolds())};
+    return manifolds_of(*world_.getDispatcher(), scope());
 }
 
 DUCTILE_INLINE bool WorldParts::concerns(const btCollisionObject& object) {

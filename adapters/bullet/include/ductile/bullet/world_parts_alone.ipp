@@ -40,8 +40,8 @@ DUCTILE_INLINE void WorldParts::try_all() {
     frame_.take(world_, front_.usual());
     meter_.keep();
     were_enabled_.clear();
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        were_enabled_.push_back(world_.getConstraint(i)->isEnabled());
+    for (const btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        were_enabled_.push_back(constraint->isEnabled());
     }
     tick(length_, true);
     tell();
@@ -173,9 +173,9 @@ DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
     meter_.narrow();
     closing_.set_scope(&scope);
     outside_work_ = 0;
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
-        if (plastic == nullptr || scope.has_joint(world_.getConstraint(i))) continue;
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        const PlasticConstraint* plastic = as_plastic(*constraint);
+        if (plastic == nullptr || scope.has_joint(constraint)) continue;
         outside_work_ += plastic->queries().absorbed_energy();
     }
 }

@@ -72,12 +72,11 @@ class WorldParts::Impulses {
 
 /// Stops of Bullet's own constraints in islands with plastic joints, within `h` [s].
 DUCTILE_INLINE void WorldParts::see_stops(double h, ClosingContacts& found) {
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (!has_part_stops(constraint)) continue;
-        found.strikes = found.strikes || strikes_stop(constraint, touching_);
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        if (!has_part_stops(*constraint)) continue;
+        found.strikes = found.strikes || strikes_stop(*constraint, touching_);
         found.time =
-            std::min(found.time, time_to_stop(constraint, std::min(h, found.time), apart_));
+            std::min(found.time, time_to_stop(*constraint, std::min(h, found.time), apart_));
     }
 }
 
@@ -93,9 +92,9 @@ DUCTILE_INLINE double WorldParts::closed_early(double h) {
 }
 
 DUCTILE_INLINE void WorldParts::take_stops(PartStops& stops) {
-    for (int i = 0; at_risk_ && i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (has_part_stops(constraint)) stops.take(constraint);
+    if (!at_risk_) return;
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        if (has_part_stops(*constraint)) stops.take(*constraint);
     }
 }
 
