@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/vector.hpp"
@@ -69,6 +70,13 @@ struct ContactBody {
                                                   const ContactBody& b,
                                                   const Vector3<double>& arm_b) {
     return difference(cross(a.spin, cross(a.spin, arm_a)), cross(b.spin, cross(b.spin, arm_b)));
+}
+
+/// When a gap of `way` [m] is closed that closes at `speed` [m/s] and gains `gain` [m/s²] on that;
+/// infinite: never [s].
+[[nodiscard]] inline double time_to_close(double way, double speed, double gain) {
+    const double both = speed + std::sqrt(std::max(speed * speed + 2 * gain * way, 0.0));
+    return both > 0 ? 2 * way / both : std::numeric_limits<double>::infinity();
 }
 
 /// Whether what a contact does to the flows of a part of `h` [s] could matter beside `least` [J].

@@ -234,8 +234,9 @@ DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& wor
         const double gain = (now.nearest.speed - speed) / h;
         if (!(gain > 0)) continue;
         note_found(*pair.a, *pair.b);
-        const double at = std::sqrt(speed * speed + 2 * gain * way);
-        const double closed = speed > 0 ? 2 * way / (speed + at) : (at - speed) / gain;
+        const double closed = speed > 0
+                                  ? time_to_close(way, speed, gain)
+                                  : (std::sqrt(speed * speed + 2 * gain * way) - speed) / gain;
         first = std::min(first, touched ? std::max(closed, h / 2) : closed);
     }
     return first;

@@ -58,6 +58,8 @@ struct StoppedAxes {
 /// As its bodies would be at `a`, `b`; the constraint keeps what it calculates of that.
 [[nodiscard]] DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint,
                                                       const btTransform& a, const btTransform& b);
+/// As they are.
+[[nodiscard]] DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint);
 
 /// When an axis comes to its stop with more than `energy` [J] if bodies go on as they do, within
 /// `h`; else infinite [s].

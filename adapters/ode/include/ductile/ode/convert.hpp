@@ -59,12 +59,15 @@ namespace ductile::ode {
     return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>(0, 0, 0);
 }
 
-/// Of a world point of the body; null: the static world.
+/// Of a world point from the centre of mass; zero of the static world, null.
+[[nodiscard]] inline Vector3<double> arm_of(dBodyID body, const Vector3<double>& point) noexcept {
+    return body != nullptr ? difference(point, to_core(dBodyGetPosition(body)))
+                           : Vector3<double>(0, 0, 0);
+}
 [[nodiscard]] inline Vector3<double> velocity_at(dBodyID body,
                                                  const Vector3<double>& point) noexcept {
     if (body == nullptr) return Vector3<double>(0, 0, 0);
-    const Vector3<double> arm = difference(point, to_core(dBodyGetPosition(body)));
-    return sum(linear_velocity(body), cross(angular_velocity(body), arm));
+    return sum(linear_velocity(body), cross(angular_velocity(body), arm_of(body, point)));
 }
 
 /// Null: the static world.

@@ -14,9 +14,8 @@ DUCTILE_INLINE void MotorPose::look(const MotorAxis& row) {
     axis_ = column(axes_, row.number());
     if (!row.measured()) placement_ = row.placement();
     const auto& [a, b, reversed] = row.bodies();
-    arm_a_ = difference(point_, to_core(dBodyGetPosition(a)));
-    arm_b_ = {0, 0, 0};
-    if (b != nullptr) arm_b_ = difference(point_, to_core(dBodyGetPosition(b)));
+    arm_a_ = arm_of(a, point_);
+    arm_b_ = arm_of(b, point_);
 }
 
 DUCTILE_INLINE Vector6<double> MotorPose::twist(const MotorAxis& row) const {

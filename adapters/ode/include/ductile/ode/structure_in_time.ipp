@@ -241,8 +241,7 @@ DUCTILE_INLINE void StructureInTime::require_possible() {
 }
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
-        const Vector3<double> arm = difference(at, to_core(dBodyGetPosition(bodies_[c])));
-        add_force(bodies_[c], force, cross(arm, force));
+        add_force(bodies_[c], force, cross(arm_of(bodies_[c], at), force));
     });
 }
 

@@ -86,9 +86,7 @@ DUCTILE_INLINE double WorldParts::yielding(double touching) {
     constexpr double hard = 1e-3; // of what yields in the frame: it sinks in as what is closed may
     double sum = 0;
     closing_.each_strike(touching, [&](const NamedContact& named, double yields, double energy) {
-        const dSurfaceParameters& surface = named.contact.surface;
-        const bool own = (surface.mode & dContactSoftCFM) != 0;
-        const auto cfm = double(own ? surface.soft_cfm : dWorldGetCFM(of_.world));
+        const double cfm = named.cfm(of_.world);
         const double most = hard * length_ * yields;
         if (!(cfm > most)) return;
         sum += energy;
