@@ -270,8 +270,7 @@ DUCTILE_INLINE void PartStops::put_back() {
                        cone->getRelaxationFactor());
     }
     cones_.clear();
-    for (const auto& [place, value] : usual_) *place = value;
-    usual_.clear();
+    lent_.put_back();
 }
 
 DUCTILE_INLINE double PartStops::met(double h, double energy) const {
@@ -347,8 +346,8 @@ template <class SixAxes>
 void PartStops::soften_all(SixAxes& constraint, double h, double frame) {
     const auto soften = [&](btScalar& erp, btScalar& cfm) {
         const Softness spring = part_spring({double(erp), double(cfm)}, h, frame);
-        put(erp, btScalar(spring.erp));
-        put(cfm, btScalar(spring.compliance));
+        lent_.put(erp, btScalar(spring.erp));
+        lent_.put(cfm, btScalar(spring.compliance));
     };
     auto* moves = constraint.getTranslationalLimitMotor();
     for (int i = 0; i < 3; ++i) {
@@ -356,11 +355,6 @@ void PartStops::soften_all(SixAxes& constraint, double h, double frame) {
         soften(moves->m_stopERP[i], moves->m_stopCFM[i]);
         soften(turns->m_stopERP, turns->m_stopCFM);
     }
-}
-
-DUCTILE_INLINE void PartStops::put(btScalar& place, btScalar value) {
-    usual_.emplace_back(&place, place);
-    place = value;
 }
 
 } // namespace ductile::bullet
