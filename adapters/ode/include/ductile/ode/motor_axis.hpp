@@ -101,9 +101,6 @@ class MotorAxis {
     [[nodiscard]] double force(const dJointFeedback& feedback, const Matrix3<double>& axes,
                                const Vector3<double>& arm) const;
 
-    /// Of A minus B along the axis, as the bodies are now [m/s | rad/s].
-    [[nodiscard]] double velocity() const;
-
     /// h of axis_response, with what the joint holds beside the row: all five other axes of a hinge
     /// and a slider, pin and cross of a universal or hinge-2 (its suspension taken as rigid), the
     /// pin of a ball joint between the same bodies for an angular motor, nothing for a linear one.

@@ -94,17 +94,6 @@ DUCTILE_INLINE double MotorAxis::force(const dJointFeedback& feedback, const Mat
     return numeric::Lu<double, 3>(gram(axes)).solve(transposed_times(axes, whole))[number_];
 }
 
-DUCTILE_INLINE double MotorAxis::velocity() const {
-    const auto& [a, b, reversed] = bodies_;
-    const Vector3<double> wa = angular_velocity(a), wb = angular_velocity(b);
-    if (turns()) return dot(axis(), difference(wa, wb));
-    const Placement now = placement();
-    const Vector3<double> at = point();
-    const Vector3<double> of_a = sum(linear_velocity(a), cross(wa, difference(at, now.position_a)));
-    const Vector3<double> of_b = sum(linear_velocity(b), cross(wb, difference(at, now.position_b)));
-    return dot(axis(), difference(of_a, of_b));
-}
-
 DUCTILE_INLINE Vector6<double> MotorAxis::response(const BodyAtJoint<double>& a,
                                                    const BodyAtJoint<double>& b) const {
     const Matrix6<double> k = inverse_mass_at_joint(a, b);
