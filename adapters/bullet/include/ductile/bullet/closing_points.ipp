@@ -33,9 +33,7 @@ namespace ductile::bullet::detail {
 /// Null for what a contact cannot push.
 [[nodiscard]] DUCTILE_INLINE const btRigidBody* pushed(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    const bool moves =
-        body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
-    return moves ? body : nullptr;
+    return moves(body) ? body : nullptr;
 }
 
 [[nodiscard]] DUCTILE_INLINE btVector3 velocity_at(const btCollisionObject& object,

@@ -34,6 +34,11 @@ struct AllConstraints : btDiscreteDynamicsWorld {
 
 namespace detail {
 
+/// It is there, and rows may move it.
+[[nodiscard]] inline bool moves(const btRigidBody* body) noexcept {
+    return body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
+}
+
 /// `time` [s] after it was at `from`.
 [[nodiscard]] inline btTransform moved(const btRigidBody& body, const btTransform& from,
                                        btScalar time) {
