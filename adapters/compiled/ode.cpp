@@ -7,7 +7,6 @@
 #include <ductile/ode/contact_maker.ipp>
 #include <ductile/ode/contact_rows.ipp>
 #include <ductile/ode/energy_meter.ipp>
-#include <ductile/ode/half_ahead.ipp>
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
@@ -17,8 +16,6 @@
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
-#include <ductile/ode/motor_pose.ipp>
-#include <ductile/ode/own_axes.ipp>
 #include <ductile/ode/own_settings.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
