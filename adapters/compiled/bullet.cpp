@@ -11,7 +11,6 @@
 #include <ductile/bullet/front_solver.ipp>
 #include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/held_contacts.ipp>
-#include <ductile/bullet/island_batches.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
 #include <ductile/bullet/local_tick.ipp>

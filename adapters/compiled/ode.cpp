@@ -16,17 +16,14 @@
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
-#include <ductile/ode/own_settings.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
-#include <ductile/ode/resting_islands.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/structure_in_time.ipp>
 #include <ductile/ode/user_joint.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
 #include <ductile/ode/world_parts.ipp>
-#include <ductile/ode/world_snapshot.ipp>
 
 namespace ductile::ode {
 

@@ -107,6 +107,14 @@ struct AttachedBodies {
     return body != nullptr && dBodyIsKinematic(body) == 0;
 }
 
+/// So slow that ODE would put it to sleep.
+[[nodiscard]] inline bool is_idle(dBodyID body) {
+    return dBodyGetAutoDisableFlag(body) != 0 &&
+           dBodyGetAutoDisableAverageSamplesCount(body) != 0 &&
+           norm(linear_velocity(body)) <= double(dBodyGetAutoDisableLinearThreshold(body)) &&
+           norm(angular_velocity(body)) <= double(dBodyGetAutoDisableAngularThreshold(body));
+}
+
 /// Both its bodies: ODE wakes what is attached to what is awake, but not for longer than a step.
 inline void wake(dJointID joint) noexcept {
     const AttachedBodies bodies = attached_bodies(joint);
