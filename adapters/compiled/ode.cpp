@@ -8,9 +8,7 @@
 #include <ductile/ode/contact_rows.ipp>
 #include <ductile/ode/energy_meter.ipp>
 #include <ductile/ode/island_solver.ipp>
-#include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
-#include <ductile/ode/joint_stops.ipp>
 #include <ductile/ode/member.ipp>
 #include <ductile/ode/member_geoms.ipp>
 #include <ductile/ode/member_snapshot.ipp>
