@@ -5,6 +5,8 @@
 
 #include <ode/ode.h>
 
+#include <functional>
+
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/numeric/lu.hpp"
@@ -94,6 +96,10 @@ struct AttachedBodies {
     bool reversed = false; ///< the user attached the world first
 
     bool operator==(const AttachedBodies&) const = default;
+    bool operator<(const AttachedBodies& other) const noexcept {
+        const std::less<dBodyID> less;
+        return a != other.a ? less(a, other.a) : less(b, other.b);
+    }
 };
 
 [[nodiscard]] inline AttachedBodies attached_bodies(dJointID joint) noexcept {
