@@ -20,6 +20,7 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <cstddef>
 #include <typeinfo>
 #include <vector>
 

@@ -14,6 +14,7 @@
 
 #include <ode/ode.h>
 
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
