@@ -9,7 +9,6 @@
 #include <ductile/bullet/draw.ipp>
 #include <ductile/bullet/energy_meter.ipp>
 #include <ductile/bullet/front_solver.ipp>
-#include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/held_contacts.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
