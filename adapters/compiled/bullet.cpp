@@ -7,16 +7,11 @@
 #include <ductile/bullet/closing_contacts.ipp>
 #include <ductile/bullet/constraint_stops.ipp>
 #include <ductile/bullet/draw.ipp>
-#include <ductile/bullet/driven_body.ipp>
-#include <ductile/bullet/driven_ways.ipp>
 #include <ductile/bullet/energy_meter.ipp>
 #include <ductile/bullet/front_solver.ipp>
-#include <ductile/bullet/half_ahead.ipp>
 #include <ductile/bullet/held_contacts.ipp>
-#include <ductile/bullet/island_batches.ipp>
 #include <ductile/bullet/island_solver.ipp>
 #include <ductile/bullet/joint_constraint.ipp>
-#include <ductile/bullet/local_scope.ipp>
 #include <ductile/bullet/local_tick.ipp>
 #include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/member.ipp>
@@ -24,7 +19,6 @@
 #include <ductile/bullet/member_tick.ipp>
 #include <ductile/bullet/members.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
-#include <ductile/bullet/part_risk.ipp>
 #include <ductile/bullet/piece_maker.ipp>
 #include <ductile/bullet/plastic_constraint.ipp>
 #include <ductile/bullet/plastic_motor.ipp>

@@ -7,30 +7,22 @@
 #include <ductile/ode/contact_maker.ipp>
 #include <ductile/ode/contact_rows.ipp>
 #include <ductile/ode/energy_meter.ipp>
-#include <ductile/ode/half_ahead.ipp>
 #include <ductile/ode/island_solver.ipp>
-#include <ductile/ode/joint_axes.ipp>
 #include <ductile/ode/joint_constraint.ipp>
-#include <ductile/ode/joint_stops.ipp>
 #include <ductile/ode/local_scope.ipp>
 #include <ductile/ode/member.ipp>
 #include <ductile/ode/member_geoms.ipp>
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
-#include <ductile/ode/motor_pose.ipp>
-#include <ductile/ode/own_axes.ipp>
-#include <ductile/ode/own_settings.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
-#include <ductile/ode/resting_islands.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/structure_in_time.ipp>
 #include <ductile/ode/user_joint.ipp>
 #include <ductile/ode/world.ipp>
 #include <ductile/ode/world_life.ipp>
 #include <ductile/ode/world_parts.ipp>
-#include <ductile/ode/world_snapshot.ipp>
 
 namespace ductile::ode {
 

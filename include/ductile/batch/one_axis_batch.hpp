@@ -36,7 +36,6 @@
 #include "ductile/batch/status.hpp"
 #include "ductile/fracture/event.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
-#include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
 

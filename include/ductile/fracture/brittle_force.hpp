@@ -11,7 +11,6 @@
 // that.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <limits>

@@ -52,9 +52,7 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <concepts>
-#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -66,10 +64,8 @@
 #include "ductile/joint/joint_totals.hpp"
 #include "ductile/joint/link_pose.hpp"
 #include "ductile/joint/link_types.hpp"
-#include "ductile/joint/rotation.hpp"
 #include "ductile/joint/swing.hpp"
 #include "ductile/surface/any_surface.hpp"
-#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {

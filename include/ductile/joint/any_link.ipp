@@ -4,12 +4,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "ductile/joint/any_link.hpp"
+#include "ductile/vocabulary/finite.hpp"
 
 namespace ductile {
 

@@ -49,7 +49,6 @@
 #include "ductile/joint/coupled_state.hpp"
 #include "ductile/joint/elastic_row.hpp"
 #include "ductile/joint/mean_flow.hpp"
-#include "ductile/joint/off_normal_work.hpp"
 #include "ductile/joint/remaining_travel.hpp"
 #include "ductile/joint/step_end.hpp"
 #include "ductile/law/law.hpp"

@@ -3,11 +3,10 @@
 // The course of a step of coupled_joint.hpp: templates, seen everywhere.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 
 #include "ductile/joint/coupled_joint.hpp"
+#include "ductile/joint/off_normal_work.hpp"
 
 namespace ductile {
 

@@ -12,8 +12,6 @@
 // h -> 0: that of the engines. A body that turns about a principal axis, a sphere: zero.
 #pragma once
 
-#include <cmath>
-
 #include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/vector.hpp"
 

@@ -3,9 +3,6 @@
 // The course of a step of one_axis_joint.hpp: templates, seen everywhere.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "ductile/joint/one_axis_joint.hpp"
 
 namespace ductile {

@@ -10,7 +10,6 @@
 
 #include "ductile/joint/joint_totals.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
 

@@ -11,16 +11,13 @@
 // A law may soften to zero at a finite p_f and stay there. It then offers `exhaustion()`, and the
 // break follows from it: the joint breaks where p reaches p_f, having dissipated exactly
 // work(0, p_f), the area under the law; no force jumps, because R has faded to zero. A step that
-// takes the work W from the bodies leaves p at travel_after(law, p, W), travel_after.hpp; what W
-// holds beyond work(p, p_f) was taken in excess and is handed back. Counting p as W / R instead
-// divides by zero there. Laws that never reach zero have p_f = ∞ and break by a criterion of their
-// own.
+// takes the work W from the bodies leaves p at p' with work(p, p') = W; what W holds beyond
+// work(p, p_f) was taken in excess and is handed back. Counting p as W / R instead divides by zero
+// there. Laws that never reach zero have p_f = ∞ and break by a criterion of their own.
 #pragma once
 
 #include <concepts>
 #include <limits>
-
-#include "ductile/vocabulary/leftover.hpp"
 
 namespace ductile {
 

@@ -26,9 +26,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <concepts>
-#include <limits>
 #include <utility>
 
 #include "ductile/law/cyclic.hpp"

@@ -54,10 +54,6 @@ struct MemberBlow {
     double in_all = 0;          ///< N >= n
 
     [[nodiscard]] bool yields() const noexcept { return utilisation > 1; }
-    /// Of the energy, absorbed by flow [-].
-    [[nodiscard]] double plastic_share() const noexcept {
-        return yields() ? 1 - 1 / (in_all * in_all) : 0.0;
-    }
 };
 
 /// `forces` are those of the blow in a whole member, `energy` what its contacts took [J]; `speed`:
@@ -102,14 +98,6 @@ struct MemberBlow {
     }
     blow.in_all = std::max(blow.utilisation, std::hypot(profile, sent));
     return blow;
-}
-
-/// U_y: strain energy of the blow's profile where the first section yields, without the wave [J].
-[[nodiscard]] inline double energy_at_yield(const Member& member, const MemberState& state,
-                                            const InternalForces& forces) {
-    const MemberBlow blow = member_blow(member, state, forces, 1, 0, 0);
-    return blow.utilisation > 0 ? 1 / (blow.utilisation * blow.utilisation)
-                                : std::numeric_limits<double>::infinity();
 }
 
 } // namespace ductile

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "ductile/member/member_course.hpp"
-#include "ductile/vocabulary/finite.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 #include "ductile/world/joint_report.hpp"
 

@@ -5,7 +5,6 @@
 // an elastic member would have kept of the blows that yielded it.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "ductile/member/member.hpp"

@@ -22,7 +22,6 @@
 //   k    elastic stiffness of the length            [N/m | N m/rad]
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <limits>
 

@@ -21,7 +21,6 @@
 
 #include "ductile/section/section.hpp"
 #include "ductile/section/strips.hpp"
-#include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
 
@@ -33,39 +32,24 @@ struct BoxParameters {
     S flange_thickness = std::numeric_limits<S>::quiet_NaN(); ///< t_f [m], in (0, h/2)
 };
 
-/// Immutable value; all members are noexcept after construction. Bending, shear, torsion and width:
-/// see StripSection.
 template <std::floating_point S>
-class Box : public StripSection<S> {
-  public:
-    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
-    explicit Box(const BoxParameters<S>& parameters)
-        : Box(checked(parameters), detail::Checked{}) {}
-
-    [[nodiscard]] const BoxParameters<S>& parameters() const noexcept { return parameters_; }
-
-  private:
+struct BoxShape {
+    using Scalar = S;
     using Parameters = BoxParameters<S>;
 
-    Box(const Parameters& p, detail::Checked) noexcept
-        : StripSection<S>(
-              {{p.width, p.flange_thickness},
-               {2 * p.web_thickness, p.height - 2 * p.flange_thickness},
-               {p.width, p.flange_thickness}},
-              {{p.height, p.web_thickness},
-               {2 * p.flange_thickness, p.width - 2 * p.web_thickness},
-               {p.height, p.web_thickness}},
-              constants(p)),
-          parameters_(p) {}
-
-    static const Parameters& checked(const Parameters& p) {
-        check::positive("Box.width", p.width, "m");
-        check::positive("Box.height", p.height, "m");
-        check::between("Box.web_thickness", p.web_thickness, S(0), p.width / 2, "m");
-        check::between("Box.flange_thickness", p.flange_thickness, S(0), p.height / 2, "m");
-        return p;
+    static void require(const Parameters& p) {
+        check_walls("Box", p, p.width / 2, p.height / 2);
     }
-
+    static Strips<S> about_x(const Parameters& p) noexcept {
+        return {{p.width, p.flange_thickness},
+                {2 * p.web_thickness, p.height - 2 * p.flange_thickness},
+                {p.width, p.flange_thickness}};
+    }
+    static Strips<S> about_y(const Parameters& p) noexcept {
+        return {{p.height, p.web_thickness},
+                {2 * p.flange_thickness, p.width - 2 * p.web_thickness},
+                {p.height, p.web_thickness}};
+    }
     static StripConstants<S> constants(const Parameters& p) noexcept {
         const S tw = p.web_thickness;
         const S tf = p.flange_thickness;
@@ -105,8 +89,15 @@ class Box : public StripSection<S> {
         return l * k * t + k * t * t + 4 * (t * t * thick / 2 - t * t * t / 6) +
                2 * (l * (m * m - t * t / 2) - 2 * lack);
     }
+};
 
-    Parameters parameters_;
+/// Immutable value; all members are noexcept after construction: see StripSection, ShapedSection.
+template <std::floating_point S>
+class Box : public ShapedSection<BoxShape<S>> {
+  public:
+    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
+    explicit Box(const BoxParameters<S>& parameters)
+        : ShapedSection<BoxShape<S>>(parameters) {}
 };
 
 template <std::floating_point S>

@@ -16,13 +16,10 @@
 #include <array>
 #include <concepts>
 #include <limits>
-#include <span>
 
 #include "ductile/section/point.hpp"
-#include "ductile/section/sand_heap.hpp"
 #include "ductile/section/section.hpp"
 #include "ductile/section/strips.hpp"
-#include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
 
@@ -34,45 +31,23 @@ struct ChannelParameters {
     S flange_thickness = std::numeric_limits<S>::quiet_NaN(); ///< t_f [m], in (0, h/2)
 };
 
-/// Immutable value; all members are noexcept after construction. Bending, shear, torsion and width:
-/// see StripSection.
 template <std::floating_point S>
-class Channel : public StripSection<S> {
-  public:
-    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
-    explicit Channel(const ChannelParameters<S>& parameters)
-        : Channel(checked(parameters), detail::Checked{}) {}
-
-    [[nodiscard]] const ChannelParameters<S>& parameters() const noexcept { return parameters_; }
-
-    /// Corners, counterclockwise, the centroid at the origin [m].
-    [[nodiscard]] std::array<Point<S>, 8> outline() const noexcept {
-        return this->placed(corners(parameters_));
-    }
-
-  private:
+struct ChannelShape {
+    using Scalar = S;
     using Parameters = ChannelParameters<S>;
 
-    Channel(const Parameters& p, detail::Checked) noexcept
-        : StripSection<S>(
-              {{p.width, p.flange_thickness},
-               {p.web_thickness, p.height - 2 * p.flange_thickness},
-               {p.width, p.flange_thickness}},
-              {{p.height, p.web_thickness}, {2 * p.flange_thickness, p.width - p.web_thickness}},
-              constants(p)),
-          parameters_(p) {}
-
-    static const Parameters& checked(const Parameters& p) {
-        check::positive("Channel.width", p.width, "m");
-        check::positive("Channel.height", p.height, "m");
-        check::between("Channel.web_thickness", p.web_thickness, S(0), p.width, "m");
-        check::between("Channel.flange_thickness", p.flange_thickness, S(0), p.height / 2, "m");
-        return p;
+    static void require(const Parameters& p) {
+        check_walls("Channel", p, p.width, p.height / 2);
     }
-
+    static Strips<S> about_x(const Parameters& p) noexcept {
+        return {{p.width, p.flange_thickness},
+                {p.web_thickness, p.height - 2 * p.flange_thickness},
+                {p.width, p.flange_thickness}};
+    }
+    static Strips<S> about_y(const Parameters& p) noexcept {
+        return {{p.height, p.web_thickness}, {2 * p.flange_thickness, p.width - p.web_thickness}};
+    }
     static StripConstants<S> constants(const Parameters& p) noexcept {
-        const auto outline = corners(p);
-        const S heap = sand_heap_volume(std::span<const Point<S>>(outline));
         const S b = p.width;
         const S tw = p.web_thickness;
         const S tf = p.flange_thickness;
@@ -82,8 +57,7 @@ class Channel : public StripSection<S> {
                 .shear_area_y = p.height * tw,
                 .elastic_shear_area_x = 5 * b * tf / 3,
                 .elastic_shear_area_y = p.height * tw,
-                .torsion_constant = (flanges + (p.height - tf) * tw * tw * tw) / 3,
-                .plastic_torsion_modulus = 2 * heap};
+                .torsion_constant = (flanges + (p.height - tf) * tw * tw * tw) / 3};
     }
 
     /// From the lower left corner of the bounding box.
@@ -94,8 +68,15 @@ class Channel : public StripSection<S> {
         const S tf = p.flange_thickness;
         return {{{0, 0}, {b, 0}, {b, tf}, {tw, tf}, {tw, h - tf}, {b, h - tf}, {b, h}, {0, h}}};
     }
+};
 
-    Parameters parameters_;
+/// Immutable value; all members are noexcept after construction: see StripSection, ShapedSection.
+template <std::floating_point S>
+class Channel : public ShapedSection<ChannelShape<S>> {
+  public:
+    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
+    explicit Channel(const ChannelParameters<S>& parameters)
+        : ShapedSection<ChannelShape<S>>(parameters) {}
 };
 
 template <std::floating_point S>

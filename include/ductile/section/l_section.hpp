@@ -19,10 +19,8 @@
 #include <array>
 #include <concepts>
 #include <limits>
-#include <span>
 
 #include "ductile/section/point.hpp"
-#include "ductile/section/sand_heap.hpp"
 #include "ductile/section/section.hpp"
 #include "ductile/section/strips.hpp"
 #include "ductile/vocabulary/check.hpp"
@@ -36,42 +34,23 @@ struct LSectionParameters {
     S thickness = std::numeric_limits<S>::quiet_NaN(); ///< t [m], in (0, min(b, h))
 };
 
-/// Immutable value; all members are noexcept after construction. Bending, shear, torsion and width:
-/// see StripSection.
 template <std::floating_point S>
-class LSection : public StripSection<S> {
-  public:
-    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
-    explicit LSection(const LSectionParameters<S>& parameters)
-        : LSection(checked(parameters), detail::Checked{}) {}
-
-    [[nodiscard]] const LSectionParameters<S>& parameters() const noexcept { return parameters_; }
-
-    /// Corners, counterclockwise, the centroid at the origin [m].
-    [[nodiscard]] std::array<Point<S>, 6> outline() const noexcept {
-        return this->placed(corners(parameters_));
-    }
-
-  private:
+struct LSectionShape {
+    using Scalar = S;
     using Parameters = LSectionParameters<S>;
 
-    LSection(const Parameters& p, detail::Checked) noexcept
-        : StripSection<S>(
-              {{p.width, p.thickness}, {p.thickness, p.height - p.thickness}},
-              {{p.height, p.thickness}, {p.thickness, p.width - p.thickness}},
-              constants(p)),
-          parameters_(p) {}
-
-    static const Parameters& checked(const Parameters& p) {
+    static void require(const Parameters& p) {
         check::positive("LSection.width", p.width, "m");
         check::positive("LSection.height", p.height, "m");
         check::between("LSection.thickness", p.thickness, S(0), std::min(p.width, p.height), "m");
-        return p;
     }
-
+    static Strips<S> about_x(const Parameters& p) noexcept {
+        return {{p.width, p.thickness}, {p.thickness, p.height - p.thickness}};
+    }
+    static Strips<S> about_y(const Parameters& p) noexcept {
+        return {{p.height, p.thickness}, {p.thickness, p.width - p.thickness}};
+    }
     static StripConstants<S> constants(const Parameters& p) noexcept {
-        const auto outline = corners(p);
-        const S heap = sand_heap_volume(std::span<const Point<S>>(outline));
         const S b = p.width;
         const S h = p.height;
         const S t = p.thickness;
@@ -82,8 +61,7 @@ class LSection : public StripSection<S> {
                 .shear_area_y = h * t,
                 .elastic_shear_area_x = 5 * b * t / 6,
                 .elastic_shear_area_y = 5 * h * t / 6,
-                .torsion_constant = (b + h - t) * t * t * t / 3,
-                .plastic_torsion_modulus = 2 * heap};
+                .torsion_constant = (b + h - t) * t * t * t / 3};
     }
 
     /// From the lower left corner of the bounding box.
@@ -91,8 +69,15 @@ class LSection : public StripSection<S> {
         const S t = p.thickness;
         return {{{0, 0}, {p.width, 0}, {p.width, t}, {t, t}, {t, p.height}, {0, p.height}}};
     }
+};
 
-    Parameters parameters_;
+/// Immutable value; all members are noexcept after construction: see StripSection, ShapedSection.
+template <std::floating_point S>
+class LSection : public ShapedSection<LSectionShape<S>> {
+  public:
+    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
+    explicit LSection(const LSectionParameters<S>& parameters)
+        : ShapedSection<LSectionShape<S>>(parameters) {}
 };
 
 template <std::floating_point S>

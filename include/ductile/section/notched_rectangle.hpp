@@ -8,7 +8,6 @@
 // Source: Nikula (2017), Handling of plasticity in physics engine, sections 2.2.3 and 2.5.
 #pragma once
 
-#include <array>
 #include <concepts>
 #include <limits>
 
@@ -24,67 +23,33 @@ struct NotchedRectangleParameters {
     S notch = std::numeric_limits<S>::quiet_NaN();  ///< depth d of the notch [m], in [0, height)
 };
 
-/// Immutable value; all members are noexcept after construction.
+/// Immutable value; all members are noexcept after construction: of the ligament but for height().
 template <std::floating_point S>
-class NotchedRectangle {
+class NotchedRectangle : public Rectangle<S> {
   public:
-    using Scalar = S;
-
     /// @throws std::invalid_argument where a length is missing (NaN) or out of range, as where the
     /// notch is as deep as the section.
     explicit NotchedRectangle(const NotchedRectangleParameters<S>& parameters)
-        : height_(check::positive("NotchedRectangle.height", parameters.height, "m")),
-          ligament_({.width = check::positive("NotchedRectangle.width", parameters.width, "m"),
-                     .height = height_ - checked_notch(parameters)}) {}
+        : Rectangle<S>({.width = check::positive("NotchedRectangle.width", parameters.width, "m"),
+                        .height = ligament_height(parameters)}),
+          height_(parameters.height) {}
 
-    [[nodiscard]] S width() const noexcept { return ligament_.width(); }              ///< b [m]
     [[nodiscard]] S height() const noexcept { return height_; }                       ///< h [m]
-    [[nodiscard]] S notch() const noexcept { return height_ - ligament_.height(); }   ///< d [m]
-    [[nodiscard]] const Rectangle<S>& ligament() const noexcept { return ligament_; } ///< b × (h - d)
-
-    [[nodiscard]] S area() const noexcept { return ligament_.area(); }
-    [[nodiscard]] S second_moment(SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.second_moment(axis);
-    }
-    [[nodiscard]] S product_of_inertia() const noexcept { return 0; }
-    [[nodiscard]] S elastic_modulus(SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.elastic_modulus(axis);
-    }
-    [[nodiscard]] S plastic_modulus(SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.plastic_modulus(axis);
-    }
-    [[nodiscard]] S shear_area(SectionAxis axis) const noexcept { return ligament_.shear_area(axis); }
-    [[nodiscard]] S elastic_shear_area(SectionAxis axis) const noexcept {
-        return ligament_.elastic_shear_area(axis);
-    }
-    [[nodiscard]] S torsion_constant() const noexcept { return ligament_.torsion_constant(); }
-    [[nodiscard]] S plastic_torsion_modulus() const noexcept {
-        return ligament_.plastic_torsion_modulus();
-    }
-    [[nodiscard]] S width_at(S height, SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.width_at(height, axis);
-    }
-    [[nodiscard]] S lowest(SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.lowest(axis);
-    }
-    [[nodiscard]] S highest(SectionAxis axis = SectionAxis::x) const noexcept {
-        return ligament_.highest(axis);
-    }
-    /// Corners of the ligament, counterclockwise, its centroid at the origin [m].
-    [[nodiscard]] std::array<Point<S>, 4> outline() const noexcept { return ligament_.outline(); }
+    [[nodiscard]] S notch() const noexcept { return height_ - ligament().height(); }  ///< d [m]
+    [[nodiscard]] const Rectangle<S>& ligament() const noexcept { return *this; } ///< b × (h - d)
 
   private:
-    static S checked_notch(const NotchedRectangleParameters<S>& parameters) {
+    static S ligament_height(const NotchedRectangleParameters<S>& parameters) {
         constexpr auto field = "NotchedRectangle.notch";
+        const S height = check::positive("NotchedRectangle.height", parameters.height, "m");
         check::non_negative(field, parameters.notch, "m");
-        if (!(parameters.notch < parameters.height)) {
-            check::between(field, parameters.notch, S(0), parameters.height, "m");
+        if (!(parameters.notch < height)) {
+            check::between(field, parameters.notch, S(0), height, "m");
         }
-        return parameters.notch;
+        return height - parameters.notch;
     }
 
     S height_;
-    Rectangle<S> ligament_;
 };
 
 template <std::floating_point S>

@@ -17,9 +17,13 @@
 #include <concepts>
 #include <cstddef>
 #include <initializer_list>
+#include <span>
+#include <string>
 
 #include "ductile/section/point.hpp"
+#include "ductile/section/sand_heap.hpp"
 #include "ductile/section/section.hpp"
+#include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
 
@@ -117,15 +121,7 @@ struct StripConstants {
     S plastic_torsion_modulus = 0;
 };
 
-namespace detail {
-
-/// Says that a constructor's parameters were checked.
-struct Checked {};
-
-} // namespace detail
-
-/// Base of the sections made of rectangles: they add a constructor and their dimensions. Immutable
-/// value; all members are noexcept.
+/// What all sections made of rectangles have. Immutable value; all members are noexcept.
 template <std::floating_point S>
 class StripSection {
   public:
@@ -171,15 +167,6 @@ class StripSection {
     StripSection(const Strips<S>& about_x, const Strips<S>& about_y,
                  const StripConstants<S>& constants) noexcept
         : about_x_(about_x), about_y_(about_y), constants_(constants) {}
-    /// Corners counted from the lower left corner of the bounding box, moved to the centroid.
-    template <std::size_t N>
-    [[nodiscard]] std::array<Point<S>, N> placed(std::array<Point<S>, N> corners) const noexcept {
-        for (Point<S>& corner : corners) {
-            corner = corner + Point<S>{lowest(SectionAxis::y), lowest(SectionAxis::x)};
-        }
-        return corners;
-    }
-
     StripSection(const StripSection&) = default;
     StripSection& operator=(const StripSection&) = default;
     ~StripSection() = default;
@@ -192,6 +179,58 @@ class StripSection {
     Strips<S> about_x_;
     Strips<S> about_y_;
     StripConstants<S> constants_;
+};
+
+/// Throws of the lengths that most of them have: the walls must be thinner than `web`, `flange`.
+template <class Parameters, std::floating_point S>
+void check_walls(const std::string& kind, const Parameters& p, S web, S flange) {
+    check::positive(kind + ".width", p.width, "m");
+    check::positive(kind + ".height", p.height, "m");
+    check::between(kind + ".web_thickness", p.web_thickness, S(0), web, "m");
+    check::between(kind + ".flange_thickness", p.flange_thickness, S(0), flange, "m");
+}
+
+/// A section by its shape, which says of its `Parameters` what is wrong with them (`require`), what
+/// the strips about x and y are and the constants; where it has `corners`, counterclockwise from the
+/// lower left corner of the bounding box, W_T follows from these.
+template <class Shape>
+class ShapedSection : public StripSection<typename Shape::Scalar> {
+    using S = typename Shape::Scalar;
+
+  public:
+    using Parameters = typename Shape::Parameters;
+
+    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
+    explicit ShapedSection(const Parameters& parameters)
+        : ShapedSection((Shape::require(parameters), parameters), Checked{}) {}
+
+    [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
+
+    /// Corners, counterclockwise, the centroid at the origin [m].
+    [[nodiscard]] auto outline() const noexcept requires
+        requires(const Parameters& p) { Shape::corners(p); } {
+        auto corners = Shape::corners(parameters_);
+        for (Point<S>& corner : corners) {
+            corner = corner + Point<S>{this->lowest(SectionAxis::y), this->lowest(SectionAxis::x)};
+        }
+        return corners;
+    }
+
+  private:
+    struct Checked {};
+    ShapedSection(const Parameters& p, Checked) noexcept
+        : StripSection<S>(Shape::about_x(p), Shape::about_y(p), constants(p)), parameters_(p) {}
+    static StripConstants<S> constants(const Parameters& p) noexcept {
+        StripConstants<S> result = Shape::constants(p);
+        if constexpr (requires { Shape::corners(p); }) {
+            const auto corners = Shape::corners(p);
+            result.plastic_torsion_modulus =
+                2 * sand_heap_volume(std::span<const Point<S>>(corners));
+        }
+        return result;
+    }
+
+    Parameters parameters_;
 };
 
 } // namespace ductile

@@ -14,13 +14,10 @@
 #include <array>
 #include <concepts>
 #include <limits>
-#include <span>
 
 #include "ductile/section/point.hpp"
-#include "ductile/section/sand_heap.hpp"
 #include "ductile/section/section.hpp"
 #include "ductile/section/strips.hpp"
-#include "ductile/vocabulary/check.hpp"
 
 namespace ductile {
 
@@ -32,45 +29,23 @@ struct TSectionParameters {
     S flange_thickness = std::numeric_limits<S>::quiet_NaN(); ///< t_f [m], in (0, h)
 };
 
-/// Immutable value; all members are noexcept after construction. Bending, shear, torsion and width:
-/// see StripSection.
 template <std::floating_point S>
-class TSection : public StripSection<S> {
-  public:
-    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
-    explicit TSection(const TSectionParameters<S>& parameters)
-        : TSection(checked(parameters), detail::Checked{}) {}
-
-    [[nodiscard]] const TSectionParameters<S>& parameters() const noexcept { return parameters_; }
-
-    /// Corners, counterclockwise, the centroid at the origin [m].
-    [[nodiscard]] std::array<Point<S>, 8> outline() const noexcept {
-        return this->placed(corners(parameters_));
-    }
-
-  private:
+struct TSectionShape {
+    using Scalar = S;
     using Parameters = TSectionParameters<S>;
 
-    TSection(const Parameters& p, detail::Checked) noexcept
-        : StripSection<S>(
-              {{p.web_thickness, p.height - p.flange_thickness}, {p.width, p.flange_thickness}},
-              {{p.flange_thickness, (p.width - p.web_thickness) / 2},
-               {p.height, p.web_thickness},
-               {p.flange_thickness, (p.width - p.web_thickness) / 2}},
-              constants(p)),
-          parameters_(p) {}
-
-    static const Parameters& checked(const Parameters& p) {
-        check::positive("TSection.width", p.width, "m");
-        check::positive("TSection.height", p.height, "m");
-        check::between("TSection.web_thickness", p.web_thickness, S(0), p.width, "m");
-        check::between("TSection.flange_thickness", p.flange_thickness, S(0), p.height, "m");
-        return p;
+    static void require(const Parameters& p) {
+        check_walls("TSection", p, p.width, p.height);
     }
-
+    static Strips<S> about_x(const Parameters& p) noexcept {
+        return {{p.web_thickness, p.height - p.flange_thickness}, {p.width, p.flange_thickness}};
+    }
+    static Strips<S> about_y(const Parameters& p) noexcept {
+        return {{p.flange_thickness, (p.width - p.web_thickness) / 2},
+                {p.height, p.web_thickness},
+                {p.flange_thickness, (p.width - p.web_thickness) / 2}};
+    }
     static StripConstants<S> constants(const Parameters& p) noexcept {
-        const auto outline = corners(p);
-        const S heap = sand_heap_volume(std::span<const Point<S>>(outline));
         const S b = p.width;
         const S tw = p.web_thickness;
         const S tf = p.flange_thickness;
@@ -79,8 +54,7 @@ class TSection : public StripSection<S> {
                 .shear_area_y = p.height * tw,
                 .elastic_shear_area_x = 5 * b * tf / 6,
                 .elastic_shear_area_y = 5 * p.height * tw / 6,
-                .torsion_constant = (b * tf * tf * tf + (p.height - tf / 2) * tw * tw * tw) / 3,
-                .plastic_torsion_modulus = 2 * heap};
+                .torsion_constant = (b * tf * tf * tf + (p.height - tf / 2) * tw * tw * tw) / 3};
     }
 
     /// From the lower left corner of the bounding box.
@@ -93,8 +67,15 @@ class TSection : public StripSection<S> {
         return {{{left, 0}, {right, 0}, {right, under}, {b, under},
                  {b, h}, {0, h}, {0, under}, {left, under}}};
     }
+};
 
-    Parameters parameters_;
+/// Immutable value; all members are noexcept after construction: see StripSection, ShapedSection.
+template <std::floating_point S>
+class TSection : public ShapedSection<TSectionShape<S>> {
+  public:
+    /// @throws std::invalid_argument where a length is missing (NaN) or out of range.
+    explicit TSection(const TSectionParameters<S>& parameters)
+        : ShapedSection<TSectionShape<S>>(parameters) {}
 };
 
 template <std::floating_point S>

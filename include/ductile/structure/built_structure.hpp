@@ -12,6 +12,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -134,6 +136,73 @@ class BuiltStructure {
     std::vector<bool> joint_there_, body_there_;
     std::vector<JointFrame<double>> body_made_; ///< by body
     std::vector<JointFrame<double>> own_made_;  ///< by node
+};
+
+/// A body of the user's, as the engine names it, in place of a support.
+template <class Body>
+struct UsersBody {
+    NodeId node;
+    Body body = nullptr;
+};
+
+/// One that has all its joints from the start. `JointType`: the engine's plastic joint; `Body`: how
+/// it names a body, null: the static world.
+template <class World, class JointType, class Body>
+class JointedStructure : public BuiltStructure {
+  public:
+    using Joint = JointType;
+
+    /// The joint at an end of a member, or that of a number from its start.
+    /// @throws std::invalid_argument as StructurePlan::joint, and where it was removed.
+    [[nodiscard]] Joint& joint(std::string_view member, MemberEnd end) const {
+        return *joints_[present_joint(plan().joint(member, end))];
+    }
+    [[nodiscard]] Joint& joint(std::string_view member, std::size_t number) const {
+        return *joints_[present_joint(plan().joint(member, number))];
+    }
+    /// Those of the plan, in its order; null where one was removed.
+    [[nodiscard]] Joint* joint(std::size_t index) const { return joints_[index].get(); }
+    [[nodiscard]] virtual Body body(std::size_t index) const = 0;
+
+  protected:
+    /// @throws std::invalid_argument as make_plan, and where a body of `own` is null.
+    JointedStructure(World& world, const StructureModel& model,
+                     const std::vector<UsersBody<Body>>& own)
+        : BuiltStructure(plan_with(model, own)), world_(world), own_(plan().seats.size(), nullptr) {
+        for (const UsersBody<Body>& one : own) own_[one.node.index] = one.body;
+    }
+    ~JointedStructure() = default;
+
+    /// Who has a seat of the plan.
+    [[nodiscard]] Body at(const PlanSeat& seat) const {
+        if (seat.kind == PlanSeat::Kind::ground) return nullptr;
+        return seat.kind == PlanSeat::Kind::own ? own_[seat.index] : body(seat.index);
+    }
+
+    World& world_;
+    std::vector<std::unique_ptr<Joint>> joints_;
+
+  private:
+    static StructurePlan plan_with(const StructureModel& model,
+                                   const std::vector<UsersBody<Body>>& own) {
+        std::vector<NodeId> nodes;
+        for (const UsersBody<Body>& one : own) {
+            nodes.push_back(one.node);
+            if (one.body != nullptr) continue;
+            throw std::invalid_argument("Structure.own.body = null at node " +
+                                        std::to_string(one.node.index) + ": must be a body");
+        }
+        return make_plan(model, nodes);
+    }
+    [[nodiscard]] const PairQueries& queries(std::size_t joint) const override {
+        return *joints_[joint];
+    }
+    void drop_joint(std::size_t joint) override {
+        world_.remove(*joints_[joint]);
+        joints_[joint].reset();
+    }
+
+    std::vector<Body> own_; ///< by node
 };
 
 } // namespace ductile

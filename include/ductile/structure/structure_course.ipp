@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <string>
 
 #include "ductile/member/active_sections.hpp"
 #include "ductile/structure/refuse.hpp"

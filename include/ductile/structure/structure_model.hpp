@@ -30,7 +30,6 @@
 // the node and the joint is rigid. Weight is counted from node to node.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <limits>

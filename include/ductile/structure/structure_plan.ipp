@@ -4,10 +4,8 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include "ductile/structure/mechanism.hpp"
 #include "ductile/structure/refuse.hpp"

@@ -28,7 +28,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <limits>
 #include <utility>
 
 #include "ductile/surface/closest_point.hpp"

@@ -16,8 +16,6 @@
 // Source: derived here.
 #pragma once
 
-#include <algorithm>
-
 #include "ductile/surface/surface.hpp"
 
 namespace ductile {

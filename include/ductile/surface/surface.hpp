@@ -26,7 +26,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <concepts>
 #include <limits>
 

@@ -10,10 +10,6 @@
 // the joint's state, so that a run which goes on from a saved state goes on bit for bit.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "ductile/joint/any_link.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/vocabulary/linkage.hpp"

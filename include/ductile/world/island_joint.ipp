@@ -3,7 +3,6 @@
 // Bodies of island_joint.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "ductile/world/island_joint.hpp"

@@ -56,4 +56,46 @@ class LinkJoint : private LinkOwner<Joint>, public Constraint {
           Constraint(LinkOwner<Joint>::link, std::forward<More>(more)...) {}
 };
 
+/// One that turns about z of its frames, as `Base` with one plastic axis.
+template <class Base>
+class HingeJoint : public Base {
+  public:
+    static constexpr JointAxis axis = JointAxis::torsion; ///< z of the frames
+
+    /// Angle of A relative to B about the axis, not wrapped [rad].
+    [[nodiscard]] double rotation() const { return Base::position(axis); }
+    /// Velocity of that after the last step's solve [rad/s].
+    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
+    /// Geometric rest angle q_p [rad].
+    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
+    /// Accumulated plastic rotation p, work-conjugate [rad].
+    [[nodiscard]] double plastic_rotation() const { return Base::plastic_travel(); }
+    /// Moment about the axis in the last step, positive where it turns A about +axis [N m].
+    [[nodiscard]] double moment() const { return Base::force(axis); }
+
+  protected:
+    using Base::Base;
+};
+
+/// One that slides along z of its frames.
+template <class Base>
+class SliderJoint : public Base {
+  public:
+    static constexpr JointAxis axis = JointAxis::axial; ///< z of the frames
+
+    /// Change of length: A's displacement along the axis relative to B [m].
+    [[nodiscard]] double elongation() const { return Base::position(axis); }
+    /// Velocity of that after the last step's solve [m/s].
+    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
+    /// Geometric rest elongation q_p [m].
+    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
+    /// Accumulated plastic elongation p, work-conjugate [m].
+    [[nodiscard]] double plastic_elongation() const { return Base::plastic_travel(); }
+    /// Force along the axis in the last step, positive where it pushes A along +axis [N].
+    [[nodiscard]] double force() const { return Base::force(axis); }
+
+  protected:
+    using Base::Base;
+};
+
 } // namespace ductile

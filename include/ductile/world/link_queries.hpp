@@ -3,9 +3,6 @@
 // The queries of a joint that is a link of six rows, in any engine.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <optional>
 #include <span>
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/vocabulary/check.hpp"
 #include "ductile/world/stepped_world.hpp"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/world/supervisor.hpp"
 

@@ -19,6 +19,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
 
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/vocabulary/vector.hpp"
@@ -41,6 +44,30 @@ struct ContactBody {
         return sum(velocity, cross(spin, arm));
     }
 };
+
+/// By who touches: in the order that `nearest` needs.
+template <class Bodies, class Seen>
+void sort_by_bodies(std::vector<std::pair<Bodies, Seen>>& seen) {
+    std::stable_sort(seen.begin(), seen.end(),
+                     [](const auto& x, const auto& y) { return x.first < y.first; });
+}
+/// Of the same bodies, what has the nearest `point`; null: there is nothing.
+template <class Bodies, class Seen>
+[[nodiscard]] const Seen* nearest(const std::vector<std::pair<Bodies, Seen>>& seen,
+                                  const Bodies& bodies, const Vector3<double>& point) {
+    const Seen* nearest = nullptr;
+    double least = std::numeric_limits<double>::infinity();
+    auto each =
+        std::lower_bound(seen.begin(), seen.end(), bodies,
+                         [](const auto& one, const Bodies& key) { return one.first < key; });
+    for (; each != seen.end() && each->first == bodies; ++each) {
+        const double distance = norm(difference(each->second.point, point));
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = &each->second;
+    }
+    return nearest;
+}
 
 /// w [m/s]; `time`: t > 0, `half`: h/2 [s].
 [[nodiscard]] inline double turned_contact(const SeenContact& now, const SeenContact& then,
@@ -69,6 +96,13 @@ struct ContactBody {
                                                   const ContactBody& b,
                                                   const Vector3<double>& arm_b) {
     return difference(cross(a.spin, cross(a.spin, arm_a)), cross(b.spin, cross(b.spin, arm_b)));
+}
+
+/// When a gap of `way` [m] is closed that closes at `speed` [m/s] and gains `gain` [m/s²] on that;
+/// infinite: never [s].
+[[nodiscard]] inline double time_to_close(double way, double speed, double gain) {
+    const double both = speed + std::sqrt(std::max(speed * speed + 2 * gain * way, 0.0));
+    return both > 0 ? 2 * way / both : std::numeric_limits<double>::infinity();
 }
 
 /// Whether what a contact does to the flows of a part of `h` [s] could matter beside `least` [J].

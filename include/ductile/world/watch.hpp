@@ -10,7 +10,6 @@
 // joint that is broken when first seen (restored from a saved state) is not told as broken.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <deque>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cases.hpp"
-#include "ductile/surface/closest_point_return.hpp"
+#include "closest_point_return.hpp"
 
 using namespace ductile;
 using namespace ductile::test;

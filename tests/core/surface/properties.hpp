@@ -15,7 +15,6 @@
 #include "cases.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
-#include "ductile/surface/closest_point_return.hpp"
 
 namespace ductile::test {
 

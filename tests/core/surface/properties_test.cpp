@@ -13,7 +13,6 @@
 #include "properties.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
-#include "ductile/surface/closest_point_return.hpp"
 
 using namespace ductile;
 using namespace ductile::test;

@@ -50,7 +50,6 @@
 
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ductile/bullet/driven_ways.hpp"
@@ -133,7 +132,6 @@ class ClosingContactsFinder {
     [[nodiscard]] Fastest find_fastest(const btDiscreteDynamicsWorld& world, btScalar h) const;
     void find_falling(btDiscreteDynamicsWorld& world, btScalar h);
     [[nodiscard]] btVector3 falls(const btCollisionObject& object) const;
-    [[nodiscard]] std::span<btRigidBody* const> bodies(const btDiscreteDynamicsWorld& world) const;
     void add_joint(const btTypedConstraint& constraint);
     void look_ahead(btDiscreteDynamicsWorld& world, const Pair& pair, double h, double touching,
                     double apart, ClosingContacts& found);

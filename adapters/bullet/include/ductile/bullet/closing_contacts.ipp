@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/closing_points.ipp" // IWYU pragma: keep
@@ -123,11 +123,6 @@ DUCTILE_INLINE void ClosingContactsFinder::note_found(const btCollisionObject& a
     }
 }
 
-DUCTILE_INLINE std::span<btRigidBody* const> ClosingContactsFinder::bodies(
-    const btDiscreteDynamicsWorld& world) const {
-    return scope_ != nullptr ? scope_->bodies() : MovingBodies::all(world);
-}
-
 /// Many of Bullet's algorithms see no contact before shapes overlap: what was just put down on
 /// something falls for a part, and then strikes it. What hangs together falls if nothing holds any
 /// of it.
@@ -136,7 +131,7 @@ DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld&
     falling_.clear();
     if (scope_ != nullptr) return; // the frame's first look is at all
     std::vector<const btRigidBody*> slow;
-    for (const btRigidBody* body : bodies(world)) {
+    for (const btRigidBody* body : bodies_of(world, scope_)) {
         const btScalar gain = body->getGravity().length() * h;
         if (body->isActive() && body->getInvMass() > 0 &&
             body->getLinearVelocity().length2() < gain * gain) {
@@ -146,16 +141,14 @@ DUCTILE_INLINE void ClosingContactsFinder::find_falling(btDiscreteDynamicsWorld&
     if (slow.empty()) return;
     FallingGroups groups(world.getNumCollisionObjects(), slow);
     // not by their constraint references, which only those have whose bodies do not collide
-    for (int i = 0; i < world.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world.getConstraint(i);
-        if (!constraint.isEnabled()) continue;
-        groups.join(constraint.getRigidBodyA(), constraint.getRigidBodyB());
+    for (btTypedConstraint* constraint : constraints_of(world, nullptr)) {
+        if (!constraint->isEnabled()) continue;
+        groups.join(constraint->getRigidBodyA(), constraint->getRigidBodyB());
     }
     btDispatcher& dispatcher = *world.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-        const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
-        if (manifold.getNumContacts() == 0 || !dispatcher.needsResponse(&a, &b)) continue;
+    for (const btPersistentManifold* manifold : manifolds_of(dispatcher, nullptr)) {
+        const btCollisionObject &a = *manifold->getBody0(), &b = *manifold->getBody1();
+        if (manifold->getNumContacts() == 0 || !dispatcher.needsResponse(&a, &b)) continue;
         groups.hold(a);
         groups.hold(b);
     }
@@ -179,7 +172,7 @@ DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamics
         speed =
             std::max(speed, body.getLinearVelocity().length() + detail::turning_speed(body, reach));
     };
-    for (const btRigidBody* body : bodies(world)) {
+    for (const btRigidBody* body : bodies_of(world, scope_)) {
         if (body->getInvMass() > 0) inverse_mass = std::min(inverse_mass, body->getInvMass());
         if (body->isActive()) see(*body);
     }
@@ -194,14 +187,9 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
                                                           double apart) {
     constexpr double earliest = 0.5; // of the part
     double first = h;
-    btDispatcher& dispatcher = *world.getDispatcher();
-    const int count =
-        scope_ != nullptr ? int(scope_->manifolds().size()) : dispatcher.getNumManifolds();
     found_bodies_.clear();
-    for (int i = 0; i < count; ++i) {
-        const btPersistentManifold& manifold = scope_ != nullptr
-                                                   ? *scope_->manifolds()[std::size_t(i)]
-                                                   : *dispatcher.getManifoldByIndexInternal(i);
+    for (const btPersistentManifold* each : manifolds_of(*world.getDispatcher(), scope_)) {
+        const btPersistentManifold& manifold = *each;
         double impulse = 0;
         const btManifoldPoint* nearest = nullptr;
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
@@ -246,8 +234,9 @@ DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& wor
         const double gain = (now.nearest.speed - speed) / h;
         if (!(gain > 0)) continue;
         note_found(*pair.a, *pair.b);
-        const double at = std::sqrt(speed * speed + 2 * gain * way);
-        const double closed = speed > 0 ? 2 * way / (speed + at) : (at - speed) / gain;
+        const double closed = speed > 0
+                                  ? time_to_close(way, speed, gain)
+                                  : (std::sqrt(speed * speed + 2 * gain * way) - speed) / gain;
         first = std::min(first, touched ? std::max(closed, h / 2) : closed);
     }
     return first;

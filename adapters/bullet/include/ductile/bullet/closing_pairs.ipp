@@ -9,11 +9,8 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 
-#include <algorithm>
 #include <tuple>
 #include <typeinfo>
-#include <utility>
-#include <vector>
 
 namespace ductile::bullet {
 
@@ -21,11 +18,7 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(btDiscreteDynamicsWorld&
     found_islands_ = true;
     joined_.clear();
     islands_.clear();
-    if (scope_ != nullptr) {
-        for (const btTypedConstraint* constraint : scope_->constraints()) add_joint(*constraint);
-    } else {
-        for (int i = 0; i < world.getNumConstraints(); ++i) add_joint(*world.getConstraint(i));
-    }
+    for (const btTypedConstraint* joint : constraints_of(world, scope_)) add_joint(*joint);
     const auto sort_once = [](auto& items) {
         std::sort(items.begin(), items.end());
         items.erase(std::unique(items.begin(), items.end()), items.end());

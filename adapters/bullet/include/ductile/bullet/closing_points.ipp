@@ -33,9 +33,7 @@ namespace ductile::bullet::detail {
 /// Null for what a contact cannot push.
 [[nodiscard]] DUCTILE_INLINE const btRigidBody* pushed(const btCollisionObject& object) {
     const btRigidBody* body = btRigidBody::upcast(&object);
-    const bool moves =
-        body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
-    return moves ? body : nullptr;
+    return moves(body) ? body : nullptr;
 }
 
 [[nodiscard]] DUCTILE_INLINE btVector3 velocity_at(const btCollisionObject& object,
@@ -121,8 +119,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
             if (!(end * end > 2 * yields * apart)) return 0;
-            const double at = std::sqrt(speed * speed + 2 * faster * way);
-            found.time = std::min(found.time, 2 * way / (speed + at));
+            found.time = std::min(found.time, time_to_close(way, speed, faster));
             return 0;
         }
         if (!(speed > 0) || !(yields > 0)) return 0;
@@ -212,8 +209,7 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
         }
         const double gain = 2 * ((gap - away) / time_ - speed) / time_;
         const double way = std::max(gap, 0.0) + closed_gap / 2;
-        const double at = std::sqrt(std::max(speed * speed + 2 * gain * way, 0.0));
-        if (speed + at > 0) found_.time = std::min(found_.time, 2 * way / (speed + at));
+        found_.time = std::min(found_.time, time_to_close(way, speed, gain));
         return 0;
     }
 

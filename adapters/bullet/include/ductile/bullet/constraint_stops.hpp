@@ -24,9 +24,9 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 #include <vector>
 
+#include "ductile/bullet/lent.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
@@ -58,6 +58,8 @@ struct StoppedAxes {
 /// As its bodies would be at `a`, `b`; the constraint keeps what it calculates of that.
 [[nodiscard]] DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint,
                                                       const btTransform& a, const btTransform& b);
+/// As they are.
+[[nodiscard]] DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint);
 
 /// When an axis comes to its stop with more than `energy` [J] if bodies go on as they do, within
 /// `h`; else infinite [s].
@@ -104,13 +106,12 @@ class PartStops {
     void hold(btTypedConstraint& constraint, const StoppedAxis& began, const StoppedAxis& now);
     template <class SixAxes>
     void soften_all(SixAxes& constraint, double h, double frame);
-    void put(btScalar& place, btScalar value);
 
     std::vector<AsItBegan> began_;
     std::vector<Cone> cones_;
-    btScalar slowly_ = 1;                               ///< of the way beyond a stop
-    std::vector<Limits> limits_;                        ///< the user's
-    std::vector<std::pair<btScalar*, btScalar>> usual_; ///< the user's ERP and CFM
+    btScalar slowly_ = 1;        ///< of the way beyond a stop
+    std::vector<Limits> limits_; ///< the user's
+    Lent<btScalar> lent_;        ///< the user's ERP and CFM
 };
 
 } // namespace ductile::bullet

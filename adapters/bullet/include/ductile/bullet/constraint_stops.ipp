@@ -107,6 +107,10 @@ DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint, const btT
     }
     return axes;
 }
+DUCTILE_INLINE StoppedAxes stopped_axes(btTypedConstraint& constraint) {
+    return stopped_axes(constraint, constraint.getRigidBodyA().getCenterOfMassTransform(),
+                        constraint.getRigidBodyB().getCenterOfMassTransform());
+}
 
 namespace detail {
 
@@ -187,7 +191,7 @@ DUCTILE_INLINE double time_to_stop(btTypedConstraint& constraint, double h, doub
         return stopped_axes(constraint, detail::moved(a, of_a, btScalar(time)),
                             detail::moved(b, of_b, btScalar(time)));
     };
-    const StoppedAxes begin = stopped_axes(constraint, of_a, of_b);
+    const StoppedAxes begin = stopped_axes(constraint);
     if (begin.count == 0) return never;
     constexpr double followed = 0.1; // [rad]
     constexpr int most_steps = 32, refined = 3;
@@ -221,7 +225,7 @@ DUCTILE_INLINE double time_to_stop(btTypedConstraint& constraint, double h, doub
         time = next;
         now = ahead;
     }
-    (void)stopped_axes(constraint, of_a, of_b); // what it calculated is of now again
+    (void)stopped_axes(constraint); // what it calculated is of now again
     constexpr double past_it = 1 + 1e-6;
     return past_it * first < h ? past_it * first : never;
 }
@@ -230,7 +234,7 @@ DUCTILE_INLINE bool strikes_stop(btTypedConstraint& constraint, double energy) {
     if (!constraint.isEnabled()) return false;
     const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
     const btTransform &of_a = a.getCenterOfMassTransform(), &of_b = b.getCenterOfMassTransform();
-    const StoppedAxes now = stopped_axes(constraint, of_a, of_b);
+    const StoppedAxes now = stopped_axes(constraint);
     bool any = false;
     for (const StoppedAxis& axis : now) {
         any = any || axis.gap(false) <= detail::at_stop || axis.gap(true) <= detail::at_stop;
@@ -241,7 +245,7 @@ DUCTILE_INLINE bool strikes_stop(btTypedConstraint& constraint, double energy) {
     const btScalar little = std::min(btScalar(1e-3) / speed, btScalar(1e-3)); // [s]
     const StoppedAxes then =
         stopped_axes(constraint, detail::moved(a, of_a, little), detail::moved(b, of_b, little));
-    (void)stopped_axes(constraint, of_a, of_b);
+    (void)stopped_axes(constraint);
     for (std::size_t i = 0; i < 2 * now.count; ++i) {
         const bool upper = i % 2 == 1;
         const StoppedAxis& axis = now.axes[i / 2];
@@ -266,16 +270,13 @@ DUCTILE_INLINE void PartStops::put_back() {
                        cone->getRelaxationFactor());
     }
     cones_.clear();
-    for (const auto& [place, value] : usual_) *place = value;
-    usual_.clear();
+    lent_.put_back();
 }
 
 DUCTILE_INLINE double PartStops::met(double h, double energy) const {
     double first = std::numeric_limits<double>::infinity();
     for (const auto& [constraint, began] : began_) {
-        const StoppedAxes axes =
-            stopped_axes(*constraint, constraint->getRigidBodyA().getCenterOfMassTransform(),
-                         constraint->getRigidBodyB().getCenterOfMassTransform());
+        const StoppedAxes axes = stopped_axes(*constraint);
         for (std::size_t i = 0; i < 2 * axes.count; ++i) {
             const bool upper = i % 2 == 1;
             const double left = began.axes[i / 2].gap(upper), beyond = axes.axes[i / 2].gap(upper);
@@ -295,9 +296,7 @@ DUCTILE_INLINE void PartStops::take(btTypedConstraint& constraint) {
         cones_.push_back({&cone, cone.getSwingSpan1(), cone.getSwingSpan2(), cone.getTwistSpan(),
                           cone.getBiasFactor()});
     }
-    const StoppedAxes axes =
-        stopped_axes(constraint, constraint.getRigidBodyA().getCenterOfMassTransform(),
-                     constraint.getRigidBodyB().getCenterOfMassTransform());
+    const StoppedAxes axes = stopped_axes(constraint);
     if (axes.count > 0) began_.push_back({&constraint, axes});
 }
 
@@ -305,9 +304,7 @@ DUCTILE_INLINE void PartStops::set(double h, double frame, double erp) {
     // of what a part without budget went beyond it, as of bodies that overlap
     slowly_ = erp > 0 ? btScalar(overlap_erp(erp, h, frame) / part_erp(erp, h)) : btScalar(1);
     for (const auto& [constraint, began] : began_) {
-        const StoppedAxes now =
-            stopped_axes(*constraint, constraint->getRigidBodyA().getCenterOfMassTransform(),
-                         constraint->getRigidBodyB().getCenterOfMassTransform());
+        const StoppedAxes now = stopped_axes(*constraint);
         for (std::size_t i = 0; i < now.count; ++i) hold(*constraint, began.axes[i], now.axes[i]);
         const btTypedConstraintType type = constraint->getConstraintType();
         if (type == D6_SPRING_2_CONSTRAINT_TYPE) {
@@ -349,8 +346,8 @@ template <class SixAxes>
 void PartStops::soften_all(SixAxes& constraint, double h, double frame) {
     const auto soften = [&](btScalar& erp, btScalar& cfm) {
         const Softness spring = part_spring({double(erp), double(cfm)}, h, frame);
-        put(erp, btScalar(spring.erp));
-        put(cfm, btScalar(spring.compliance));
+        lent_.put(erp, btScalar(spring.erp));
+        lent_.put(cfm, btScalar(spring.compliance));
     };
     auto* moves = constraint.getTranslationalLimitMotor();
     for (int i = 0; i < 3; ++i) {
@@ -358,11 +355,6 @@ void PartStops::soften_all(SixAxes& constraint, double h, double frame) {
         soften(moves->m_stopERP[i], moves->m_stopCFM[i]);
         soften(turns->m_stopERP, turns->m_stopCFM);
     }
-}
-
-DUCTILE_INLINE void PartStops::put(btScalar& place, btScalar value) {
-    usual_.emplace_back(&place, place);
-    place = value;
 }
 
 } // namespace ductile::bullet

@@ -11,7 +11,6 @@
 
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/member/active_sections.hpp"
-#include "ductile/world/joint_report.hpp"
 
 class btTypedConstraint;
 

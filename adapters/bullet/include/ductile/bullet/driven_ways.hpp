@@ -12,10 +12,14 @@
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <LinearMath/btMotionState.h>
+#include <LinearMath/btTransformUtil.h>
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
-#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/bullet/convert.hpp"
 #include "ductile/world/driven_course.hpp"
 
 namespace ductile::bullet {
@@ -24,10 +28,53 @@ class DrivenWays {
   public:
     /// A frame of `length` > 0 [s] begins: the bodies go back to where the last one left them. Who
     /// has a motion state goes where that says.
-    void begin(btDiscreteDynamicsWorld& world, btScalar length);
+    void begin(btDiscreteDynamicsWorld& world, btScalar length) {
+        std::swap(ways_, last_);
+        ways_.clear();
+        length_ = length;
+        const auto& objects = world.getCollisionObjectArray();
+        for (int i = 0; i < objects.size(); ++i) {
+            btRigidBody* body = btRigidBody::upcast(objects[i]);
+            if (body == nullptr || !body->isKinematicObject()) continue;
+            Way way{body, body->getInterpolationWorldTransform(), body->getWorldTransform(), {}};
+            if (body->getMotionState() != nullptr)
+                body->getMotionState()->getWorldTransform(way.to);
+            const auto before = std::find_if(last_.begin(), last_.end(),
+                                             [body](const Way& last) { return last.body == body; });
+            if (before != last_.end()) way.course = before->course;
+            btVector3 velocity, spin;
+            btTransformUtil::calculateVelocity(way.from, way.to, length, velocity, spin);
+            BodyState<double> mean;
+            mean.velocity = to_core(velocity);
+            mean.spin = to_core(spin);
+            way.course.begin(mean, double(length));
+            ways_.push_back(way);
+        }
+        place(0, 0, 0);
+    }
     /// Puts the bodies where they are `time` [s] after the frame's begin, with the velocities that
     /// they have at `then`; as those of the interpolation with the ones they had at `begun`.
-    void place(btScalar time, btScalar begun, btScalar then);
+    void place(btScalar time, btScalar begun, btScalar then) {
+        for (const auto& [body, from, to, course] : ways_) {
+            btTransform now = from;
+            if (time >= length_ * (1 - SIMD_EPSILON)) {
+                now = to;
+            } else if (time > 0) {
+                const btVector3 turn = to_bullet(course.turn(double(time)));
+                now.setOrigin(from.getOrigin() + to_bullet(course.way(double(time))));
+                if (turn.length2() > 0) {
+                    now.setRotation(btQuaternion(turn.normalized(), turn.length()) *
+                                    from.getRotation());
+                }
+            }
+            body->setWorldTransform(now);
+            body->setInterpolationWorldTransform(now);
+            body->setLinearVelocity(to_bullet(course.velocity(double(then))));
+            body->setAngularVelocity(to_bullet(course.spin(double(then))));
+            body->setInterpolationLinearVelocity(to_bullet(course.velocity(double(begun))));
+            body->setInterpolationAngularVelocity(to_bullet(course.spin(double(begun))));
+        }
+    }
     [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
     /// Calls `see(body)` for each.
     template <class See>
@@ -47,7 +94,3 @@ class DrivenWays {
 };
 
 } // namespace ductile::bullet
-
-#ifndef DUCTILE_COMPILED
-#include "ductile/bullet/driven_ways.ipp"
-#endif

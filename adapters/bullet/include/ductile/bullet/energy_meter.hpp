@@ -60,9 +60,6 @@ class EnergyMeter final : public ductile::EnergyMeter {
     DUCTILE_INLINE void damp(MeteredBody& body, double dt) const override;
 
     static void list_body(const btRigidBody& body, std::vector<MeteredBody>& bodies);
-    /// Of the scope.
-    template <class Visit>
-    void for_each_constraint(const Visit& visit) const;
     static void list_contacts_of(const btPersistentManifold& manifold,
                                  std::vector<MeteredContact>& contacts);
 

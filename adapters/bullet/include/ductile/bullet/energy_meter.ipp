@@ -13,7 +13,6 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
@@ -89,15 +88,6 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
     }
 }
 
-template <class Visit>
-void EnergyMeter::for_each_constraint(const Visit& visit) const {
-    if (scope_ != nullptr) {
-        for (btTypedConstraint* constraint : scope_->constraints()) visit(*constraint);
-        return;
-    }
-    for (int i = 0; i < world_.getNumConstraints(); ++i) visit(*world_.getConstraint(i));
-}
-
 DUCTILE_INLINE void EnergyMeter::list_body(const btRigidBody& body,
                                            std::vector<MeteredBody>& bodies) {
     const Matrix3<double> axes = to_core(body.getCenterOfMassTransform().getBasis());
@@ -116,33 +106,34 @@ DUCTILE_INLINE void EnergyMeter::list_body(const btRigidBody& body,
 
 DUCTILE_INLINE void EnergyMeter::list_plastic_joints(
     std::vector<MeteredPlasticJoint>& joints) const {
-    for_each_constraint([&joints](btTypedConstraint& constraint) {
-        const PlasticConstraint* plastic = as_plastic(constraint);
-        if (plastic == nullptr) return;
+    for (btTypedConstraint* constraint : constraints_of(world_, scope_)) {
+        const PlasticConstraint* plastic = as_plastic(*constraint);
+        if (plastic == nullptr) continue;
         joints.push_back(
             {&plastic->queries(), &plastic->getRigidBodyA(), &plastic->getRigidBodyB()});
-    });
+    }
 }
 
 DUCTILE_INLINE void EnergyMeter::watch_step() {
-    for_each_constraint([this](btTypedConstraint& constraint) {
-        if (constraint.getJointFeedback() == nullptr) {
-            auto& lent = lent_[&constraint];
+    for (btTypedConstraint* constraint : constraints_of(world_, scope_)) {
+        if (constraint->getJointFeedback() == nullptr) {
+            auto& lent = lent_[constraint];
             if (lent == nullptr) lent = std::make_unique<btJointFeedback>();
-            constraint.setJointFeedback(lent.get());
+            constraint->setJointFeedback(lent.get());
         }
-        btJointFeedback& feedback = *constraint.getJointFeedback();
+        btJointFeedback& feedback = *constraint->getJointFeedback();
         feedback.m_appliedForceBodyA.setZero();
         feedback.m_appliedTorqueBodyA.setZero();
         feedback.m_appliedForceBodyB.setZero();
         feedback.m_appliedTorqueBodyB.setZero();
-    });
+    }
 }
 
 DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) const {
-    for_each_constraint([&joints](btTypedConstraint& constraint) {
+    for (btTypedConstraint* each : constraints_of(world_, scope_)) {
+        btTypedConstraint& constraint = *each;
         const btJointFeedback* feedback = constraint.getJointFeedback();
-        if (feedback == nullptr) return;
+        if (feedback == nullptr) continue;
         const PlasticConstraint* plastic = as_plastic(constraint);
         MeteredJoint& joint = joints.emplace_back();
         joint = {&constraint,
@@ -156,24 +147,17 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
                  constraint.getRigidBodyA().isKinematicObject() ||
                      constraint.getRigidBodyB().isKinematicObject() ||
                      (plastic == nullptr && detail::drives(constraint))};
-        if (plastic != nullptr || detail::has_rigid_rows_alone(constraint)) return;
+        if (plastic != nullptr || detail::has_rigid_rows_alone(constraint)) continue;
         joint.own_force = joint.force_a;
         joint.own_torque_a = joint.torque_a;
         joint.own_torque_b = scaled(-1, joint.torque_b);
-    });
+    }
 }
 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double /*dt*/,
                                                std::vector<MeteredContact>& contacts) const {
-    if (scope_ != nullptr) {
-        for (const btPersistentManifold* manifold : scope_->manifolds()) {
-            list_contacts_of(*manifold, contacts);
-        }
-        return;
-    }
-    btDispatcher& dispatcher = *world_.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        list_contacts_of(*dispatcher.getManifoldByIndexInternal(i), contacts);
+    for (const btPersistentManifold* manifold : manifolds_of(*world_.getDispatcher(), scope_)) {
+        list_contacts_of(*manifold, contacts);
     }
 }
 

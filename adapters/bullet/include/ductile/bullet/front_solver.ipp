@@ -11,6 +11,7 @@
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/lent.hpp"
 
 namespace ductile::bullet {
 
@@ -107,58 +108,31 @@ class StruckContacts {
     std::vector<Struck> struck_;
 };
 
-/// While this lives contacts that are open are twice as far apart, so that half a part closes them,
-/// and may overlap then by as much as gaps are aimed beyond their closing.
-class HalfwayContacts {
-  public:
-    HalfwayContacts(btPersistentManifold** manifolds, int count) {
-        for (int i = 0; i < count; ++i) {
-            for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
-                btManifoldPoint& point = manifolds[i]->getContactPoint(k);
-                const btScalar distance = point.getDistance();
-                if (!(distance > 0)) continue;
-                apart_.emplace_back(&point, distance);
-                point.setDistance(2 * distance + btScalar(closed_gap));
+/// Contacts that are open are twice as far apart, so that half a part closes them, and may overlap
+/// then by as much as gaps are aimed beyond their closing.
+DUCTILE_INLINE void double_gaps(btPersistentManifold** manifolds, int count, Lent<btScalar>& lent) {
+    for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
+            btScalar& distance = manifolds[i]->getContactPoint(k).m_distance1;
+            if (distance > 0) lent.put(distance, 2 * distance + btScalar(closed_gap));
+        }
+    }
+}
+
+/// Contacts that are open do not rebound: Bullet asks e v - d/h of them before they touch, and no
+/// cut of the part ends that. They close in it, and rebound in the blow that follows.
+DUCTILE_INLINE void end_rebounds(const std::vector<btPersistentManifold*>& manifolds,
+                                 Lent<btScalar>& lent) {
+    for (btPersistentManifold* manifold : manifolds) {
+        for (int k = 0; k < manifold->getNumContacts(); ++k) {
+            btManifoldPoint& point = manifold->getContactPoint(k);
+            const bool is_open = double(point.getDistance()) > closed_gap;
+            if (is_open && point.m_combinedRestitution > 0) {
+                lent.put(point.m_combinedRestitution, 0);
             }
         }
     }
-    ~HalfwayContacts() {
-        for (const auto& [point, distance] : apart_) point->setDistance(distance);
-    }
-    HalfwayContacts(const HalfwayContacts&) = delete;
-    HalfwayContacts& operator=(const HalfwayContacts&) = delete;
-
-  private:
-    std::vector<std::pair<btManifoldPoint*, btScalar>> apart_;
-};
-
-/// While this lives contacts that are open do not rebound: Bullet asks e v - d/h of them before
-/// they touch, and no cut of the part ends that. They close in it, and rebound in the blow that
-/// follows.
-class OpenContacts {
-  public:
-    OpenContacts(btPersistentManifold** manifolds, int count) {
-        for (int i = 0; i < count; ++i) {
-            for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
-                btManifoldPoint& point = manifolds[i]->getContactPoint(k);
-                const bool is_open = double(point.getDistance()) > closed_gap;
-                if (!is_open || !(point.m_combinedRestitution > 0)) continue;
-                rebounds_.emplace_back(&point, point.m_combinedRestitution);
-                point.m_combinedRestitution = 0;
-            }
-        }
-    }
-    ~OpenContacts() {
-        for (const auto& [point, restitution] : rebounds_) {
-            point->m_combinedRestitution = restitution;
-        }
-    }
-    OpenContacts(const OpenContacts&) = delete;
-    OpenContacts& operator=(const OpenContacts&) = delete;
-
-  private:
-    std::vector<std::pair<btManifoldPoint*, btScalar>> rebounds_;
-};
+}
 
 } // namespace detail
 
@@ -200,8 +174,8 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
     const detail::StruckContacts struck(island.manifolds.data(),
                                         kind_ == TickKind::blow ? int(island.manifolds.size()) : 0,
                                         double(info.m_restitutionVelocityThreshold));
-    const detail::OpenContacts open(island.manifolds.data(),
-                                    kind_ == TickKind::part ? int(island.manifolds.size()) : 0);
+    Lent<btScalar> lent;
+    if (kind_ == TickKind::part) detail::end_rebounds(island.manifolds, lent);
     const auto first =
         std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
     const void* key = first != island.constraints.end()
@@ -239,7 +213,8 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
                                                 btIDebugDraw* drawer, btDispatcher* dispatcher) {
     // Bullet flushes an empty group after an island above its batch size
     if (handed_over_ || (body_count == 0 && manifold_count == 0 && constraint_count == 0)) return 0;
-    const detail::HalfwayContacts halfway(manifolds, kind_ == TickKind::part ? manifold_count : 0);
+    Lent<btScalar> lent;
+    if (kind_ == TickKind::part) detail::double_gaps(manifolds, manifold_count, lent);
     static const DirectBodies none;
     const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
     if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic) &&

@@ -54,11 +54,7 @@ class HeldContacts {
     void accept() { gone_ = lost_; }
 
   private:
-    struct Seen {
-        Bodies bodies;
-        SeenContact contact;
-    };
-    std::vector<Seen> seen_; ///< by bodies
+    std::vector<std::pair<Bodies, SeenContact>> seen_; ///< sort_by_bodies
     double ago_ = 0;
     std::vector<Bodies> pushed_;      ///< when the part began
     std::vector<Bodies> lost_, gone_; ///< in the last part, and before the present one

@@ -109,14 +109,13 @@ DUCTILE_INLINE void HeldContacts::see(std::span<btPersistentManifold* const> man
         if (!concerns(*manifold->getBody0()) && !concerns(*manifold->getBody1())) continue;
         const Bodies bodies = detail::bodies_of(*manifold);
         for (int k = 0; k < manifold->getNumContacts(); ++k) {
-            seen_.push_back(
-                {bodies, detail::seen_contact(*manifold, manifold->getContactPoint(k), ago)});
+            seen_.emplace_back(bodies,
+                               detail::seen_contact(*manifold, manifold->getContactPoint(k), ago));
         }
         const bool is_gone = std::find(gone_.begin(), gone_.end(), bodies) != gone_.end();
         if (!is_gone && detail::pushes(*manifold) > 0) pushed_.push_back(bodies);
     }
-    std::stable_sort(seen_.begin(), seen_.end(),
-                     [](const Seen& x, const Seen& y) { return x.bodies < y.bodies; });
+    sort_by_bodies(seen_);
 }
 
 DUCTILE_INLINE void HeldContacts::let_go(std::span<btPersistentManifold* const> manifolds,
@@ -136,19 +135,9 @@ DUCTILE_INLINE double HeldContacts::turned(const btPersistentManifold& manifold,
                                            const btManifoldPoint& point, double h) const {
     const Bodies bodies = detail::bodies_of(manifold);
     const SeenContact now = detail::seen_contact(manifold, point, 0);
-    const auto first =
-        std::lower_bound(seen_.begin(), seen_.end(), bodies,
-                         [](const Seen& seen, const Bodies& key) { return seen.bodies < key; });
-    const SeenContact* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    for (auto seen = first; seen != seen_.end() && seen->bodies == bodies; ++seen) {
-        const double distance = norm(difference(seen->contact.point, now.point));
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = &seen->contact;
-    }
-    if (nearest == nullptr) return 0;
-    return turned_contact(now, *nearest, detail::contact_body(*bodies.first),
+    const SeenContact* then = nearest(seen_, bodies, now.point);
+    if (then == nullptr) return 0;
+    return turned_contact(now, *then, detail::contact_body(*bodies.first),
                           detail::contact_body(*bodies.second), ago_ + h / 2, h / 2);
 }
 

@@ -8,18 +8,12 @@
 
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
-#include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
 
 namespace detail {
-
-[[nodiscard]] DUCTILE_INLINE bool moves(const btRigidBody* body) noexcept {
-    return body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
-}
 
 /// Of a body that others are solved with at the same time, and that may not be moved here.
 [[nodiscard]] DUCTILE_INLINE bool is_led(const btRigidBody& body) noexcept {

@@ -7,7 +7,6 @@
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/reaction.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/part_rows.hpp"
 
 namespace ductile::bullet {

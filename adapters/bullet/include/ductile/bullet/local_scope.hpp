@@ -12,12 +12,14 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
@@ -26,8 +28,36 @@ class LocalScope {
     static constexpr int nowhere = -1;
 
     /// Of bodies that are not static, in any order.
-    void set(btDiscreteDynamicsWorld& world, std::vector<btRigidBody*> bodies);
-    void clear();
+    void set(btDiscreteDynamicsWorld& world, std::vector<btRigidBody*> bodies) {
+        clear();
+        bodies_ = std::move(bodies);
+        std::sort(bodies_.begin(), bodies_.end(), [](const btRigidBody* x, const btRigidBody* y) {
+            return x->getWorldArrayIndex() < y->getWorldArrayIndex();
+        });
+        numbers_.assign(std::size_t(world.getNumCollisionObjects()), nowhere);
+        for (std::size_t i = 0; i < bodies_.size(); ++i) {
+            numbers_[std::size_t(bodies_[i]->getWorldArrayIndex())] = int(i);
+        }
+        for (int i = 0; i < world.getNumConstraints(); ++i) {
+            btTypedConstraint* constraint = world.getConstraint(i);
+            if (!has(constraint->getRigidBodyA()) && !has(constraint->getRigidBodyB())) continue;
+            constraints_.push_back(constraint);
+            if (PlasticConstraint* joint = as_plastic(*constraint)) joints_.push_back({joint, i});
+        }
+        for (const Joint& joint : joints_) {
+            sorted_joints_.push_back(static_cast<const btTypedConstraint*>(joint.joint));
+        }
+        std::sort(sorted_joints_.begin(), sorted_joints_.end());
+        find_manifolds(*world.getDispatcher());
+    }
+    void clear() {
+        bodies_.clear();
+        constraints_.clear();
+        joints_.clear();
+        sorted_joints_.clear();
+        manifolds_.clear();
+        numbers_.clear();
+    }
 
     [[nodiscard]] bool has(const btCollisionObject& object) const noexcept {
         return number(object) != nowhere;
@@ -50,12 +80,22 @@ class LocalScope {
         int place;
     };
     [[nodiscard]] std::span<const Joint> joints() const noexcept { return joints_; }
-    [[nodiscard]] bool has_joint(const void* constraint) const noexcept;
+    [[nodiscard]] bool has_joint(const void* constraint) const noexcept {
+        return std::binary_search(sorted_joints_.begin(), sorted_joints_.end(), constraint);
+    }
     /// That have one of the bodies, with contact points or without.
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds() const noexcept {
         return manifolds_;
     }
-    void find_manifolds(btDispatcher& dispatcher);
+    void find_manifolds(btDispatcher& dispatcher) {
+        manifolds_.clear();
+        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
+            btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
+            if (has(*manifold->getBody0()) || has(*manifold->getBody1())) {
+                manifolds_.push_back(manifold);
+            }
+        }
+    }
     [[nodiscard]] std::vector<btPersistentManifold*>& listed_manifolds() noexcept {
         return manifolds_;
     }
@@ -69,8 +109,23 @@ class LocalScope {
     std::vector<int> numbers_; ///< by place in the world
 };
 
-} // namespace ductile::bullet
+// ---- what of a world there is in a scope; null: all, of bodies those that are not static
 
-#ifndef DUCTILE_COMPILED
-#include "ductile/bullet/local_scope.ipp"
-#endif
+[[nodiscard]] inline std::span<btRigidBody* const> bodies_of(const btDiscreteDynamicsWorld& world,
+                                                             const LocalScope* scope) {
+    return scope != nullptr ? scope->bodies() : MovingBodies::all(world);
+}
+[[nodiscard]] inline std::span<btTypedConstraint* const> constraints_of(
+    btDiscreteDynamicsWorld& world, const LocalScope* scope) {
+    if (scope != nullptr) return scope->constraints();
+    const auto& all = AllConstraints::of(world);
+    if (all.size() == 0) return {};
+    return {&all[0], std::size_t(all.size())};
+}
+[[nodiscard]] inline std::span<btPersistentManifold* const> manifolds_of(btDispatcher& dispatcher,
+                                                                         const LocalScope* scope) {
+    if (scope != nullptr) return scope->manifolds();
+    return {dispatcher.getInternalManifoldPointer(), std::size_t(dispatcher.getNumManifolds())};
+}
+
+} // namespace ductile::bullet

@@ -21,7 +21,6 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
-#include <cstddef>
 #include <functional>
 #include <vector>
 

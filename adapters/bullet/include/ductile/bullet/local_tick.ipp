@@ -9,7 +9,7 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
-#include <span>
+#include <cstddef>
 #include <typeinfo>
 #include <utility>
 

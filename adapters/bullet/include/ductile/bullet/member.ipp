@@ -3,10 +3,8 @@
 // Bodies of member.hpp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"

@@ -4,11 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
-#include <utility>
-#include <vector>
-
-#include "ductile/bullet/convert.hpp"
 
 namespace ductile::bullet {
 

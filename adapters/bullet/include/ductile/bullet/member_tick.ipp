@@ -7,10 +7,7 @@
 #include <BulletDynamics/ConstraintSolver/btPoint2PointConstraint.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 #include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/convert.hpp"

@@ -7,12 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/bullet/contact_load.hpp"
-#include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// The bodies of a world that are not static; Bullet keeps such a list and does not show it. And
-// where a body goes by its velocities.
+// The bodies of a world that are not static, and its constraints; Bullet keeps such lists and does
+// not show them. And where a body goes by its velocities.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
@@ -25,7 +25,19 @@ struct MovingBodies : btDiscreteDynamicsWorld {
     }
 };
 
+struct AllConstraints : btDiscreteDynamicsWorld {
+    [[nodiscard]] static btAlignedObjectArray<btTypedConstraint*>& of(
+        btDiscreteDynamicsWorld& world) {
+        return world.*(&AllConstraints::m_constraints);
+    }
+};
+
 namespace detail {
+
+/// It is there, and rows may move it.
+[[nodiscard]] inline bool moves(const btRigidBody* body) noexcept {
+    return body != nullptr && !body->isStaticOrKinematicObject() && body->getInvMass() > 0;
+}
 
 /// `time` [s] after it was at `from`.
 [[nodiscard]] inline btTransform moved(const btRigidBody& body, const btTransform& from,

@@ -40,8 +40,6 @@
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 

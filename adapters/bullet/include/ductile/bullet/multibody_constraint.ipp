@@ -17,7 +17,6 @@
 #include "ductile/bullet/precision_check.hpp"
 #include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 

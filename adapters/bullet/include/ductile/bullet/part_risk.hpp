@@ -20,6 +20,7 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -27,17 +28,30 @@
 
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/frame/part_row.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
 class PartRisk {
   public:
     /// What the joint at `place` among the world's constraints did in the part just done.
-    void note(int place, const PlasticConstraint& joint, std::span<const PartRow> rows);
+    void note(int place, const PlasticConstraint& joint, std::span<const PartRow> rows) {
+        constexpr double near = 0.5; // of the strength
+        Noted& of = noted(place);
+        of.joint = &joint;
+        of.calm = std::all_of(rows.begin(), rows.end(), [](const PartRow& row) {
+            return row.strength > 0 && row.share <= near && !row.moves();
+        });
+    }
     /// Of the joint at `place`, before a part.
     /// `length`: of the longest part that may come [s].
-    [[nodiscard]] bool is_at_risk(int place, const PlasticConstraint& joint, btScalar length);
+    [[nodiscard]] bool is_at_risk(int place, const PlasticConstraint& joint, btScalar length) {
+        Noted& of = noted(place);
+        // Both are asked always: each notes what its body bears.
+        const bool alone_a = is_left_alone(joint.getRigidBodyA(), length, of.burdens[0]);
+        const bool alone_b = is_left_alone(joint.getRigidBodyB(), length, of.burdens[1]);
+        if (!joint.is_awake_member()) return false;
+        return of.joint != &joint || !of.calm || !alone_a || !alone_b;
+    }
 
   private:
     /// What a body bears by itself.
@@ -50,16 +64,26 @@ class PartRisk {
         bool calm = false;
         std::array<Burden, 2> burdens;
     };
-    [[nodiscard]] Noted& noted(int place);
+    [[nodiscard]] Noted& noted(int place) {
+        if (noted_.size() <= std::size_t(place)) noted_.resize(std::size_t(place) + 1);
+        return noted_[std::size_t(place)];
+    }
     /// True where nobody touched the body since the last part, and it turns slowly.
     [[nodiscard]] static bool is_left_alone(const btRigidBody& body, btScalar length,
-                                            Burden& burden);
+                                            Burden& burden) {
+        constexpr btScalar slow = btScalar(0.05); // [rad]
+        if (body.isStaticOrKinematicObject()) return true;
+        const bool same =
+            burden.gravity == body.getGravity() && burden.inverse_mass == body.getInvMass();
+        burden = {body.getGravity(), body.getInvMass()};
+        // Bullet keeps what a tick left it
+        const bool turns = body.getAngularVelocity().length2() * length * length > slow * slow;
+        return same && !turns &&
+               body.getLinearVelocity() == body.getInterpolationLinearVelocity() &&
+               body.getAngularVelocity() == body.getInterpolationAngularVelocity();
+    }
 
     std::vector<Noted> noted_; ///< by place
 };
 
 } // namespace ductile::bullet
-
-#ifndef DUCTILE_COMPILED
-#include "ductile/bullet/part_risk.ipp"
-#endif

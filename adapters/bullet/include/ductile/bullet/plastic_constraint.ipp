@@ -9,26 +9,18 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
 #include <mutex>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "ductile/bullet/draw.hpp"
+#include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/bullet/precision_check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
 namespace detail {
-
-/// Bullet's own array is not public, and removeConstraint reads the bodies.
-struct ConstraintArray : btDiscreteDynamicsWorld {
-    static auto& of(btDiscreteDynamicsWorld& world) {
-        return world.*(&ConstraintArray::m_constraints);
-    }
-};
 
 /// Told to Bullet that the constraint's bodies do not collide. A break may come in any of its
 /// threads, and one body may have many constraints.
@@ -129,7 +121,7 @@ DUCTILE_INLINE void PlasticConstraint::abandon_world() {
     world_->removeAction(&end_of_tick_);
     auto* world = dynamic_cast<btDiscreteDynamicsWorld*>(world_);
     if (world == nullptr) return;
-    detail::ConstraintArray::of(*world).remove(this);
+    AllConstraints::of(*world).remove(this); // removeConstraint reads the bodies
     const auto& objects = world->getCollisionObjectArray();
     for (btRigidBody* body : {&m_rbA, &m_rbB}) {
         const bool is_alive =

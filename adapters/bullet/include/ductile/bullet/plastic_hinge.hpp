@@ -24,11 +24,11 @@
 namespace ductile::bullet {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticHinge final : public JointConstraintOf<Joint> {
-    using Base = JointConstraintOf<Joint>;
+class PlasticHinge final : public HingeJoint<JointConstraintOf<Joint>> {
+    using Base = HingeJoint<JointConstraintOf<Joint>>;
 
   public:
-    static constexpr JointAxis axis = JointAxis::torsion; ///< z of the frames
+    using Base::axis;
 
     /// Frames are in the bodies' centre-of-mass frames, as for btHingeConstraint: origin at the
     /// pivot, z along the hinge. Where the bodies are now is the hinge's rest position.
@@ -41,17 +41,6 @@ class PlasticHinge final : public JointConstraintOf<Joint> {
     PlasticHinge(btRigidBody& a, const btTransform& frame_in_a, Joint joint)
         : PlasticHinge(a, btTypedConstraint::getFixedBody(), frame_in_a,
                        a.getCenterOfMassTransform() * frame_in_a, std::move(joint)) {}
-
-    /// Angle of A relative to B about the axis, not wrapped [rad].
-    [[nodiscard]] double rotation() const { return Base::position(axis); }
-    /// Velocity of that after the last tick's solve [rad/s].
-    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
-    /// Geometric rest angle q_p [rad].
-    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
-    /// Accumulated plastic rotation p, work-conjugate [rad].
-    [[nodiscard]] double plastic_rotation() const { return Base::plastic_travel(); }
-    /// Moment about the axis in the last tick, positive where it turns A about +axis [N m].
-    [[nodiscard]] double moment() const { return Base::force(axis); }
 };
 
 #ifdef DUCTILE_COMPILED

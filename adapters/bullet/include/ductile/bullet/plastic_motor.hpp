@@ -21,7 +21,6 @@
 
 #include <utility>
 
-#include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/one_axis_joint.hpp"
 #include "ductile/law/perfect.hpp"

@@ -5,14 +5,12 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "ductile/bullet/link_rows.hpp"
 #include "ductile/bullet/plastic_motor.hpp"
 #include "ductile/bullet/reaction.hpp"
 #include "ductile/joint/joint_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/part_rows.hpp"
 
 namespace ductile::bullet {

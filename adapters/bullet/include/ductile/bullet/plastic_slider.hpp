@@ -16,11 +16,11 @@
 namespace ductile::bullet {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticSlider final : public JointConstraintOf<Joint> {
-    using Base = JointConstraintOf<Joint>;
+class PlasticSlider final : public SliderJoint<JointConstraintOf<Joint>> {
+    using Base = SliderJoint<JointConstraintOf<Joint>>;
 
   public:
-    static constexpr JointAxis axis = JointAxis::axial; ///< z of the frames
+    using Base::axis;
 
     /// Frames are in the bodies' centre-of-mass frames; z along the bar, parallel axes at rest.
     /// Where the bodies are now is the bar's rest position.
@@ -32,17 +32,6 @@ class PlasticSlider final : public JointConstraintOf<Joint> {
     PlasticSlider(btRigidBody& a, const btTransform& frame_in_a, Joint joint)
         : PlasticSlider(a, btTypedConstraint::getFixedBody(), frame_in_a,
                         a.getCenterOfMassTransform() * frame_in_a, std::move(joint)) {}
-
-    /// Change of length: A's displacement along the axis relative to B [m].
-    [[nodiscard]] double elongation() const { return Base::position(axis); }
-    /// Velocity of that after the last tick's solve [m/s].
-    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
-    /// Geometric rest elongation q_p [m].
-    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
-    /// Accumulated plastic elongation p, work-conjugate [m].
-    [[nodiscard]] double plastic_elongation() const { return Base::plastic_travel(); }
-    /// Force along the axis in the last tick, positive where it pushes A along +axis [N].
-    [[nodiscard]] double force() const { return Base::force(axis); }
 };
 
 #ifdef DUCTILE_COMPILED

@@ -14,15 +14,12 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/joint/any_link.hpp"
 #include "ductile/joint/joint_axis.hpp"
-#include "ductile/joint/link_types.hpp"
 
 namespace ductile::bullet {
 

@@ -120,13 +120,13 @@ inline void find_place(Gap& gap, const btCollisionObjectWrapper& a,
             point.getPositionWorldOnB()};
     if (!detail::are_boxes(a, b)) return gap;
     const btTransform &at_a = a.getWorldTransform(), &at_b = b.getWorldTransform();
-    const auto farthest = [](const btCollisionObjectWrapper& of, const btVector3& towards) {
+    const auto corner = [](const btCollisionObjectWrapper& of, const btVector3& towards) {
         const btTransform& at = of.getWorldTransform();
         const auto& box = static_cast<const btBoxShape&>(*of.getCollisionShape());
         return at * box.localGetSupportingVertex(towards * at.getBasis());
     };
     const auto along = [&](const btVector3& normal) {
-        return double(normal.dot(farthest(a, -normal)) - normal.dot(farthest(b, normal)));
+        return double(normal.dot(corner(a, -normal)) - normal.dot(corner(b, normal)));
     };
     // the digits of places in the world are no edge
     const auto size = [](const btCollisionObjectWrapper& of) {

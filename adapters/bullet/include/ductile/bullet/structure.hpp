@@ -32,30 +32,21 @@
 
 namespace ductile::bullet {
 
-/// A body of the user's in place of a support.
-struct OwnBody {
-    NodeId node;
-    btRigidBody* body = nullptr;
-};
+using OwnBody = UsersBody<btRigidBody*>;
 
-class Structure final : public BuiltStructure {
+class Structure final
+    : public JointedStructure<World, PlasticJoint<SectionJoint<double>>, btRigidBody*> {
   public:
-    using Joint = PlasticJoint<SectionJoint<double>>;
-
     /// @throws std::invalid_argument as make_plan, and where a body of `own` is null.
     Structure(World& world, const StructureModel& model, const std::vector<OwnBody>& own = {});
     DUCTILE_INLINE ~Structure();
 
-    /// The joint at an end of a member, or that of a number from its start.
-    /// @throws std::invalid_argument as StructurePlan::joint, and where it was removed.
-    [[nodiscard]] Joint& joint(std::string_view member, MemberEnd end) const;
-    [[nodiscard]] Joint& joint(std::string_view member, std::size_t number) const;
     /// A body of a member, by its number from the start.
     /// @throws std::invalid_argument as StructurePlan::body, and where it was removed.
     [[nodiscard]] btRigidBody& body(std::string_view member, std::size_t piece = 0) const;
-    /// Those of the plan, in its order; null where one was removed.
-    [[nodiscard]] Joint* joint(std::size_t index) const { return joints_[index].get(); }
-    [[nodiscard]] btRigidBody* body(std::size_t index) const { return parts_[index].body.get(); }
+    [[nodiscard]] btRigidBody* body(std::size_t index) const override {
+        return parts_[index].body.get();
+    }
 
   private:
     struct Part {
@@ -66,22 +57,16 @@ class Structure final : public BuiltStructure {
 
     void make_body(const PlanBody& plan);
     void make_joint(const PlanJoint& plan);
-    [[nodiscard]] btRigidBody& at(const PlanSeat& seat) const;
 
     [[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(const PlanSeat& seat) const override;
-    [[nodiscard]] DUCTILE_INLINE const PairQueries& queries(std::size_t joint) const override;
     DUCTILE_INLINE void push(const PlanSeat& seat, const Vector3<double>& force,
                              const Vector3<double>& at) override;
-    DUCTILE_INLINE void drop_joint(std::size_t joint) override;
     DUCTILE_INLINE void drop_body(std::size_t body) override;
     DUCTILE_INLINE void wake() override;
     DUCTILE_INLINE void set_gravity(double factor) override;
 
-    World& world_;
     btVector3 gravity_;
-    std::vector<btRigidBody*> own_; ///< by node
     std::vector<Part> parts_;
-    std::vector<std::unique_ptr<Joint>> joints_;
 };
 
 } // namespace ductile::bullet

@@ -3,8 +3,6 @@
 // Bodies of structure.hpp.
 #pragma once
 
-#include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
@@ -12,28 +10,9 @@
 
 namespace ductile::bullet {
 
-namespace detail {
-
-DUCTILE_INLINE StructurePlan plan_of(const StructureModel& model, const std::vector<OwnBody>& own) {
-    std::vector<NodeId> nodes;
-    for (const OwnBody& one : own) {
-        nodes.push_back(one.node);
-        if (one.body != nullptr) continue;
-        throw std::invalid_argument("Structure.own.body = null at node " +
-                                    std::to_string(one.node.index) + ": must be a body");
-    }
-    return make_plan(model, nodes);
-}
-
-} // namespace detail
-
 DUCTILE_INLINE Structure::Structure(World& world, const StructureModel& model,
                                     const std::vector<OwnBody>& own)
-    : BuiltStructure(detail::plan_of(model, own)),
-      world_(world),
-      gravity_(world.engine().getGravity()),
-      own_(plan().seats.size(), nullptr) {
-    for (const OwnBody& one : own) own_[one.node.index] = one.body;
+    : JointedStructure(world, model, own), gravity_(world.engine().getGravity()) {
     for (const PlanBody& body : plan().bodies) make_body(body);
     for (const auto& [a, b] : plan().neighbours) {
         parts_[a].body->setIgnoreCollisionCheck(parts_[b].body.get(), true);
@@ -70,21 +49,10 @@ DUCTILE_INLINE void Structure::make_body(const PlanBody& plan) {
     parts_.push_back(std::move(part));
 }
 
-DUCTILE_INLINE btRigidBody& Structure::at(const PlanSeat& seat) const {
-    switch (seat.kind) {
-        case PlanSeat::Kind::body:
-            return *parts_[seat.index].body;
-        case PlanSeat::Kind::own:
-            return *own_[seat.index];
-        case PlanSeat::Kind::ground:
-            break;
-    }
-    return btTypedConstraint::getFixedBody();
-}
-
 DUCTILE_INLINE void Structure::make_joint(const PlanJoint& plan) {
     btRigidBody& a = *parts_[plan.a].body;
-    btRigidBody& b = at(plan.b);
+    btRigidBody& b =
+        plan.b.kind == PlanSeat::Kind::ground ? btTypedConstraint::getFixedBody() : *at(plan.b);
     const auto frame_in = [&plan](const JointFrame<double>& body) {
         return to_bullet(JointFrame<double>{
             transposed_times(body.axes, difference(plan.frame.origin, body.origin)),
@@ -100,13 +68,6 @@ DUCTILE_INLINE void Structure::make_joint(const PlanJoint& plan) {
     world_.add(*joints_.back(), plan.name);
 }
 
-DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member, MemberEnd end) const {
-    return *joints_[present_joint(plan().joint(member, end))];
-}
-DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member,
-                                                  std::size_t number) const {
-    return *joints_[present_joint(plan().joint(member, number))];
-}
 DUCTILE_INLINE btRigidBody& Structure::body(std::string_view member, std::size_t piece) const {
     return *parts_[present_body(plan().body(member, piece))].body;
 }
@@ -114,23 +75,14 @@ DUCTILE_INLINE btRigidBody& Structure::body(std::string_view member, std::size_t
 // ---- what BuiltStructure asks of Bullet
 
 DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) const {
-    return to_core(at(seat).getCenterOfMassTransform());
-}
-
-DUCTILE_INLINE const PairQueries& Structure::queries(std::size_t joint) const {
-    return *joints_[joint];
+    return to_core(at(seat)->getCenterOfMassTransform());
 }
 
 DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
                                     const Vector3<double>& at_place) {
-    btRigidBody& body = at(seat);
+    btRigidBody& body = *at(seat);
     body.activate();
     body.applyForce(to_bullet(force), to_bullet(at_place) - body.getCenterOfMassPosition());
-}
-
-DUCTILE_INLINE void Structure::drop_joint(std::size_t joint) {
-    world_.remove(*joints_[joint]);
-    joints_[joint].reset();
 }
 
 DUCTILE_INLINE void Structure::drop_body(std::size_t body) {

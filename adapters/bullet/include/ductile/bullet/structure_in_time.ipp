@@ -7,9 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/convert.hpp"

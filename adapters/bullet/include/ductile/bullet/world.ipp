@@ -4,7 +4,6 @@
 #pragma once
 
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/front_solver.hpp"
@@ -13,7 +12,6 @@
 #include "ductile/bullet/world_parts.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 

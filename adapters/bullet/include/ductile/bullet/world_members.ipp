@@ -4,14 +4,7 @@
 // and what they met that they cannot be asked. A part of members.ipp.
 #pragma once
 
-#include <cmath>
-#include <memory>
-#include <stdexcept>
-#include <utility>
-#include <vector>
-
 #include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/world.hpp"
 
 namespace ductile::bullet {
 

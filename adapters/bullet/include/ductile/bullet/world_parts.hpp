@@ -46,6 +46,7 @@
 #include "ductile/bullet/half_ahead.hpp"
 #include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/held_forces.hpp"
+#include "ductile/bullet/lent.hpp"
 #include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/local_tick.hpp"
 #include "ductile/bullet/meeting_islands.hpp"
@@ -97,12 +98,15 @@ class WorldParts final : public PartEngine {
     [[nodiscard]] DUCTILE_INLINE double rounding(double h) const override;
 
   private:
-    class Settings;
-    class Impulses;
+    class HingeMotors;
+    static void rule(btContactSolverInfo& info, btScalar h, double frame, bool blow,
+                     Lent<btScalar>& lent, Lent<int>& modes);
+    void share_brakes(btScalar share, Lent<btScalar>& lent);
     void tick(double h, bool ahead);
     /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
     void keep_spins(double h);
     [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
+    [[nodiscard]] const LocalScope* scope() const noexcept { return local_ ? &scope_ : nullptr; }
 
     // ---- islands that are done again alone
 

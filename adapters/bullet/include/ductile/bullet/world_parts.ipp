@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <span>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/divisibles.hpp"
@@ -63,33 +60,18 @@ DUCTILE_INLINE void tell_broadphase(btDiscreteDynamicsWorld& world, btScalar h) 
 
 } // namespace detail
 
-/// The solver's settings of a part or a blow while this lives.
-class WorldParts::Settings {
-  public:
-    /// `frame`: length of the whole [s].
-    Settings(btContactSolverInfo& info, btScalar h, double frame, bool blow)
-        : info_(info), usual_(info) {
-        const auto part = double(h);
-        constexpr btScalar bounces = btScalar(1e-20); // at 0 stops of Bullet's do not
-        info.m_erp = blow ? bounces : btScalar(part_erp(double(info.m_erp), part));
-        info.m_erp2 = blow ? btScalar(0) : btScalar(overlap_erp(double(info.m_erp2), part, frame));
-        if (!blow) return;
-        info.m_splitImpulse = 0;
-        info.m_globalCfm *= btScalar(blow_compliance(double(h)));
-    }
-    ~Settings() {
-        info_.m_erp = usual_.m_erp;
-        info_.m_erp2 = usual_.m_erp2;
-        info_.m_splitImpulse = usual_.m_splitImpulse;
-        info_.m_globalCfm = usual_.m_globalCfm;
-    }
-    Settings(const Settings&) = delete;
-    Settings& operator=(const Settings&) = delete;
-
-  private:
-    btContactSolverInfo& info_;
-    btContactSolverInfo usual_;
-};
+/// The solver's settings of a part or a blow of `h` in a frame of `frame` [s].
+DUCTILE_INLINE void WorldParts::rule(btContactSolverInfo& info, btScalar h, double frame, bool blow,
+                                     Lent<btScalar>& lent, Lent<int>& modes) {
+    const auto part = double(h);
+    constexpr btScalar bounces = btScalar(1e-20); // at 0 stops of Bullet's do not
+    lent.put(info.m_erp, blow ? bounces : btScalar(part_erp(double(info.m_erp), part)));
+    lent.put(info.m_erp2,
+             blow ? btScalar(0) : btScalar(overlap_erp(double(info.m_erp2), part, frame)));
+    if (!blow) return;
+    modes.put(info.m_splitImpulse, 0);
+    lent.put(info.m_globalCfm, info.m_globalCfm * btScalar(blow_compliance(part)));
+}
 
 DUCTILE_INLINE WorldParts::WorldParts(btDiscreteDynamicsWorld& world, FrontHold& front,
                                       EnergyMeter& meter,
@@ -213,8 +195,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         if (at_risk_) {
             held_.see(manifolds(), half_, [this](const auto& body) { return concerns(body); });
         }
-        half_ahead_.move(local_ ? scope_.bodies() : MovingBodies::all(world_), btScalar(h), ways_,
-                         btScalar(time_));
+        half_ahead_.move(bodies_of(world_, scope()), btScalar(h), ways_, btScalar(time_));
         held_.let_go(manifolds(), half_ + h / 2,
                      [this](const auto& body) { return concerns(body); });
         time_ += h;
@@ -223,8 +204,11 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     }
     members_->before_solve();
     stops.set(h, length_, double(world_.getSolverInfo().m_erp));
-    const Settings settings(world_.getSolverInfo(), btScalar(h), length_, !ahead);
-    const Impulses impulses(world_, btScalar(h / length_), calls_others_);
+    Lent<btScalar> lent;
+    Lent<int> modes;
+    rule(world_.getSolverInfo(), btScalar(h), length_, !ahead, lent, modes);
+    const HingeMotors motors(world_, btScalar(h / length_), lent);
+    if (calls_others_) share_brakes(btScalar(h / length_), lent);
     front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),
@@ -279,9 +263,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
 }
 
 DUCTILE_INLINE std::span<btPersistentManifold* const> WorldParts::manifolds() {
-    if (local_) return scope_.manifolds();
-    btDispatcher& dispatcher = *world_.getDispatcher();
-    return {dispatcher.getInternalManifoldPointer(), std::size_t(dispatcher.getNumManifolds())};
+    return manifolds_of(*world_.getDispatcher(), scope());
 }
 
 DUCTILE_INLINE bool WorldParts::concerns(const btCollisionObject& object) {

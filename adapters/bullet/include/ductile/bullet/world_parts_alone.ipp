@@ -5,16 +5,6 @@
 
 #include <LinearMath/btAabbUtil2.h>
 
-#include <algorithm>
-#include <cstddef>
-#include <span>
-#include <utility>
-#include <vector>
-
-#include "ductile/bullet/divisibles.hpp"
-#include "ductile/bullet/front_solver.hpp"
-#include "ductile/bullet/moving_bodies.hpp"
-
 namespace ductile::bullet {
 
 DUCTILE_INLINE void WorldParts::decide() {
@@ -50,8 +40,8 @@ DUCTILE_INLINE void WorldParts::try_all() {
     frame_.take(world_, front_.usual());
     meter_.keep();
     were_enabled_.clear();
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        were_enabled_.push_back(world_.getConstraint(i)->isEnabled());
+    for (const btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        were_enabled_.push_back(constraint->isEnabled());
     }
     tick(length_, true);
     tell();
@@ -183,9 +173,9 @@ DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
     meter_.narrow();
     closing_.set_scope(&scope);
     outside_work_ = 0;
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
-        if (plastic == nullptr || scope.has_joint(world_.getConstraint(i))) continue;
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        const PlasticConstraint* plastic = as_plastic(*constraint);
+        if (plastic == nullptr || scope.has_joint(constraint)) continue;
         outside_work_ += plastic->queries().absorbed_energy();
     }
 }

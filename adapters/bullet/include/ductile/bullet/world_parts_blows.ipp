@@ -4,12 +4,7 @@
 // world_parts.ipp.
 #pragma once
 
-#include <algorithm>
 #include <optional>
-#include <vector>
-
-#include "ductile/bullet/divisibles.hpp"
-#include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
 

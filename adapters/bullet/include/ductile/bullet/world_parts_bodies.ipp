@@ -3,8 +3,6 @@
 // Bodies of world_parts.hpp: what a part asks of each body by itself. A part of world_parts.ipp.
 #pragma once
 
-#include <cmath>
-
 #include "ductile/joint/gyroscopic.hpp"
 
 namespace ductile::bullet {
@@ -27,7 +25,7 @@ namespace detail {
 /// Members reckon with Bullet's own rule.
 DUCTILE_INLINE void WorldParts::keep_spins(double h) {
     if (!members_->empty()) return;
-    for (btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
+    for (btRigidBody* body : bodies_of(world_, scope())) {
         if (body->isStaticOrKinematicObject() || !body->isActive()) continue;
         Vector3<double> spin = to_core(body->getAngularVelocity());
         if (!turns_far(spin, h)) continue;
@@ -45,7 +43,7 @@ DUCTILE_INLINE void WorldParts::keep_spins(double h) {
 
 DUCTILE_INLINE double WorldParts::kinetic_energy() const {
     double sum = 0;
-    for (const btRigidBody* body : local_ ? scope_.bodies() : MovingBodies::all(world_)) {
+    for (const btRigidBody* body : bodies_of(world_, scope())) {
         sum += detail::kinetic_energy(*body);
     }
     return sum;
@@ -55,19 +53,14 @@ DUCTILE_INLINE double WorldParts::kinetic_energy() const {
 /// another takes.
 DUCTILE_INLINE double WorldParts::rounding(double h) const {
     double sum = 0; // of squares
-    const auto add = [&sum, h](const btTypedConstraint& joint) {
-        if (joint.getConstraintType() != plastic_constraint_type || !joint.isEnabled()) return;
-        for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
+    for (const btTypedConstraint* joint : constraints_of(world_, scope())) {
+        if (joint->getConstraintType() != plastic_constraint_type || !joint->isEnabled()) continue;
+        for (const btRigidBody* body : {&joint->getRigidBodyA(), &joint->getRigidBodyB()}) {
             if (!(body->getInvMass() > 0)) continue;
             const double square = double(body->getCenterOfMassPosition().length2());
             const double jump = double(SIMD_EPSILON) * double(SIMD_EPSILON) * square / (h * h);
             sum += 2 * detail::kinetic_energy(*body) / double(body->getInvMass()) * jump;
         }
-    };
-    if (local_) {
-        for (const btTypedConstraint* joint : scope_.constraints()) add(*joint);
-    } else {
-        for (int i = 0; i < world_.getNumConstraints(); ++i) add(*world_.getConstraint(i));
     }
     return std::sqrt(sum);
 }

@@ -16,68 +16,53 @@
 
 namespace ductile::bullet {
 
-/// While this lives a part has its share of what Bullet bounds by an impulse a tick: motors of
-/// hinges, clamps of points, brakes of vehicles.
-class WorldParts::Impulses {
+/// While this lives a part has its `share` of what motors of hinges, and clamps of points, may do,
+/// which Bullet bounds by an impulse a tick.
+class WorldParts::HingeMotors {
   public:
-    /// `vehicles`: there may be some.
-    Impulses(btDiscreteDynamicsWorld& world, btScalar share, bool vehicles) {
-        if (vehicles) take_brakes(world, share);
-        for (int i = 0; i < world.getNumConstraints(); ++i) {
-            btTypedConstraint& constraint = *world.getConstraint(i);
-            if (constraint.getConstraintType() == HINGE_CONSTRAINT_TYPE) {
-                auto& hinge = static_cast<btHingeConstraint&>(constraint);
-                if (hinge.getEnableAngularMotor()) take(hinge, hinge.getMaxMotorImpulse(), share);
-            } else if (constraint.getConstraintType() == POINT2POINT_CONSTRAINT_TYPE) {
-                auto& point = static_cast<btPoint2PointConstraint&>(constraint);
-                const btScalar clamp = point.m_setting.m_impulseClamp;
-                if (clamp > 0) take(point, clamp, share);
+    HingeMotors(btDiscreteDynamicsWorld& world, btScalar share, Lent<btScalar>& lent) {
+        for (btTypedConstraint* constraint : constraints_of(world, nullptr)) {
+            if (constraint->getConstraintType() == HINGE_CONSTRAINT_TYPE) {
+                auto* hinge = static_cast<btHingeConstraint*>(constraint);
+                if (!hinge->getEnableAngularMotor()) continue;
+                usual_.emplace_back(hinge, hinge->getMaxMotorImpulse());
+                hinge->setMaxMotorImpulse(usual_.back().second * share);
+            } else if (constraint->getConstraintType() == POINT2POINT_CONSTRAINT_TYPE) {
+                auto* point = static_cast<btPoint2PointConstraint*>(constraint);
+                btScalar& clamp = point->m_setting.m_impulseClamp;
+                if (clamp > 0) lent.put(clamp, clamp * share);
             }
         }
     }
-    ~Impulses() {
-        for (const auto& [wheel, brake] : brakes_) wheel->m_brake = brake;
-        for (const auto& [constraint, impulse] : usual_) set(*constraint, impulse);
+    ~HingeMotors() {
+        for (const auto& [hinge, impulse] : usual_) hinge->setMaxMotorImpulse(impulse);
     }
-    Impulses(const Impulses&) = delete;
-    Impulses& operator=(const Impulses&) = delete;
+    HingeMotors(const HingeMotors&) = delete;
+    HingeMotors& operator=(const HingeMotors&) = delete;
 
   private:
-    void take_brakes(btDiscreteDynamicsWorld& world, btScalar share) {
-        auto& actions = detail::ActionArray::of(world);
-        for (int i = 0; i < actions.size(); ++i) {
-            auto* vehicle = dynamic_cast<btRaycastVehicle*>(actions[i]);
-            for (int k = 0; vehicle != nullptr && k < vehicle->getNumWheels(); ++k) {
-                btWheelInfo& wheel = vehicle->getWheelInfo(k);
-                brakes_.emplace_back(&wheel, wheel.m_brake);
-                wheel.m_brake *= share;
-            }
-        }
-    }
-    void take(btTypedConstraint& constraint, btScalar impulse, btScalar share) {
-        usual_.emplace_back(&constraint, impulse);
-        set(constraint, impulse * share);
-    }
-    static void set(btTypedConstraint& constraint, btScalar impulse) {
-        if (constraint.getConstraintType() == HINGE_CONSTRAINT_TYPE) {
-            static_cast<btHingeConstraint&>(constraint).setMaxMotorImpulse(impulse);
-        } else {
-            static_cast<btPoint2PointConstraint&>(constraint).m_setting.m_impulseClamp = impulse;
-        }
-    }
-
-    std::vector<std::pair<btTypedConstraint*, btScalar>> usual_;
-    std::vector<std::pair<btWheelInfo*, btScalar>> brakes_;
+    std::vector<std::pair<btHingeConstraint*, btScalar>> usual_;
 };
+
+/// The same of vehicles.
+DUCTILE_INLINE void WorldParts::share_brakes(btScalar share, Lent<btScalar>& lent) {
+    auto& actions = detail::ActionArray::of(world_);
+    for (int i = 0; i < actions.size(); ++i) {
+        auto* vehicle = dynamic_cast<btRaycastVehicle*>(actions[i]);
+        for (int k = 0; vehicle != nullptr && k < vehicle->getNumWheels(); ++k) {
+            btScalar& brake = vehicle->getWheelInfo(k).m_brake;
+            lent.put(brake, brake * share);
+        }
+    }
+}
 
 /// Stops of Bullet's own constraints in islands with plastic joints, within `h` [s].
 DUCTILE_INLINE void WorldParts::see_stops(double h, ClosingContacts& found) {
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (!has_part_stops(constraint)) continue;
-        found.strikes = found.strikes || strikes_stop(constraint, touching_);
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        if (!has_part_stops(*constraint)) continue;
+        found.strikes = found.strikes || strikes_stop(*constraint, touching_);
         found.time =
-            std::min(found.time, time_to_stop(constraint, std::min(h, found.time), apart_));
+            std::min(found.time, time_to_stop(*constraint, std::min(h, found.time), apart_));
     }
 }
 
@@ -93,9 +78,9 @@ DUCTILE_INLINE double WorldParts::closed_early(double h) {
 }
 
 DUCTILE_INLINE void WorldParts::take_stops(PartStops& stops) {
-    for (int i = 0; at_risk_ && i < world_.getNumConstraints(); ++i) {
-        btTypedConstraint& constraint = *world_.getConstraint(i);
-        if (has_part_stops(constraint)) stops.take(constraint);
+    if (!at_risk_) return;
+    for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        if (has_part_stops(*constraint)) stops.take(*constraint);
     }
 }
 

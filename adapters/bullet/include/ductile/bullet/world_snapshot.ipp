@@ -8,7 +8,6 @@
 #include <BulletDynamics/ConstraintSolver/btTypedConstraint.h>
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 #include "ductile/bullet/held_forces.hpp"
@@ -29,14 +28,8 @@ DUCTILE_INLINE void WorldSnapshot::take(btDiscreteDynamicsWorld& world, btConstr
                                         const LocalScope* scope) {
     bodies_.clear();
     constraints_.clear();
-    if (scope != nullptr) {
-        for (btRigidBody* body : scope->bodies()) take_body(*body);
-        for (btTypedConstraint* constraint : scope->constraints()) take_constraint(*constraint);
-    } else {
-        for (btRigidBody* body : MovingBodies::all(world)) take_body(*body);
-        for (int i = 0; i < world.getNumConstraints(); ++i)
-            take_constraint(*world.getConstraint(i));
-    }
+    for (btRigidBody* body : bodies_of(world, scope)) take_body(*body);
+    for (btTypedConstraint* constraint : constraints_of(world, scope)) take_constraint(*constraint);
     take_manifolds(*world.getDispatcher(), scope);
     const auto* sweeps = dynamic_cast<btSequentialImpulseConstraintSolver*>(&solver);
     if (sweeps != nullptr) seed_ = sweeps->getRandSeed();
@@ -105,16 +98,9 @@ DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher, cons
                                                   std::vector<btPersistentManifold*>& in_order) {
     manifolds.clear();
     in_order.clear();
-    const auto list = [&](btPersistentManifold& manifold) {
-        manifolds.push_back({manifold.getBody0(), manifold.getBody1(), int(in_order.size())});
-        in_order.push_back(&manifold);
-    };
-    if (scope != nullptr) {
-        for (btPersistentManifold* manifold : scope->manifolds()) list(*manifold);
-    } else {
-        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-            list(*dispatcher.getManifoldByIndexInternal(i));
-        }
+    for (btPersistentManifold* manifold : manifolds_of(dispatcher, scope)) {
+        manifolds.push_back({manifold->getBody0(), manifold->getBody1(), int(in_order.size())});
+        in_order.push_back(manifold);
     }
     sort(manifolds);
 }
@@ -129,18 +115,11 @@ DUCTILE_INLINE void WorldSnapshot::take_manifolds(btDispatcher& dispatcher,
     manifolds_.clear();
     points_.clear();
     sorted_ = false;
-    const auto take = [this](const btPersistentManifold& manifold) {
-        const int count = manifold.getNumContacts();
-        manifolds_.push_back({manifold.getBody0(), manifold.getBody1(), int(manifolds_.size()),
+    for (const btPersistentManifold* manifold : manifolds_of(dispatcher, scope)) {
+        const int count = manifold->getNumContacts();
+        manifolds_.push_back({manifold->getBody0(), manifold->getBody1(), int(manifolds_.size()),
                               points_.size(), count});
-        for (int k = 0; k < count; ++k) points_.push_back(manifold.getContactPoint(k));
-    };
-    if (scope != nullptr) {
-        for (const btPersistentManifold* manifold : scope->manifolds()) take(*manifold);
-    } else {
-        for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-            take(*dispatcher.getManifoldByIndexInternal(i));
-        }
+        for (int k = 0; k < count; ++k) points_.push_back(manifold->getContactPoint(k));
     }
 }
 

@@ -32,7 +32,6 @@
 
 #include <ode/ode.h>
 
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>

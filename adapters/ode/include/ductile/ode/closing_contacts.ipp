@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "ductile/ode/closing_contacts.hpp"
@@ -25,11 +26,6 @@ namespace detail {
     const BodyState<double> state = body_state(body);
     const Vector3<double> turn = cross(arm, normal);
     return state.inverse_mass + dot(turn, times(state.inverse_inertia, turn));
-}
-
-[[nodiscard]] DUCTILE_INLINE Vector3<double> arm_of(dBodyID body, const Vector3<double>& point) {
-    return body != nullptr ? difference(point, to_core(dBodyGetPosition(body)))
-                           : Vector3<double>(0, 0, 0);
 }
 
 /// With the normal on the first of its bodies.
@@ -328,8 +324,7 @@ DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double hurried,
         const bool counts = touch.energy > apart || force_ * overlap > pushed_out * apart;
         if (!counts || (hurried > 0 && !(overlap > unmissed * touch.depth))) continue;
         const double a = hurried > 0 ? (touch.speed - touch.before) / hurried : 0;
-        const double left = touch.speed * touch.speed - 2 * a * overlap; // its square as it closed
-        double ago = 2 * overlap / (touch.speed + std::sqrt(std::max(left, 0.0)));
+        double ago = time_to_close(overlap, touch.speed, -a); // back to where it closed
         if (!touch.closes || !(ago < past)) {
             if (!touch.is_new) continue;
             ago = past / 2; // it went another way

@@ -21,7 +21,6 @@
 #include <functional>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ductile/vocabulary/linkage.hpp"

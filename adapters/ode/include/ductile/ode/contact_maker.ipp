@@ -4,6 +4,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <utility>
 
 #include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/convert.hpp"

@@ -23,6 +23,11 @@ struct NamedContact {
 
     /// Whether it is no more than a normal and sliding friction.
     [[nodiscard]] bool slides_only() const { return (contact.surface.mode & dContactRolling) == 0; }
+    /// Its own, or else that of the world [s/kg].
+    [[nodiscard]] double cfm(dWorldID world) const {
+        const dSurfaceParameters& own = contact.surface;
+        return double((own.mode & dContactSoftCFM) != 0 ? own.soft_cfm : dWorldGetCFM(world));
+    }
 };
 
 /// What ODE, built with its assertions, would end the process by, and what no island can be solved

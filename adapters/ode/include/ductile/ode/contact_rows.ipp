@@ -107,21 +107,17 @@ DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island
     const dWorldID world = dBodyGetWorld(bodies.a);
     const Vector3<double> point = to_core(contact.geom.pos);
     const Vector3<double> normal = scaled(bodies.reversed ? -1 : 1, to_core(contact.geom.normal));
-    arm_a_ = difference(point, to_core(dBodyGetPosition(bodies.a)));
-    Vector3<double> closing =
-        sum(linear_velocity(bodies.a), cross(angular_velocity(bodies.a), arm_a_));
-    if (bodies.b != nullptr) {
-        arm_b_ = difference(point, to_core(dBodyGetPosition(bodies.b)));
-        closing = difference(
-            closing, sum(linear_velocity(bodies.b), cross(angular_velocity(bodies.b), arm_b_)));
-    }
+    arm_a_ = arm_of(bodies.a, point);
+    arm_b_ = arm_of(bodies.b, point);
+    const Vector3<double> closing =
+        difference(velocity_at(bodies.a, point), velocity_at(bodies.b, point));
     const auto usual_cfm = double(dWorldGetCFM(world));
     // only friction needs it: of a light body before a heavy one it is a share of the whole blow
     const bool rubs = surface.mu > 0 || (has(dContactMu2) && surface.mu2 > 0);
     softness_ = rubs ? solve::contact_softness : 0;
     add_row(island, a, b, normal,
-            detail::wanted_velocity(world, contact, -dot(normal, closing), dt),
-            has(dContactSoftCFM) ? double(surface.soft_cfm) : usual_cfm, dt);
+            detail::wanted_velocity(world, contact, -dot(normal, closing), dt), named.cfm(world),
+            dt);
     solve::IslandBlock block{.kind = solve::BlockKind::contact, .first = first_, .count = 1};
 
     struct Friction {

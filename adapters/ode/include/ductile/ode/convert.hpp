@@ -5,6 +5,8 @@
 
 #include <ode/ode.h>
 
+#include <functional>
+
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/joint/link_types.hpp"
 #include "ductile/numeric/lu.hpp"
@@ -14,6 +16,19 @@ namespace ductile::ode {
 
 [[nodiscard]] inline Vector3<double> to_core(const dReal* v) noexcept {
     return {double(v[0]), double(v[1]), double(v[2])};
+}
+
+/// What ODE tells of a joint by a call like dJointGetHingeAxis.
+[[nodiscard]] inline Vector3<double> told(dJointID joint, void (*what)(dJointID, dVector3)) {
+    dVector3 result;
+    what(joint, result);
+    return to_core(result);
+}
+/// [m/s²]
+[[nodiscard]] inline Vector3<double> gravity_of(dWorldID world) {
+    dVector3 result;
+    dWorldGetGravity(world, result);
+    return to_core(result);
 }
 
 /// ODE stores 3×3 matrices by rows of four.
@@ -46,12 +61,15 @@ namespace ductile::ode {
     return body != nullptr ? to_core(dBodyGetAngularVel(body)) : Vector3<double>(0, 0, 0);
 }
 
-/// Of a world point of the body; null: the static world.
+/// Of a world point from the centre of mass; zero of the static world, null.
+[[nodiscard]] inline Vector3<double> arm_of(dBodyID body, const Vector3<double>& point) noexcept {
+    return body != nullptr ? difference(point, to_core(dBodyGetPosition(body)))
+                           : Vector3<double>(0, 0, 0);
+}
 [[nodiscard]] inline Vector3<double> velocity_at(dBodyID body,
                                                  const Vector3<double>& point) noexcept {
     if (body == nullptr) return Vector3<double>(0, 0, 0);
-    const Vector3<double> arm = difference(point, to_core(dBodyGetPosition(body)));
-    return sum(linear_velocity(body), cross(angular_velocity(body), arm));
+    return sum(linear_velocity(body), cross(angular_velocity(body), arm_of(body, point)));
 }
 
 /// Null: the static world.
@@ -78,6 +96,10 @@ struct AttachedBodies {
     bool reversed = false; ///< the user attached the world first
 
     bool operator==(const AttachedBodies&) const = default;
+    bool operator<(const AttachedBodies& other) const noexcept {
+        const std::less<dBodyID> less;
+        return a != other.a ? less(a, other.a) : less(b, other.b);
+    }
 };
 
 [[nodiscard]] inline AttachedBodies attached_bodies(dJointID joint) noexcept {
@@ -89,6 +111,14 @@ struct AttachedBodies {
 
 [[nodiscard]] inline bool can_move(dBodyID body) noexcept {
     return body != nullptr && dBodyIsKinematic(body) == 0;
+}
+
+/// So slow that ODE would put it to sleep.
+[[nodiscard]] inline bool is_idle(dBodyID body) {
+    return dBodyGetAutoDisableFlag(body) != 0 &&
+           dBodyGetAutoDisableAverageSamplesCount(body) != 0 &&
+           norm(linear_velocity(body)) <= double(dBodyGetAutoDisableLinearThreshold(body)) &&
+           norm(angular_velocity(body)) <= double(dBodyGetAutoDisableAngularThreshold(body));
 }
 
 /// Both its bodies: ODE wakes what is attached to what is awake, but not for longer than a step.
@@ -137,9 +167,7 @@ inline void wake(dJointID joint) noexcept {
     BodyState<double> result = body_state(body);
     Vector3<double> acceleration = scaled(result.inverse_mass, to_core(dBodyGetForce(body)));
     if (dBodyGetGravityMode(body) != 0) {
-        dVector3 gravity;
-        dWorldGetGravity(dBodyGetWorld(body), gravity);
-        acceleration = sum(acceleration, to_core(gravity));
+        acceleration = sum(acceleration, gravity_of(dBodyGetWorld(body)));
     }
     const Vector3<double> turn = sum(scaled(dt, to_core(dBodyGetTorque(body))),
                                      gyroscopic_impulse(body, inertia(body), result.spin, dt));

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "ductile/member/active_sections.hpp"
-#include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/world/joint_report.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 
@@ -24,8 +23,7 @@ namespace detail {
 } // namespace detail
 
 DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) const {
-    dVector3 gravity;
-    dWorldGetGravity(world_, gravity);
+    const Vector3<double> gravity = gravity_of(world_);
     for (const dBodyID body : listed()) {
         MeteredBody& entry = bodies.emplace_back();
         entry.body = body;
@@ -34,7 +32,7 @@ DUCTILE_INLINE void EnergyMeter::list_bodies(std::vector<MeteredBody>& bodies) c
         entry.spin = angular_velocity(body);
         entry.mass = mass(body);
         entry.inertia = inertia(body);
-        if (dBodyGetGravityMode(body) != 0) entry.weight = scaled(entry.mass, to_core(gravity));
+        if (dBodyGetGravityMode(body) != 0) entry.weight = scaled(entry.mass, gravity);
         entry.force = to_core(dBodyGetForce(body));
         entry.torque = to_core(dBodyGetTorque(body));
         entry.asleep = dBodyIsEnabled(body) == 0;

@@ -4,23 +4,10 @@
 #pragma once
 
 #include <algorithm>
-#include <utility>
 
 #include "ductile/ode/island_solver.hpp"
 
 namespace ductile::ode {
-
-namespace detail {
-
-/// So slow that ODE would put it to sleep.
-DUCTILE_INLINE bool is_idle(dBodyID body) {
-    return dBodyGetAutoDisableFlag(body) != 0 &&
-           dBodyGetAutoDisableAverageSamplesCount(body) != 0 &&
-           norm(linear_velocity(body)) <= double(dBodyGetAutoDisableLinearThreshold(body)) &&
-           norm(angular_velocity(body)) <= double(dBodyGetAutoDisableAngularThreshold(body));
-}
-
-} // namespace detail
 
 DUCTILE_INLINE void IslandSolver::add(PlasticConstraint& joint) {
     IslandRows* rows = joint.island_rows();
@@ -128,7 +115,7 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
 
 DUCTILE_INLINE bool IslandSolver::falls_asleep(Kept& kept, double dt) const {
     const Idle before = std::exchange(kept.idle, {});
-    if (!std::all_of(bodies_.begin(), bodies_.end(), detail::is_idle)) return false;
+    if (!std::all_of(bodies_.begin(), bodies_.end(), is_idle)) return false;
     const auto rests = [this](std::size_t joint) { return members_[joint].rows->rests(); };
     if (!std::all_of(joints_.begin(), joints_.end(), rests)) return false;
     const Idle now{before.steps + 1, before.time + dt};

@@ -8,15 +8,11 @@
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/joint_constraint.hpp"
 #include "ductile/ode/precision_check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
-#include "ductile/world/joint_checks.hpp"
 #include "ductile/world/part_rows.hpp"
 
 namespace ductile::ode {

@@ -77,9 +77,7 @@ DUCTILE_INLINE bool LocalScope::find(dWorldID world, std::span<const dBodyID> bo
                                      const HeldForces& forces, double length) {
     clear();
     length_ = length;
-    dVector3 gravity;
-    dWorldGetGravity(world, gravity);
-    gravity_ = norm(to_core(gravity));
+    gravity_ = norm(gravity_of(world));
     for (const PlasticConstraint* joint : joints) {
         for (dBodyID body : {joint->bodies().a, joint->bodies().b}) {
             if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);

@@ -4,14 +4,7 @@
 // member.ipp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <utility>
-#include <vector>
-
 #include "ductile/numeric/lu.hpp"
-#include "ductile/ode/convert.hpp"
 
 namespace ductile::ode {
 

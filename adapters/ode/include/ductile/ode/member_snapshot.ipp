@@ -5,7 +5,6 @@
 
 #include <stdexcept>
 
-#include "ductile/ode/convert.hpp"
 #include "ductile/ode/member_snapshot.hpp"
 #include "ductile/ode/world.hpp"
 

@@ -4,12 +4,7 @@
 // member.ipp.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
-
-#include "ductile/ode/convert.hpp"
 
 namespace ductile::ode {
 

@@ -39,6 +39,7 @@
 
 #include "ductile/joint/inverse_mass.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/joint_calls.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
@@ -66,13 +67,16 @@ class MotorAxis {
     [[nodiscard]] bool turns() const noexcept {
         return kind_ != dJointTypeSlider && kind_ != dJointTypeLMotor;
     }
-    [[nodiscard]] dJointType kind() const noexcept { return kind_; }
     /// True where the position is a function of where the bodies are, false where it is summed up.
     [[nodiscard]] bool measured() const noexcept { return measured_; }
 
     /// A motor parameter: dParamVel, dParamFMax, dParamCFM, dParamLoStop, ...
-    void set(int parameter, double value) const { set_motor(number_, parameter, value); }
-    [[nodiscard]] double get(int parameter) const { return get_motor(number_, parameter); }
+    void set(int parameter, double value) const {
+        calls_.set(joint_, parameter + dParamGroup * number_, dReal(value));
+    }
+    [[nodiscard]] double get(int parameter) const {
+        return double(calls_.get(joint_, parameter + dParamGroup * number_));
+    }
 
     /// Axis of the row, world, unit.
     [[nodiscard]] Vector3<double> axis() const { return axis_of(number_); }
@@ -96,9 +100,6 @@ class MotorAxis {
     /// angles to its motors, and the motors are told from each other by their axes.
     [[nodiscard]] double force(const dJointFeedback& feedback, const Matrix3<double>& axes,
                                const Vector3<double>& arm) const;
-
-    /// Of A minus B along the axis, as the bodies are now [m/s | rad/s].
-    [[nodiscard]] double velocity() const;
 
     /// h of axis_response, with what the joint holds beside the row: all five other axes of a hinge
     /// and a slider, pin and cross of a universal or hinge-2 (its suspension taken as rigid), the
@@ -126,9 +127,6 @@ class MotorAxis {
     static Matrix3<double> gram(const Matrix3<double>& axes);
     void require_independent_axes() const;
 
-    void set_motor(int number, int parameter, double value) const;
-    [[nodiscard]] double get_motor(int number, int parameter) const;
-
     [[nodiscard]] Vector3<double> axis_of(int number) const;
 
     [[nodiscard]] Vector3<double> linear_axis(int number) const;
@@ -138,6 +136,7 @@ class MotorAxis {
 
     dJointID joint_;
     dJointType kind_;
+    JointCalls calls_;
     int number_;
     int motors_;
     int relative_to_ = 0; ///< of linear motors: 0 world, 1 first body, 2 second body

@@ -5,14 +5,12 @@
 
 #include <limits>
 #include <stdexcept>
-#include <string>
 
 #include "ductile/joint/rotation.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/numeric/lu.hpp"
 #include "ductile/ode/motor_axis.hpp"
 #include "ductile/vocabulary/angle.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 
@@ -26,26 +24,15 @@ DUCTILE_INLINE Matrix3<double> MotorAxis::axes() const {
 }
 
 DUCTILE_INLINE Vector3<double> MotorAxis::point() const {
-    dVector3 at;
     switch (kind_) {
         case dJointTypeHinge:
-            if (bodies_.reversed) {
-                dJointGetHingeAnchor2(joint_, at);
-            } else {
-                dJointGetHingeAnchor(joint_, at);
-            }
-            return to_core(at);
+            return told(joint_, bodies_.reversed ? dJointGetHingeAnchor2 : dJointGetHingeAnchor);
         case dJointTypeUniversal:
-            dJointGetUniversalAnchor(joint_, at);
-            return to_core(at);
+            return told(joint_, dJointGetUniversalAnchor);
         case dJointTypeHinge2:
-            dJointGetHinge2Anchor(joint_, at);
-            return to_core(at);
+            return told(joint_, dJointGetHinge2Anchor);
         case dJointTypeAMotor:
-            if (const dJointID ball = pin()) {
-                dJointGetBallAnchor(ball, at);
-                return to_core(at);
-            }
+            if (const dJointID ball = pin()) return told(ball, dJointGetBallAnchor);
             return to_core(dBodyGetPosition(bodies_.a));
         default:
             break;
@@ -107,17 +94,6 @@ DUCTILE_INLINE double MotorAxis::force(const dJointFeedback& feedback, const Mat
     return numeric::Lu<double, 3>(gram(axes)).solve(transposed_times(axes, whole))[number_];
 }
 
-DUCTILE_INLINE double MotorAxis::velocity() const {
-    const auto& [a, b, reversed] = bodies_;
-    const Vector3<double> wa = angular_velocity(a), wb = angular_velocity(b);
-    if (turns()) return dot(axis(), difference(wa, wb));
-    const Placement now = placement();
-    const Vector3<double> at = point();
-    const Vector3<double> of_a = sum(linear_velocity(a), cross(wa, difference(at, now.position_a)));
-    const Vector3<double> of_b = sum(linear_velocity(b), cross(wb, difference(at, now.position_b)));
-    return dot(axis(), difference(of_a, of_b));
-}
-
 DUCTILE_INLINE Vector6<double> MotorAxis::response(const BodyAtJoint<double>& a,
                                                    const BodyAtJoint<double>& b) const {
     const Matrix6<double> k = inverse_mass_at_joint(a, b);
@@ -142,19 +118,15 @@ DUCTILE_INLINE Vector6<double> MotorAxis::response(const BodyAtJoint<double>& a,
 }
 
 DUCTILE_INLINE Vector3<double> MotorAxis::pin_error(const Vector3<double>& point) const {
-    dVector3 other;
     switch (kind_) {
         case dJointTypeHinge:
-            if (bodies_.reversed) {
-                dJointGetHingeAnchor(joint_, other);
-            } else {
-                dJointGetHingeAnchor2(joint_, other);
-            }
-            return difference(to_core(other), point);
-        case dJointTypeUniversal:
-            dJointGetUniversalAnchor2(joint_, other);
-            return bodies_.reversed ? difference(point, to_core(other))
-                                    : difference(to_core(other), point);
+            return difference(
+                told(joint_, bodies_.reversed ? dJointGetHingeAnchor : dJointGetHingeAnchor2),
+                point);
+        case dJointTypeUniversal: {
+            const Vector3<double> other = told(joint_, dJointGetUniversalAnchor2);
+            return bodies_.reversed ? difference(point, other) : difference(other, point);
+        }
         default:
             return scaled(std::numeric_limits<double>::quiet_NaN(), point);
     }
@@ -166,7 +138,7 @@ DUCTILE_INLINE void MotorAxis::require(bool right, const std::string& what) {
 
 DUCTILE_INLINE MotorAxis::MotorAxis(dJointID joint, dJointType kind, const char* name, int number,
                                     int motors)
-    : joint_(joint), kind_(kind), number_(number), motors_(motors) {
+    : joint_(joint), kind_(kind), calls_(joint_calls(kind)), number_(number), motors_(motors) {
     require(joint != nullptr, "joint = null: must be a joint");
     require(dJointGetType(joint) == kind, std::string("joint: must be ODE's ") + name);
     require(number >= 0 && number < motors, "number = " + std::to_string(number) +
@@ -191,75 +163,26 @@ DUCTILE_INLINE void MotorAxis::require_independent_axes() const {
             "another");
 }
 
-DUCTILE_INLINE void MotorAxis::set_motor(int number, int parameter, double value) const {
-    const int p = parameter + dParamGroup * number;
-    switch (kind_) {
-        case dJointTypeHinge:
-            dJointSetHingeParam(joint_, p, dReal(value));
-            break;
-        case dJointTypeSlider:
-            dJointSetSliderParam(joint_, p, dReal(value));
-            break;
-        case dJointTypeUniversal:
-            dJointSetUniversalParam(joint_, p, dReal(value));
-            break;
-        case dJointTypeHinge2:
-            dJointSetHinge2Param(joint_, p, dReal(value));
-            break;
-        case dJointTypeAMotor:
-            dJointSetAMotorParam(joint_, p, dReal(value));
-            break;
-        default:
-            dJointSetLMotorParam(joint_, p, dReal(value));
-            break;
-    }
-}
-
-DUCTILE_INLINE double MotorAxis::get_motor(int number, int parameter) const {
-    const int p = parameter + dParamGroup * number;
-    switch (kind_) {
-        case dJointTypeHinge:
-            return double(dJointGetHingeParam(joint_, p));
-        case dJointTypeSlider:
-            return double(dJointGetSliderParam(joint_, p));
-        case dJointTypeUniversal:
-            return double(dJointGetUniversalParam(joint_, p));
-        case dJointTypeHinge2:
-            return double(dJointGetHinge2Param(joint_, p));
-        case dJointTypeAMotor:
-            return double(dJointGetAMotorParam(joint_, p));
-        default:
-            return double(dJointGetLMotorParam(joint_, p));
-    }
-}
-
 DUCTILE_INLINE Vector3<double> MotorAxis::axis_of(int number) const {
-    dVector3 result;
     switch (kind_) {
         case dJointTypeHinge:
-            dJointGetHingeAxis(joint_, result);
-            break;
+            return told(joint_, dJointGetHingeAxis);
         case dJointTypeSlider:
-            dJointGetSliderAxis(joint_, result);
             // the motor of a slider attached to (null, body), unlike that of a hinge, is turned
             // round
-            if (bodies_.reversed) return scaled(-1, to_core(result));
-            break;
+            return scaled(bodies_.reversed ? -1 : 1, told(joint_, dJointGetSliderAxis));
         case dJointTypeUniversal:
-            number == 0 ? dJointGetUniversalAxis1(joint_, result)
-                        : dJointGetUniversalAxis2(joint_, result);
-            break;
+            return told(joint_, number == 0 ? dJointGetUniversalAxis1 : dJointGetUniversalAxis2);
         case dJointTypeHinge2:
-            number == 0 ? dJointGetHinge2Axis1(joint_, result)
-                        : dJointGetHinge2Axis2(joint_, result);
-            break;
-        case dJointTypeAMotor:
+            return told(joint_, number == 0 ? dJointGetHinge2Axis1 : dJointGetHinge2Axis2);
+        case dJointTypeAMotor: {
+            dVector3 result;
             dJointGetAMotorAxis(joint_, number, result);
-            break;
+            return to_core(result);
+        }
         default:
             return linear_axis(number);
     }
-    return to_core(result);
 }
 
 DUCTILE_INLINE Vector3<double> MotorAxis::linear_axis(int number) const {

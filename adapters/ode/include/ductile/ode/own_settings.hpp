@@ -11,47 +11,75 @@
 
 #include <ode/ode.h>
 
-#include <limits>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "ductile/frame/part_settings.hpp"
-#include "ductile/vocabulary/linkage.hpp"
+#include "ductile/ode/joint_calls.hpp"
 
 namespace ductile::ode {
 
 class OwnSettings {
   public:
     /// Rules the joints of these bodies for a part of `h` [s] in a frame of `frame` [s], or a blow.
-    DUCTILE_INLINE void rule(std::span<const dBodyID> bodies, double h, double frame, bool blow);
+    void rule(std::span<const dBodyID> bodies, double h, double frame, bool blow) {
+        own_.clear();
+        for (dBodyID body : bodies) {
+            for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
+                const dJointID joint = dBodyGetJoint(body, i);
+                const dBodyID first = dJointGetBody(joint, 0);
+                if (first == body || first == nullptr) find(joint);
+            }
+        }
+        for (const Own& own : own_) {
+            Softness rule = own.usual;
+            if (blow) {
+                rule = {0, rule.compliance * blow_compliance(h)};
+            } else if (own.spring) {
+                rule = part_spring(rule, h, frame);
+            } else {
+                rule.erp = part_erp(rule.erp, h);
+            }
+            own.set(own.joint, own.erp_name, dReal(rule.erp));
+            own.set(own.joint, own.cfm_name, dReal(rule.compliance));
+        }
+    }
     /// They are as they were.
-    DUCTILE_INLINE void put_back();
+    void put_back() {
+        for (const Own& own : own_) {
+            own.set(own.joint, own.erp_name, dReal(own.usual.erp));
+            own.set(own.joint, own.cfm_name, dReal(own.usual.compliance));
+        }
+        own_.clear();
+    }
 
   private:
-    using Get = dReal (*)(dJointID, int);
-    using Set = void (*)(dJointID, int, dReal);
-    struct Access {
-        Get get = nullptr;
-        Set set = nullptr;
-        int stops = 0;           ///< axes that may have some
-        bool rows = false;       ///< all of them
-        bool suspension = false; ///< of its first axis
-    };
     struct Own {
         dJointID joint;
-        Set set;
+        void (*set)(dJointID, int, dReal);
         int erp_name, cfm_name;
         Softness usual;
         bool spring; ///< a share of what the frame removes, not of each part
     };
-    [[nodiscard]] static DUCTILE_INLINE Access access(dJointID joint);
-    DUCTILE_INLINE void find(dJointID joint);
+    void find(dJointID joint) {
+        const JointCalls calls = joint_calls(dJointGetType(joint));
+        const auto add = [&](int erp_name, int cfm_name, bool spring) {
+            const Softness usual{double(calls.get(joint, erp_name)),
+                                 double(calls.get(joint, cfm_name))};
+            own_.push_back({joint, calls.set, erp_name, cfm_name, usual, spring});
+        };
+        if (calls.rows) add(dParamERP, dParamCFM, false);
+        if (calls.suspension) add(dParamSuspensionERP, dParamSuspensionCFM, true);
+        for (int axis = 0; axis < calls.stops; ++axis) {
+            const int group = dParamGroup * axis;
+            const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
+                               std::isfinite(calls.get(joint, dParamHiStop + group));
+            if (stops) add(dParamStopERP + group, dParamStopCFM + group, true);
+        }
+    }
 
     std::vector<Own> own_;
 };
 
 } // namespace ductile::ode
-
-#ifndef DUCTILE_COMPILED
-#include "ductile/ode/own_settings.ipp"
-#endif

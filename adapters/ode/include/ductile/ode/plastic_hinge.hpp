@@ -30,11 +30,11 @@ struct HingeFrame {
 };
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticHinge final : public LinkJoint<Joint, JointConstraint> {
-    using Base = LinkJoint<Joint, JointConstraint>;
+class PlasticHinge final : public HingeJoint<LinkJoint<Joint, JointConstraint>> {
+    using Base = HingeJoint<LinkJoint<Joint, JointConstraint>>;
 
   public:
-    static constexpr JointAxis axis = JointAxis::torsion; ///< along HingeFrame::axis
+    using Base::axis;
 
     /// `b` null: hinge between body `a` and the static world. Where the bodies are now is the
     /// hinge's rest position.
@@ -52,17 +52,6 @@ class PlasticHinge final : public LinkJoint<Joint, JointConstraint> {
         : Base(Link<Joint>(std::move(joint), {axis}, Base::require_frame("in_a", in_a),
                            Base::require_frame("in_b", in_b)),
                world, Base::require_bodies("PlasticHinge", world, a, b), b, meeting) {}
-
-    /// Angle of A relative to B about the axis, not wrapped [rad].
-    [[nodiscard]] double rotation() const { return Base::position(axis); }
-    /// Velocity of that after the last step's solve [rad/s].
-    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
-    /// Geometric rest angle q_p [rad].
-    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
-    /// Accumulated plastic rotation p, work-conjugate [rad].
-    [[nodiscard]] double plastic_rotation() const { return Base::plastic_travel(); }
-    /// Moment about the axis in the last step, positive where it turns A about +axis [N m].
-    [[nodiscard]] double moment() const { return Base::force(axis); }
 
   private:
     PlasticHinge(Joint joint, dWorldID world, dBodyID a, dBodyID b,

@@ -143,8 +143,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void suspend();
     /// The bodies were put elsewhere since the last step: the rest position goes along.
     [[nodiscard]] double follow_teleport();
-    /// Where the row is half a step ahead of where it was last looked at, moving at `velocity`.
-    [[nodiscard]] double follow_ahead(double velocity, double dt);
+    /// Where the row is now, some `way` from where it was when it was `last` looked at.
+    [[nodiscard]] double moved_from(const MotorPose& last, double way) const;
     void part();
     void give_motor_back();
 

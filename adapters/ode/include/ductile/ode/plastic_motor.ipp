@@ -10,7 +10,6 @@
 #include "ductile/ode/plastic_motor.hpp"
 #include "ductile/ode/precision_check.hpp"
 #include "ductile/vocabulary/finite.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/world/part_rows.hpp"
 
@@ -96,6 +95,11 @@ DUCTILE_INLINE double MotorConstraint::follow_teleport() {
     return position_ = now;
 }
 
+DUCTILE_INLINE double MotorConstraint::moved_from(const MotorPose& last, double way) const {
+    if (row_.measured()) return row_.measure(position_ + way);
+    return position_ + row_.increment(last.placement(), last.axis(), last.point());
+}
+
 DUCTILE_INLINE void MotorConstraint::part() {
     row_.set(dParamFMax, 0);
     if (at_break_ != AtBreak::disable_joint) return;
@@ -123,8 +127,11 @@ DUCTILE_INLINE void MotorConstraint::prepare(double dt) {
     Motion<double> motion{.ahead = ahead_};
     if (ahead_) {
         driven_.forget();
-        motion.velocity = row_.velocity();
-        motion.position = follow_ahead(motion.velocity, dt);
+        const MotorPose last = pose_;
+        pose_.look(row_);
+        motion.velocity = pose_.velocity(row_);
+        motion.position = moved_from(last, motion.velocity * dt / 2);
+        keep(motion.position, force_);
         motion.before = motion.position - motion.velocity * dt / 2;
     } else {
         pose_.look(row_);
@@ -154,10 +161,7 @@ DUCTILE_INLINE void MotorConstraint::commit(double dt) {
     certify_pin(linear(twist));
     const double force = row_force();
     const double moved = ahead_ ? dt / 2 : dt; // since the row was prepared
-    const double position =
-        row_.measured()
-            ? row_.measure(position_ + velocity * moved)
-            : position_ + row_.increment(pose_.placement(), pose_.axis(), pose_.point());
+    const double position = moved_from(pose_, velocity * moved);
     if (row_.turns()) see_turn(velocity, moved, position);
     joint_.commit({force, velocity, position}, dt);
     keep(position, force);
@@ -182,15 +186,6 @@ DUCTILE_INLINE void MotorConstraint::begin_frame() {
     if (joint_.broken() || !row_.attached()) return;
     pose_.look(row_);
     (void)follow_teleport();
-}
-
-DUCTILE_INLINE double MotorConstraint::follow_ahead(double velocity, double dt) {
-    const double ahead = row_.measured() ? row_.measure(position_ + velocity * dt / 2)
-                                         : position_ + row_.increment(pose_.placement(),
-                                                                      pose_.axis(), pose_.point());
-    pose_.look(row_);
-    keep(ahead, force_);
-    return ahead;
 }
 
 DUCTILE_INLINE void MotorConstraint::keep_all() {

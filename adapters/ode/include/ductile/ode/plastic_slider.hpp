@@ -16,33 +16,20 @@
 namespace ductile::ode {
 
 template <class Joint = OneAxisJoint<Perfect<double>>>
-class PlasticSlider final : public LinkJoint<Joint, JointConstraint> {
-    using Base = LinkJoint<Joint, JointConstraint>;
+class PlasticSlider final : public SliderJoint<LinkJoint<Joint, JointConstraint>> {
+    using Base = SliderJoint<LinkJoint<Joint, JointConstraint>>;
 
   public:
-    static constexpr JointAxis axis = JointAxis::axial; ///< along the bar
+    using Base::axis;
 
-    /// Bar along `along` (world, any length > 0), through the middle between the centres of mass, or
-    /// where `b` is null, the static world, through that of `a`. Where the bodies are now is the
+    /// Bar along `along` (world, any length > 0), through the middle between the centres of mass,
+    /// or where `b` is null, the static world, through that of `a`. Where the bodies are now is the
     /// bar's rest position.
     /// @throws std::invalid_argument where `a` is null, both bodies are one or not of this world,
     /// or `along` is not finite or has no length.
-    PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& along,
-                  Joint joint)
-        : PlasticSlider(std::move(joint), world,
-                        Base::require_bodies("PlasticSlider", world, a, b), b,
-                        Base::frame_along("PlasticSlider", along, Base::midway(a, b))) {}
-
-    /// Change of length: A's displacement along the axis relative to B [m].
-    [[nodiscard]] double elongation() const { return Base::position(axis); }
-    /// Velocity of that after the last step's solve [m/s].
-    [[nodiscard]] double velocity() const { return Base::joint().state().velocity; }
-    /// Geometric rest elongation q_p [m].
-    [[nodiscard]] double plastic_offset() const { return Base::joint().state().plastic_offset; }
-    /// Accumulated plastic elongation p, work-conjugate [m].
-    [[nodiscard]] double plastic_elongation() const { return Base::plastic_travel(); }
-    /// Force along the axis in the last step, positive where it pushes A along +axis [N].
-    [[nodiscard]] double force() const { return Base::force(axis); }
+    PlasticSlider(dWorldID world, dBodyID a, dBodyID b, const Vector3<double>& along, Joint joint)
+        : PlasticSlider(std::move(joint), world, Base::require_bodies("PlasticSlider", world, a, b),
+                        b, Base::frame_along("PlasticSlider", along, Base::midway(a, b))) {}
 
   private:
     PlasticSlider(Joint joint, dWorldID world, dBodyID a, dBodyID b,

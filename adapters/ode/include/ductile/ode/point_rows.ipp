@@ -7,7 +7,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/point_rows.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

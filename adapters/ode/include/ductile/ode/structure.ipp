@@ -4,9 +4,6 @@
 #pragma once
 
 #include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/piece.hpp"
@@ -14,30 +11,9 @@
 
 namespace ductile::ode {
 
-namespace detail {
-
-DUCTILE_INLINE StructurePlan plan_of(const StructureModel& model, const std::vector<OwnBody>& own) {
-    std::vector<NodeId> nodes;
-    for (const OwnBody& one : own) {
-        nodes.push_back(one.node);
-        if (one.body != nullptr) continue;
-        throw std::invalid_argument("Structure.own.body = null at node " +
-                                    std::to_string(one.node.index) + ": must be a body");
-    }
-    return make_plan(model, nodes);
-}
-
-} // namespace detail
-
 DUCTILE_INLINE Structure::Structure(World& world, dSpaceID space, const StructureModel& model,
                                     const std::vector<OwnBody>& own)
-    : BuiltStructure(detail::plan_of(model, own)),
-      world_(world),
-      own_(plan().seats.size(), nullptr) {
-    dVector3 gravity;
-    dWorldGetGravity(world_.id(), gravity);
-    gravity_ = to_core(gravity);
-    for (const OwnBody& one : own) own_[one.node.index] = one.body;
+    : JointedStructure(world, model, own), gravity_(gravity_of(world.id())) {
     for (const PlanBody& body : plan().bodies) make_body(body, space);
     for (const PlanJoint& joint : plan().joints) make_joint(joint);
     made();
@@ -61,31 +37,12 @@ DUCTILE_INLINE void Structure::make_body(const PlanBody& plan, dSpaceID space) {
     parts_.push_back(part);
 }
 
-DUCTILE_INLINE dBodyID Structure::at(const PlanSeat& seat) const {
-    switch (seat.kind) {
-        case PlanSeat::Kind::body:
-            return parts_[seat.index].body;
-        case PlanSeat::Kind::own:
-            return own_[seat.index];
-        case PlanSeat::Kind::ground:
-            break;
-    }
-    return nullptr;
-}
-
 DUCTILE_INLINE void Structure::make_joint(const PlanJoint& plan) {
     joints_.push_back(std::make_unique<Joint>(world_.id(), parts_[plan.a].body, at(plan.b),
                                               plan.frame, plan.joint));
     world_.add(*joints_.back(), plan.name);
 }
 
-DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member, MemberEnd end) const {
-    return *joints_[present_joint(plan().joint(member, end))];
-}
-DUCTILE_INLINE Structure::Joint& Structure::joint(std::string_view member,
-                                                  std::size_t number) const {
-    return *joints_[present_joint(plan().joint(member, number))];
-}
 DUCTILE_INLINE dBodyID Structure::body(std::string_view member, std::size_t piece) const {
     return parts_[present_body(plan().body(member, piece))].body;
 }
@@ -106,21 +63,12 @@ DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) cons
     return {now.position, now.orientation};
 }
 
-DUCTILE_INLINE const PairQueries& Structure::queries(std::size_t joint) const {
-    return *joints_[joint];
-}
-
 DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
                                     const Vector3<double>& at_place) {
     dBodyID body = at(seat);
     dBodyEnable(body);
     dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
                        dReal(at_place.x()), dReal(at_place.y()), dReal(at_place.z()));
-}
-
-DUCTILE_INLINE void Structure::drop_joint(std::size_t joint) {
-    world_.remove(*joints_[joint]);
-    joints_[joint].reset();
 }
 
 DUCTILE_INLINE void Structure::drop_body(std::size_t body) {

@@ -102,7 +102,6 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
         return std::size_t(std::find(bodies_.begin(), bodies_.end(), body) - bodies_.begin());
     }
     [[nodiscard]] bool held(std::size_t cluster) const { return course_.clusters()[cluster].held; }
-    [[nodiscard]] Vector3<double> gravity() const;
     [[nodiscard]] bool rests(std::span<const Touch> touches) const;
     [[nodiscard]] std::size_t acting_holds() const {
         return std::size_t(std::count_if(holds_.begin(), holds_.end(),

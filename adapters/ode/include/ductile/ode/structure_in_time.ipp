@@ -3,9 +3,7 @@
 // Bodies of structure_in_time.hpp.
 #pragma once
 
-#include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/structure_in_time.hpp"
@@ -14,7 +12,7 @@ namespace ductile::ode {
 
 DUCTILE_INLINE StructureInTime::StructureInTime(World& world, dSpaceID space,
                                                 const StructureModel& model)
-    : DividedStructure(model), world_(world), gravity_(gravity()) {
+    : DividedStructure(model), world_(world), gravity_(gravity_of(world.id())) {
     for (const PlanBody& body : plan().bodies) boxes_.push_back(detail::box_of(body, space));
     for (std::size_t c = 0; c < course_.clusters().size(); ++c) {
         bodies_.push_back(make_cluster(c, nullptr));
@@ -224,11 +222,6 @@ DUCTILE_INLINE void StructureInTime::wake() {
     for (std::size_t c = 0; c < bodies_.size(); ++c) wake_cluster(c);
 }
 
-DUCTILE_INLINE Vector3<double> StructureInTime::gravity() const {
-    dVector3 now;
-    dWorldGetGravity(world_.id(), now);
-    return to_core(now);
-}
 DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
     dWorldSetGravity(world_.id(), dReal(factor * gravity_.x()), dReal(factor * gravity_.y()),
                      dReal(factor * gravity_.z()));
@@ -248,8 +241,7 @@ DUCTILE_INLINE void StructureInTime::require_possible() {
 }
 DUCTILE_INLINE void StructureInTime::apply_forces() {
     add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
-        const Vector3<double> arm = difference(at, to_core(dBodyGetPosition(bodies_[c])));
-        add_force(bodies_[c], force, cross(arm, force));
+        add_force(bodies_[c], force, cross(arm_of(bodies_[c], at), force));
     });
 }
 
@@ -283,7 +275,7 @@ DUCTILE_INLINE bool StructureInTime::rests(std::span<const Touch> touches) const
                         [](const Hold& hold) { return hold.acts && hold.is_solved(); });
 }
 DUCTILE_INLINE bool StructureInTime::may_be_beyond(std::span<const Touch> touches) const {
-    if (!proved_ || *proved_ != gravity() || !rests(touches) ||
+    if (!proved_ || *proved_ != gravity_of(world_.id()) || !rests(touches) ||
         proved_touches_ != touches.size() + acting_holds()) {
         return true;
     }
@@ -293,7 +285,7 @@ DUCTILE_INLINE bool StructureInTime::may_be_beyond(std::span<const Touch> touche
 
 DUCTILE_INLINE void StructureInTime::read(double dt, std::span<Touch> touches) {
     begin_read();
-    const Vector3<double> fallen = scaled(dt, gravity());
+    const Vector3<double> fallen = scaled(dt, gravity_of(world_.id()));
     for (std::size_t c = 0; c < bodies_.size(); ++c) {
         ClusterStep& step = steps_[c];
         if (held(c)) {
@@ -359,7 +351,7 @@ DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> tou
     proved_.reset();
     proved_touches_ = touches.size() + acting_holds();
     sections = course_.beyond(steps_, loads_, dt);
-    if (sections.empty() && rests(touches) && joints_.empty()) proved_ = gravity();
+    if (sections.empty() && rests(touches) && joints_.empty()) proved_ = gravity_of(world_.id());
 }
 
 DUCTILE_INLINE void StructureInTime::find_struck(double dt, std::span<Touch> touches,

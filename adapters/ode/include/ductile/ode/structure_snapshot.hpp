@@ -13,7 +13,6 @@
 
 #include <ode/ode.h>
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 

@@ -9,7 +9,6 @@
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/user_joint.hpp"
-#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
 
@@ -69,14 +68,11 @@ DUCTILE_INLINE void JointPlace::attach(dJointID joint, dBodyID first, dBodyID se
 DUCTILE_INLINE std::optional<Vector3<double>> anchor_of(dJointID joint, dBodyID body,
                                                         const std::string& field) {
     const bool first = dJointGetBody(joint, 0) == body;
-    dVector3 anchor;
     switch (dJointGetType(joint)) {
         case dJointTypeBall:
-            (first ? dJointGetBallAnchor : dJointGetBallAnchor2)(joint, anchor);
-            return to_core(anchor);
+            return told(joint, first ? dJointGetBallAnchor : dJointGetBallAnchor2);
         case dJointTypeHinge:
-            (first ? dJointGetHingeAnchor : dJointGetHingeAnchor2)(joint, anchor);
-            return to_core(anchor);
+            return told(joint, first ? dJointGetHingeAnchor : dJointGetHingeAnchor2);
         case dJointTypeFixed:
             return std::nullopt;
         default:

@@ -50,7 +50,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ductile/ode/contact_maker.hpp"
@@ -60,7 +59,6 @@
 #include "ductile/ode/stepped_constraint.hpp"
 #include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
-#include "ductile/world/joint_report.hpp"
 #include "ductile/world/stepped_world.hpp"
 
 namespace ductile::ode {

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <span>
 #include <stdexcept>
-#include <string>
+#include <utility>
 
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/island_solver.hpp"
@@ -16,9 +16,7 @@
 #include "ductile/ode/world.hpp"
 #include "ductile/ode/world_parts.hpp"
 #include "ductile/ode/world_snapshot.hpp"
-#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/check.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

@@ -3,14 +3,6 @@
 // Bodies of world.hpp: what a step is refused for. A part of world.ipp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
-#include "ductile/vocabulary/check.hpp"
-
 namespace ductile::ode {
 
 namespace detail {

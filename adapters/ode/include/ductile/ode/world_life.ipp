@@ -7,7 +7,6 @@
 #include <unordered_map>
 
 #include "ductile/ode/world_life.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::ode {
 

@@ -3,12 +3,7 @@
 // Bodies of world.hpp that concern members and structures. A part of members.ipp.
 #pragma once
 
-#include <algorithm>
 #include <memory>
-#include <stdexcept>
-#include <utility>
-
-#include "ductile/ode/world.hpp"
 
 namespace ductile::ode {
 

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <span>
-#include <utility>
-#include <vector>
 
 #include "ductile/frame/part_settings.hpp"
-#include "ductile/ode/convert.hpp"
 #include "ductile/ode/world_parts.hpp"
 
 namespace ductile::ode {

@@ -4,48 +4,10 @@
 // of world_parts.ipp.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <utility>
-
 #include "ductile/joint/gyroscopic.hpp"
-#include "ductile/ode/convert.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
-
-namespace detail {
-
-[[nodiscard]] DUCTILE_INLINE bool before(const AttachedBodies& x, const AttachedBodies& y) {
-    const std::less<dBodyID> less;
-    return x.a != y.a ? less(x.a, y.a) : less(x.b, y.b);
-}
-/// In the order that `nearest` needs.
-template <class Entry>
-void sort_by_bodies(std::vector<std::pair<AttachedBodies, Entry>>& entries) {
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const auto& x, const auto& y) { return before(x.first, y.first); });
-}
-/// Of the same bodies, the one whose point is nearest; null: there is none.
-template <class Entry>
-[[nodiscard]] const Entry* nearest(const std::vector<std::pair<AttachedBodies, Entry>>& entries,
-                                   const AttachedBodies& bodies, const Vector3<double>& point) {
-    const Entry* nearest = nullptr;
-    double least = std::numeric_limits<double>::infinity();
-    auto entry = std::lower_bound(
-        entries.begin(), entries.end(), bodies,
-        [](const auto& one, const AttachedBodies& key) { return before(one.first, key); });
-    for (; entry != entries.end() && entry->first == bodies; ++entry) {
-        const double distance = norm(difference(entry->second.point, point));
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = &entry->second;
-    }
-    return nearest;
-}
-
-} // namespace detail
 
 DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
     of_.contacts.clear();
@@ -96,9 +58,7 @@ DUCTILE_INLINE double WorldParts::yielding(double touching) {
     constexpr double hard = 1e-3; // of what yields in the frame: it sinks in as what is closed may
     double sum = 0;
     closing_.each_strike(touching, [&](const NamedContact& named, double yields, double energy) {
-        const dSurfaceParameters& surface = named.contact.surface;
-        const bool own = (surface.mode & dContactSoftCFM) != 0;
-        const auto cfm = double(own ? surface.soft_cfm : dWorldGetCFM(of_.world));
+        const double cfm = named.cfm(of_.world);
         const double most = hard * length_ * yields;
         if (!(cfm > most)) return;
         sum += energy;
@@ -123,10 +83,9 @@ DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bo
 
 DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
     const auto [bodies, now] = detail::seen_contact(named);
-    const SeenContact* nearest = detail::nearest(seen_, bodies, now.point);
-    if (nearest == nullptr) return 0;
-    return turned_contact(now, *nearest, contact_body(bodies.a), contact_body(bodies.b), h / 2,
-                          h / 2);
+    const SeenContact* then = nearest(seen_, bodies, now.point);
+    if (then == nullptr) return 0;
+    return turned_contact(now, *then, contact_body(bodies.a), contact_body(bodies.b), h / 2, h / 2);
 }
 
 /// Friction that holds is right at the end of a part of `h` [s].
@@ -149,7 +108,7 @@ DUCTILE_INLINE void WorldParts::hold_turning(NamedContact& named, double h) {
 DUCTILE_INLINE void WorldParts::begin_pushes() {
     for (NamedContact& named : of_.contacts) {
         const Push* last =
-            detail::nearest(pushes_, attached_bodies(named.joint), to_core(named.contact.geom.pos));
+            nearest(pushes_, attached_bodies(named.joint), to_core(named.contact.geom.pos));
         if (last != nullptr) named.force = last->force;
     }
 }
@@ -161,7 +120,7 @@ DUCTILE_INLINE void WorldParts::remember_pushes() {
         pushes_.emplace_back(attached_bodies(named.joint),
                              Push{to_core(named.contact.geom.pos), to_core(feedback->f1)});
     }
-    detail::sort_by_bodies(pushes_);
+    sort_by_bodies(pushes_);
 }
 
 DUCTILE_INLINE void WorldParts::open_others() {
@@ -179,7 +138,7 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
     seen_.clear();
     if (!closing_.any_plastic()) return;
     for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
-    detail::sort_by_bodies(seen_);
+    sort_by_bodies(seen_);
     closing_.remember();
 }
 
