@@ -316,6 +316,62 @@ TEST_CASE("What slides in a blow is solved beside a spring too", "[solve]") {
     }
 }
 
+TEST_CASE("Two cubes on a hinge slide on their corners, whose shares are those of equal springs",
+          "[solve]") {
+    // one is pushed by 6 N, the upright hinge flows at 0.2 N m; nothing moves but the velocities
+    constexpr double friction = 0.25, dt = 1.0 / 60, g = 9.81, side = 0.5, arm = 0.51;
+    constexpr int steps = 60;
+    Island island;
+    for (int i = 0; i < 2; ++i) island.bodies.push_back(body(1));
+    for (IslandBody& cube : island.bodies) {
+        cube.inverse_inertia = 6 * ductile::Matrix3<double>::Identity();
+    }
+    add_joint(island, 0, 1, {arm, 0, 0}, {-arm, 0, 0});
+    const int hinge = 5; // about z
+    island.rows[hinge].lower = -0.2 * dt;
+    island.rows[hinge].upper = 0.2 * dt;
+    const auto first = island.rows.size();
+    std::vector<Eigen::Vector3d> corners; // 1, x, y
+    for (const int cube : {0, 1}) {
+        for (const double x : {-side, side}) {
+            for (const double y : {-side, side}) {
+                add_contact(island, cube, immovable, {x, y, -side}, {0, 0, 0}, friction);
+                corners.emplace_back(1, x + (cube == 0 ? -arm : arm), y);
+            }
+        }
+    }
+    Eigen::MatrixXd spread(8, 3);
+    for (int n = 0; n < 8; ++n) spread.row(n) = corners[std::size_t(n)].transpose();
+    IslandSolver solver;
+    Vector6<double> v[2] = {Vector6<double>::Zero(), Vector6<double>::Zero()};
+    for (int step = 0; step < steps; ++step) {
+        for (Vector6<double>& of : v) of[2] -= g * dt;
+        v[0][1] += 6 * dt;
+        for (IslandRow& row : island.rows) {
+            row.target = -row.on_a.dot(v[row.a]) - (row.b < 0 ? 0.0 : row.on_b.dot(v[row.b]));
+        }
+        const IslandReport report = solver.solve(island);
+        INFO("step " << step);
+        REQUIRE(report.solved);
+        CHECK(report.residual <= 1e-8 * report.scale);
+        if (step > 0) {
+            CHECK(report.safe_ways == 0);
+            CHECK(report.factorisations <= 12);
+        }
+        for (int i = 0; i < 2; ++i) v[i] += island.bodies[std::size_t(i)].velocity;
+        // what does not tilt presses as a plane does
+        Eigen::VectorXd normals(8);
+        for (int n = 0; n < 8; ++n) {
+            normals[n] = island.rows[first + 3 * std::size_t(n)].impulse / dt;
+        }
+        const Eigen::VectorXd plane =
+            spread * (spread.transpose() * spread).ldlt().solve(spread.transpose() * normals);
+        CHECK(normals.sum() == Approx(2 * g));
+        CHECK((normals - plane).cwiseAbs().maxCoeff() < 0.01);
+    }
+    CHECK(std::abs(v[1][5] - v[0][5]) > 0.01); // the hinge flows
+}
+
 TEST_CASE("Friction is a disc: pushed at any angle a box slides at the same force", "[solve]") {
     for (const double angle : {0.0, 0.3, M_PI / 4, 1.2}) {
         Island island;
