@@ -5,8 +5,7 @@
 // would have gone without the rest.
 //
 //   in    what hangs together with a plastic joint by joints and contacts, and whoever may meet
-//   that
-//         within the frame, with theirs; closed under both
+//         that within the frame, with theirs; closed under both
 //   out   all others
 //
 // How far a body goes in a time t is at most  (v + ω r) t + (g + |F|/m) t²,  r the farthest point
