@@ -5,11 +5,12 @@
 //
 //   n >= 0,   |t/f| <= n',   n' <- n
 //
-// Each round is an island of bounds and ellipsoids, solved warm by the active set; the fixed point
-// is Coulomb's law. What friction does to the normals is a moment of the sliding forces, f h/l of a
-// body of height h on a base l, so that a few rounds settle, accelerated. The cone's own fixed
-// point (contact_form.hpp) shifts by slips instead, by which four corners of one face are at odds:
-// of a pair of cubes that slides on a floor it took 300 factorisations where this takes 7.
+// Each round is an island of bounds and ellipsoids, solved warm by the active set, or the safe way
+// where that does not settle; the fixed point is Coulomb's law. What friction does to the normals
+// is a moment of the sliding forces, f h/l of a body of height h on a base l, so that a few rounds
+// settle, accelerated. The cone's own fixed point (contact_form.hpp) shifts by slips instead, by
+// which four corners of one face are at odds: of a pair of cubes that slides on a floor it took 300
+// factorisations where this takes 7.
 //
 // Where bodies jam, rounds need not settle: then this is not the way.
 //
@@ -22,6 +23,7 @@
 #include "ductile/numeric/anderson.hpp"
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/island_system.hpp"
+#include "ductile/solve/proximal_newton.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::solve {
@@ -39,6 +41,7 @@ class LaggedFriction {
 
   private:
     void begin(IslandSystem& system);
+    [[nodiscard]] bool solve_round();
     [[nodiscard]] double read(const IslandSystem& system);
     void set_radii(const Island& island);
     void give(IslandSystem& system) const;
@@ -46,9 +49,11 @@ class LaggedFriction {
     Island flat_; ///< the island with discs in place of cones
     IslandSystem system_;
     ActiveSet active_set_;
+    ProximalNewton proximal_newton_;
     numeric::Anderson ahead_;
     std::vector<std::size_t> contacts_;   ///< their blocks, here and there
     std::vector<double> radii_, normals_; ///< n', n by contact
+    std::vector<double> start_;           ///< impulses of a round
     int factorisations_ = 0;
 };
 

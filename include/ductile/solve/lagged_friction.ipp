@@ -22,7 +22,7 @@ DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
     int left = patience;
     for (int round = 0; round < most && left > 0; ++round) {
         set_radii(system.island());
-        const bool solved = active_set_.solve(system_);
+        const bool solved = solve_round();
         factorisations_ = system_.factorisations();
         if (!solved) return false;
         const double moved = read(system);
@@ -36,6 +36,19 @@ DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
         for (double& radius : radii_) radius = std::max(radius, 0.0);
     }
     return false;
+}
+
+DUCTILE_INLINE bool LaggedFriction::solve_round() {
+    constexpr double cold = 0.1;
+    start_.clear();
+    for (const IslandRow& row : flat_.rows) start_.push_back(row.impulse);
+    if (active_set_.solve(system_)) return true;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+        flat_.rows[i].impulse = start_[i];
+        system_.rows()[i].kept = 0;
+    }
+    proximal_newton_.solve(system_, cold, false);
+    return active_set_.solve(system_);
 }
 
 DUCTILE_INLINE void LaggedFriction::begin(IslandSystem& system) {
