@@ -14,10 +14,10 @@ namespace ductile::solve {
 
 DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
     constexpr int most = 20;         // rounds
-    constexpr double settled = 1e-9; // of the largest velocity
+    constexpr double settled = 1e-9; // of the largest velocity that a row gives
     constexpr int patience = 4;      // rounds without coming closer by half
     begin(system);
-    const double enough = std::max(system.round_off(40), settled * system.scale());
+    const double enough = std::max(system.round_off(40), settled * system.fastest());
     double least = std::numeric_limits<double>::infinity();
     int left = patience;
     for (int round = 0; round < most && left > 0; ++round) {
