@@ -424,9 +424,11 @@ TEST_CASE("A hinged pair on a floor sticks, and slides as Coulomb's friction has
         // the velocity at the end of a step acts for all of it, but not in a frame
         const Pair found = Pair::in_bullet(6, strength, tolerance, dt),
                    wanted = Pair::by_itself(6, strength, tolerance > 0 ? 1 : 1 + dt / 2);
-        CHECK(found.pushed.y() == Approx(wanted.pushed.y()).epsilon(0.01));
-        CHECK(found.drawn.y() == Approx(wanted.drawn.y()).epsilon(0.01));
-        CHECK(found.turned == Approx(wanted.turned).margin(0.01));
+        // a float's digits of where corners are decide which of them bear
+        const double close = single ? 0.1 : 0.01;
+        CHECK(found.pushed.y() == Approx(wanted.pushed.y()).epsilon(close));
+        CHECK(found.drawn.y() == Approx(wanted.drawn.y()).epsilon(close));
+        CHECK(found.turned == Approx(wanted.turned).margin(close));
     }
 }
 

@@ -296,7 +296,7 @@ TEST_CASE("What slides in a blow is solved beside a spring too", "[solve]") {
     // off its centre a box strikes at 2 m/s and slides at 3 m/s; a spring's row in a step of 1 ns
     Island alone;
     alone.bodies.push_back(body(1));
-    add_contact(alone, 0, immovable, {0.3, 0, -0.5}, {}, 0.9);
+    add_contact(alone, 0, immovable, {0.3, 0, -0.5}, {0, 0, 0}, 0.9);
     alone.rows[0].target = 2;
     alone.rows[1].target = 3;
     alone.rows[1].compliance = alone.rows[2].compliance = 1e-9;
