@@ -7,7 +7,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/world_parts.hpp"
+#include "support/bit_hash.hpp"
 
 namespace {
 
@@ -200,21 +200,17 @@ namespace {
 
 /// Of places and velocities, bit by bit.
 [[nodiscard]] std::uint64_t hash_of(const std::vector<btRigidBody*>& bodies) {
-    std::uint64_t result = 1469598103934665603u;
-    const auto eat = [&result](double value) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &value, sizeof bits);
-        result = (result ^ bits) * 1099511628211u;
-    };
+    test::BitHash bits;
     for (const btRigidBody* body : bodies) {
         for (int k = 0; k < 3; ++k) {
-            for (int j = 0; j < 3; ++j) eat(double(body->getWorldTransform().getBasis()[k][j]));
-            eat(double(body->getWorldTransform().getOrigin()[k]));
-            eat(double(body->getLinearVelocity()[k]));
-            eat(double(body->getAngularVelocity()[k]));
+            for (int j = 0; j < 3; ++j)
+                bits.eat(double(body->getWorldTransform().getBasis()[k][j]));
+            bits.eat(double(body->getWorldTransform().getOrigin()[k]));
+            bits.eat(double(body->getLinearVelocity()[k]));
+            bits.eat(double(body->getAngularVelocity()[k]));
         }
     }
-    return result;
+    return bits.value();
 }
 
 /// A post, a ball, and boxes in stacks of four that slide a little.

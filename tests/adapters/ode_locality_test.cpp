@@ -8,13 +8,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
 #include "ductile/ode/ode.hpp"
+#include "support/bit_hash.hpp"
 
 namespace {
 
@@ -123,22 +123,14 @@ struct Site {
 
 /// Of places and velocities, bit by bit.
 [[nodiscard]] std::uint64_t hash_of(const std::vector<dBodyID>& bodies) {
-    std::uint64_t result = 1469598103934665603u;
-    const auto eat = [&result](const dReal* values, int count) {
-        for (int i = 0; i < count; ++i) {
-            const auto value = double(values[i]);
-            std::uint64_t bits = 0;
-            std::memcpy(&bits, &value, sizeof bits);
-            result = (result ^ bits) * 1099511628211u;
-        }
-    };
+    test::BitHash bits;
     for (const dBodyID body : bodies) {
-        eat(dBodyGetPosition(body), 3);
-        eat(dBodyGetRotation(body), 12);
-        eat(dBodyGetLinearVel(body), 3);
-        eat(dBodyGetAngularVel(body), 3);
+        bits.eat(dBodyGetPosition(body), 3);
+        bits.eat(dBodyGetRotation(body), 12);
+        bits.eat(dBodyGetLinearVel(body), 3);
+        bits.eat(dBodyGetAngularVel(body), 3);
     }
-    return result;
+    return bits.value();
 }
 
 } // namespace

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "ductile/ode/island_solver.hpp"
 #include "ductile/ode/ode.hpp"
 #include "ductile/ode/world_parts.hpp"
+#include "support/bit_hash.hpp"
 
 namespace {
 
@@ -182,31 +182,23 @@ struct Pile {
 
     /// Of all places and velocities, and the joints' accounts, bit by bit.
     [[nodiscard]] std::uint64_t hash() const {
-        std::uint64_t result = 1469598103934665603u;
-        const auto eat = [&result](const auto* values, int count) {
-            for (int i = 0; i < count; ++i) {
-                const auto value = double(values[i]);
-                std::uint64_t bits = 0;
-                std::memcpy(&bits, &value, sizeof bits);
-                result = (result ^ bits) * 1099511628211u;
-            }
-        };
+        test::BitHash bits;
         for (const dBodyID body : bodies) {
-            eat(dBodyGetPosition(body), 3);
-            eat(dBodyGetQuaternion(body), 4);
-            eat(dBodyGetRotation(body), 12);
-            eat(dBodyGetLinearVel(body), 3);
-            eat(dBodyGetAngularVel(body), 3);
+            bits.eat(dBodyGetPosition(body), 3);
+            bits.eat(dBodyGetQuaternion(body), 4);
+            bits.eat(dBodyGetRotation(body), 12);
+            bits.eat(dBodyGetLinearVel(body), 3);
+            bits.eat(dBodyGetAngularVel(body), 3);
         }
         for (const auto* joint : joints) {
             const double absorbed = joint->queries().absorbed_energy();
-            eat(&absorbed, 1);
+            bits.eat(&absorbed, 1);
         }
         const HeldEnergy<double> held = meter.ledger().held();
         const double books[] = {held.kinetic, held.potential, meter.ledger().unexplained(),
                                 meter.ledger().booked(Account::friction)};
-        eat(books, 4);
-        return result;
+        bits.eat(books, 4);
+        return bits.value();
     }
     [[nodiscard]] double absorbed() const {
         double sum = 0;

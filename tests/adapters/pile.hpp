@@ -9,12 +9,12 @@
 #include <btBulletDynamicsCommon.h>
 
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <vector>
 
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/bullet/world.hpp"
+#include "support/bit_hash.hpp"
 
 namespace pile {
 
@@ -82,26 +82,21 @@ struct Pile {
 
     /// Of all places and velocities, and the hinges' accounts, bit by bit.
     [[nodiscard]] std::uint64_t hash() const {
-        std::uint64_t result = 1469598103934665603u;
-        const auto eat = [&result](double value) {
-            std::uint64_t bits = 0;
-            std::memcpy(&bits, &value, sizeof bits);
-            result = (result ^ bits) * 1099511628211u;
-        };
+        ductile::test::BitHash bits;
         for (const auto& body : bodies) {
             const btTransform& at = body->getWorldTransform();
             for (int k = 0; k < 3; ++k) {
-                for (int j = 0; j < 3; ++j) eat(double(at.getBasis()[k][j]));
-                eat(double(at.getOrigin()[k]));
-                eat(double(body->getLinearVelocity()[k]));
-                eat(double(body->getAngularVelocity()[k]));
+                for (int j = 0; j < 3; ++j) bits.eat(double(at.getBasis()[k][j]));
+                bits.eat(double(at.getOrigin()[k]));
+                bits.eat(double(body->getLinearVelocity()[k]));
+                bits.eat(double(body->getAngularVelocity()[k]));
             }
         }
         for (const auto& hinge : hinges) {
-            eat(hinge->absorbed_energy());
-            eat(hinge->plastic_offset());
+            bits.eat(hinge->absorbed_energy());
+            bits.eat(hinge->plastic_offset());
         }
-        return result;
+        return bits.value();
     }
 
   private:
