@@ -89,6 +89,7 @@ DUCTILE_INLINE void WorldParts::forget(dBodyID body) {
     const auto is_it = [body](const auto& kept) { return kept.body == body; };
     forces_.forget(body);
     scope_.forget(body);
+    std::erase(touched_, body);
     resting_.forget(body);
     std::erase(asleep_, body);
     thrown_.forget(body);

@@ -70,6 +70,7 @@ DUCTILE_INLINE bool WorldParts::join_touched() {
 
 /// Contacts of those that stand aside are none of this part, though the user made them.
 DUCTILE_INLINE void WorldParts::leave_aside() {
+    touched_.clear();
     if (!local_) return;
     std::erase_if(of_.contacts, [this](const NamedContact& named) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
