@@ -7,6 +7,8 @@ include the core, the core never an adapter; and no header includes itself by a 
 
 A virtual function whose body is in an .ipp is declared DUCTILE_INLINE: one that is declared without is the key
 function of its class, and every program that sees the body compiles the table and all that it calls, used or not.
+
+Who names Eigen includes it, or a header that does: where headers are compiled alone Eigen is there already.
 """
 
 import re
@@ -58,6 +60,7 @@ def main():
     root = Path(sys.argv[1])
     graph = {}
     lengths = []
+    names_eigen, includes_eigen = set(), set()
     errors = []
     for folder in ("include", *(f"adapters/{name}/include" for name in ADAPTERS)):
         base = root / folder
@@ -66,6 +69,10 @@ def main():
             name = str(path.relative_to(base).with_suffix(".hpp"))
             errors += [f"{name}: {said} has to be DUCTILE_INLINE" for said in keys(path.read_text())
                        if path.suffix == ".hpp"]
+            if "Eigen::" in path.read_text():
+                names_eigen.add(name)
+            if re.search(r"^#include <Eigen/", path.read_text(), re.M):
+                includes_eigen.add(name)
             lengths.append((str(path.relative_to(base)), len(path.read_text().splitlines())))
             includes = re.findall(r'^#include "(ductile/[^"]+)"', path.read_text(), re.M)
             includes = [i.removesuffix(".ipp") + ".hpp" if i.endswith(".ipp") else i for i in includes]
@@ -98,6 +105,15 @@ def main():
 
     for header in graph:
         visit(header, [])
+    def reached(header, seen):
+        if header not in seen:
+            seen.add(header)
+            for include in graph.get(header, ()):
+                reached(include, seen)
+        return seen
+
+    errors += [f"{header}: names Eigen, and nothing that it includes brings it in"
+               for header in sorted(names_eigen) if not reached(header, set()) & includes_eigen]
     rooms = sorted({room(h) for h in graph} - set(ALLOWED) - set(ADAPTERS) - {"ductile"})
     errors += [f"include/ductile/{r}: no place in the order" for r in rooms]
     errors += [f"{header}: {length} lines, more than 400" for header, length in lengths if length > 400]

@@ -54,6 +54,7 @@
 #include "ductile/bullet/thrown_bodies.hpp"
 #include "ductile/bullet/world_snapshot.hpp"
 #include "ductile/frame/part_engine.hpp"
+#include "ductile/member/closing.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
