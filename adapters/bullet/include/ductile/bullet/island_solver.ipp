@@ -281,12 +281,13 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
         };
         solve::IslandRow& normal = take(contacts[i]);
         normal.target += turned(contacts[i].m_originalContactPoint);
-        // Bullet begins friction at zero: what slid would be looked for anew in every tick
+        // Bullet begins with 85 % of the last normal and no friction: all of both is as a rule the
+        // answer of what stands, and what slid would be looked for anew in every tick
         const auto& point = *static_cast<btManifoldPoint*>(contacts[i].m_originalContactPoint);
-        const std::array before{double(point.m_appliedImpulseLateral1),
-                                double(point.m_appliedImpulseLateral2)};
-        const double share =
-            point.m_appliedImpulse > 0 ? normal.impulse / double(point.m_appliedImpulse) : 0;
+        const double begins = normal.impulse > 0 ? 1 : 0; // as the user has it
+        normal.impulse = begins * double(point.m_appliedImpulse);
+        const std::array before{begins * double(point.m_appliedImpulseLateral1),
+                                begins * double(point.m_appliedImpulseLateral2)};
         std::size_t slid = 0;
         const auto take_friction = [&](btConstraintArray& pool, int& next) {
             for (; next < pool.size() && pool[next].m_frictionIndex == i; ++next) {
@@ -299,7 +300,7 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
                 solve::IslandRow& row = take(pool[next]);
                 row.target -= torque_left_out(pool[next]);
                 if (ahead_ && slid < 2) row.target -= turns_away(pool[next], point);
-                if (slid < 2) row.impulse = before[slid++] * share;
+                if (slid < 2) row.impulse = before[slid++];
             }
         };
         take_friction(m_tmpSolverContactFrictionConstraintPool, slides);
