@@ -15,6 +15,10 @@ namespace ductile::solve {
 
 namespace detail {
 
+/// A velocity below which digits are lost, however small the unit [m/s | rad/s].
+inline constexpr double nothing =
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
 /// Into bounds and blocks.
 DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
     Island& island = system.island();
@@ -35,6 +39,15 @@ DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
 } // namespace detail
 
 DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
+    const IslandReport report = answer(island);
+    const double off =
+        std::isnan(report.residual) ? std::numeric_limits<double>::infinity() : report.residual;
+    const bool little = off <= std::min(unsolved_share * report.scale, unsolved_speed);
+    island.unsolved = report.solved || little ? 0 : off;
+    return report;
+}
+
+DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
     IslandReport report;
     if (solve_one_pair(island, report)) return report;
     system_.open(island);
@@ -47,7 +60,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         return report;
     }
     take(start_);
-    if (report.scale == 0) {
+    if (report.scale < detail::nothing) {
         for (IslandRow& row : island.rows) row.impulse = 0;
         for (IslandBlock& block : island.blocks) {
             block.state = BlockState::inside;
@@ -123,9 +136,12 @@ DUCTILE_INLINE void IslandSolver::finish(IslandReport& report) {
     system_.update_residuals();
     report.residual = certificate(system_);
     // where next to nothing is asked for, round-off is more than a share of it
-    report.solved =
-        report.residual <= std::max(solved_residual * report.scale, system_.round_off(4));
-    if (!report.solved) give_up();
+    report.solved = report.residual <= std::max({solved_residual * report.scale,
+                                                 system_.round_off(4), detail::nothing});
+    if (!report.solved) {
+        give_up();
+        report.residual = certificate(system_);
+    }
     report.factorisations += system_.factorisations();
 }
 
