@@ -64,9 +64,8 @@ constexpr struct Size { double length, thickness; } sizes[] = {{0.5, 0.05}, {0.5
 
 /// Boxes in a row on hinges that fall on a floor and between walls, in all directions.
 struct Jam {
-    std::vector<std::string> lines;
-    WorldRig rig{true, [this](const std::string& line) { lines.push_back(line); }, false};
-    double unsolved = 0; ///< of contacts, worst that was told of a joint [m/s]
+    std::string words;
+    WorldRig rig{true, [this](const std::string& line) { words += line; }, false};
 
     explicit Jam(unsigned seed) {
         std::mt19937 random(seed);
@@ -89,10 +88,10 @@ struct Jam {
         }
         std::vector<WorldRig::Body> bodies;
         for (int i = 0; i < boxes; ++i) {
-            const double mass = std::pow(10, between(0, 2));
+            const double mass = std::pow(10, between(0, 4));
             bodies.push_back(rig.box(mass, V3(0.5, 0.3, 0.3), V3(i, 0, 0.3 + gap)));
         }
-        rig.set_friction(between(0.3, 1.2));
+        rig.set_friction(between(1, 4));
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             WorldRig::set_velocity(bodies[i], any(3));
             WorldRig::set_spin(bodies[i], any(2));
@@ -101,11 +100,6 @@ struct Jam {
             rig.hinge(bodies[i], bodies[i - 1], V3(double(i) - 0.5, 0, 0.3 + gap),
                       Joint(law, TravelLimit<double>()), "");
         }
-        rig.world().on_event([this](const JointEvent<double>& event) {
-            const JointReport<double>& said = event.report;
-            if (event.kind != EventKind::unreliable || said.residual > 1e-4) return;
-            unsolved = std::max(unsolved, said.island_unsolved);
-        });
         for (int i = 0; i < 10; ++i) rig.world().step(1.0 / 60);
     }
 };
@@ -114,17 +108,12 @@ struct Jam {
 
 TEST_CASE("Joints whose own rows are met are unreliable where a contact is left unsolved",
           "[world]") {
-    // one in ten such worlds jams beyond what the solver can do
-    int told = 0;
-    for (unsigned seed = 1; seed <= 60 && told < 3; ++seed) {
-        const Jam jam(seed);
-        if (!(jam.unsolved > 0)) continue;
-        ++told;
-        INFO("seed " << seed);
-        REQUIRE(jam.lines.size() >= 1);
-        CHECK(jam.lines[0].find("left unsolved by the solver at t = ") != std::string::npos);
+    // one in ten such worlds, heavy and rough, jams beyond what the solver can do
+    bool told = false;
+    for (unsigned seed = 1; seed <= 100 && !told; ++seed) {
+        told = Jam(seed).words.find("hangs together with contacts") != std::string::npos;
     }
-    CHECK(told == 3);
+    CHECK(told);
 }
 
 TEST_CASE("Frames: boxes whose faces meet bend as their joint has it", "[frame]") {

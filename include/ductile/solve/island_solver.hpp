@@ -51,10 +51,11 @@ class IslandSolver {
   private:
     [[nodiscard]] IslandReport answer(Island& island);
     bool polished(IslandReport& report);
-    bool lagged(IslandReport& report);
-    void fall_back(IslandReport& report);
-    void finish(IslandReport& report);
-    void give_up();
+    bool lagged(IslandReport& report, const std::vector<double>& from);
+    void fall_back(IslandReport& report, bool touch);
+    void certify(IslandReport& report);
+    void give_up(IslandReport& report);
+    void begin_from(const std::vector<double>& impulses);
     void put(const std::vector<double>& impulses);
     void take(std::vector<double>& impulses) const;
 
