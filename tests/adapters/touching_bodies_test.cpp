@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <string>
+#include <vector>
 
 #include "adapters/thrown_arm.hpp"
 
@@ -59,7 +62,59 @@ struct Beam {
 
 constexpr struct Size { double length, thickness; } sizes[] = {{0.5, 0.05}, {0.5, 0.1}, {2, 0.1}};
 
+/// Boxes in a row on hinges that fall on a floor and between walls, in all directions.
+struct Jam {
+    std::string words;
+    WorldRig rig{true, [this](const std::string& line) { words += line; }, false};
+
+    explicit Jam(unsigned seed) {
+        std::mt19937 random(seed);
+        const auto between = [&random](double from, double to) {
+            return from + (to - from) * double(random()) / double(std::mt19937::max());
+        };
+        const auto any = [&between](double most) {
+            const double x = between(-most, most), y = between(-most, most);
+            return V3(x, y, between(-most, most));
+        };
+        rig.set_gravity(V3(0, 0, -9.81));
+        const int boxes = 2 + int(between(0, 3.99));
+        const double gap = between(0, 0.03);
+        const auto wall = [this](const V3& half, const V3& at) {
+            WorldRig::prescribe(rig.box(1, half, at));
+        };
+        wall(V3(boxes, 1, 0.5), V3(boxes / 2.0, 0, -0.5));
+        for (const double side : {-1.0, 1.0}) {
+            wall(V3(boxes, 0.5, 1), V3(boxes / 2.0, side * (0.8 + gap), 0));
+        }
+        std::vector<WorldRig::Body> bodies;
+        for (int i = 0; i < boxes; ++i) {
+            const double mass = std::pow(10, between(0, 4));
+            bodies.push_back(rig.box(mass, V3(0.5, 0.3, 0.3), V3(i, 0, 0.3 + gap)));
+        }
+        rig.set_friction(between(1, 4));
+        for (std::size_t i = 0; i < bodies.size(); ++i) {
+            WorldRig::set_velocity(bodies[i], any(3));
+            WorldRig::set_spin(bodies[i], any(2));
+            if (i == 0) continue;
+            const Perfect<double> law({.strength = std::pow(10, between(0, 3))});
+            rig.hinge(bodies[i], bodies[i - 1], V3(double(i) - 0.5, 0, 0.3 + gap),
+                      Joint(law, TravelLimit<double>()), "");
+        }
+        for (int i = 0; i < 10; ++i) rig.world().step(1.0 / 60);
+    }
+};
+
 } // namespace
+
+TEST_CASE("Joints whose own rows are met are unreliable where a contact is left unsolved",
+          "[world]") {
+    // one in ten such worlds, heavy and rough, jams beyond what the solver can do
+    bool told = false;
+    for (unsigned seed = 1; seed <= 100 && !told; ++seed) {
+        told = Jam(seed).words.find("hangs together with contacts") != std::string::npos;
+    }
+    CHECK(told);
+}
 
 TEST_CASE("Frames: boxes whose faces meet bend as their joint has it", "[frame]") {
     for (const Size& size : sizes) {

@@ -37,7 +37,8 @@
 // it had nothing that could be turned round.)
 //
 // Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
-// does not, `outcome` is unreliable although the plastic rows may look solved.
+// does not, `outcome` is unreliable although the plastic rows may look solved. So it is where
+// something else of its island is left unsolved, as the forces of contacts on its bodies are.
 //
 // Symbols
 //   d, R   displacement and orientation of frame A in frame B   [m], [-]
@@ -105,6 +106,9 @@ class AnyLink {
     /// that is not finite changes no state: Step::residual.
     const Step<S>& commit(const BodyState<S>& a, const BodyState<S>& b,
                           const JointWrench<S>& wrench, S dt) noexcept;
+    /// Of the step that `prepare` opened: by how much a row of the joint's island was missed, where
+    /// it is not solved, else 0 [m/s | rad/s].
+    void see_island(S unsolved) noexcept { island_unsolved_ = unsolved; }
     /// The same with the forces of the rows, in the order of JointAxis [N | N m].
     const Step<S>& commit_rows(const BodyState<S>& a, const BodyState<S>& b,
                                const Vector6<S>& forces, S dt) noexcept;
@@ -122,8 +126,9 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_,  force_, start_,          end_,         before_blow_,
-                 swing_, blow_,  rigid_residual_, unseen_turn_, rigid_unsolved_};
+        kept_ = {pose_,        force_,           start_,         end_,
+                 before_blow_, swing_,           blow_,          rigid_residual_,
+                 unseen_turn_, island_unsolved_, rigid_unsolved_};
         keep_joint();
     }
     /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
@@ -137,6 +142,7 @@ class AnyLink {
         blow_ = kept_->blow;
         rigid_residual_ = kept_->rigid_residual;
         unseen_turn_ = kept_->unseen_turn;
+        island_unsolved_ = kept_->island_unsolved;
         rigid_unsolved_ = kept_->rigid_unsolved;
         put_joint_back();
     }
@@ -146,7 +152,7 @@ class AnyLink {
     void pause() noexcept {
         pause_joint();
         blow_.forget();
-        rigid_residual_ = unseen_turn_ = 0;
+        rigid_residual_ = unseen_turn_ = island_unsolved_ = 0;
         rigid_unsolved_ = false;
     }
 
@@ -254,9 +260,12 @@ class AnyLink {
     [[nodiscard]] S unfit() const noexcept { return unfit_; }
     /// LinkPose's of the last step [rad].
     [[nodiscard]] S unseen_turn() const noexcept { return unseen_turn_; }
-    /// That of the joint, and unreliable where a rigid row was left unsolved or a turn unseen.
+    /// As `see_island` was told.
+    [[nodiscard]] S island_unsolved() const noexcept { return island_unsolved_; }
+    /// That of the joint, and unreliable where a rigid row or the island was left unsolved, or a
+    /// turn unseen.
     [[nodiscard]] Outcome outcome() const noexcept {
-        const bool believed = !rigid_unsolved_ && !(unseen_turn_ > 0);
+        const bool believed = !rigid_unsolved_ && !(unseen_turn_ > 0) && !(island_unsolved_ > 0);
         return believed || last().outcome == Outcome::broken ? last().outcome : Outcome::unreliable;
     }
 
@@ -340,7 +349,7 @@ class AnyLink {
         Vector6<S> force, start, end, before_blow;
         SwingState<S> swing;
         BorneBlow<S> blow;
-        S rigid_residual, unseen_turn;
+        S rigid_residual, unseen_turn, island_unsolved;
         bool rigid_unsolved;
     };
 
@@ -356,6 +365,7 @@ class AnyLink {
     BorneBlow<S> blow_;
     S rigid_residual_ = 0;
     S unseen_turn_ = 0;
+    S island_unsolved_ = 0;
     bool rigid_unsolved_ = false;
     bool one_axis_;
     bool all_rigid_;

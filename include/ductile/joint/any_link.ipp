@@ -46,6 +46,7 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     const Vector6<S> last = strain();
     pose_.look(a, b);
     on_surface_ = false;
+    island_unsolved_ = 0;
     sound_ = pose_.finite();
     ahead_ = ahead;
     const Vector6<S> now = strain();

@@ -193,6 +193,7 @@ class DividedMember {
             all.first_yield = all.first_yield || report.first_yield;
             all.coarse = all.coarse || report.coarse;
             all.residual = std::max(all.residual, report.residual);
+            all.island_unsolved = std::max(all.island_unsolved, report.island_unsolved);
             all.step_error = std::max(all.step_error, report.step_error);
             all.plastic_travel += report.plastic_travel;
             if (int(report.outcome) > int(all.outcome)) all.outcome = report.outcome;

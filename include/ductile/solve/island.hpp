@@ -116,6 +116,9 @@ struct Island {
     std::vector<IslandBody> bodies;
     std::vector<IslandRow> rows;
     std::vector<IslandBlock> blocks; ///< no row in two of them
+    /// By how much the answer misses a row, where that is too much for it, else 0; infinite: there
+    /// is none [m/s | rad/s].
+    double unsolved = 0;
 
     void clear() noexcept {
         bodies.clear();

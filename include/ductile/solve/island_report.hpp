@@ -8,7 +8,7 @@ namespace ductile::solve {
 /// Plain value.
 struct IslandReport {
     bool solved = true;
-    double residual = 0; ///< worst violation of a row [m/s | rad/s]
+    double residual = 0; ///< worst violation of a row by what was answered [m/s | rad/s]
     double scale = 0;    ///< largest velocity that a row asked for [m/s | rad/s]
     int rounds = 0;      ///< of the active set
     int factorisations = 0;
@@ -17,5 +17,9 @@ struct IslandReport {
 
 /// An answer is solved where its residual is at most this share of `scale` [-].
 inline constexpr double solved_residual = 1e-5;
+
+/// What is not solved is no answer for an island's joints where its residual is more than this
+/// share of `scale` [-], or than this velocity [m/s | rad/s]: what their own rows may be off by.
+inline constexpr double unsolved_share = 1e-2, unsolved_speed = 1e-3;
 
 } // namespace ductile::solve

@@ -19,9 +19,11 @@
 // function (proximal_newton.hpp), polished by the active set. At the end the certificate, of
 // Coulomb's law itself.
 //
-// What is not solved says so, and of the answer, the start and no impulse at all the one is taken
-// that leaves the least energy: where bounds enclose zero an island never gains any, whatever went
-// wrong. Input that is not finite gets no impulse and `solved == false`.
+// What is not solved says so, to all joints of the island too where it is much
+// (world/island_joint.hpp): their own rows may be met to the last digit under the wrong forces of a
+// contact. Of the answer, the start and no impulse at all the one is taken that leaves the
+// least energy: where bounds enclose zero an island never gains any, whatever went wrong. Input
+// that is not finite gets no impulse and `solved == false`.
 //
 // Cost: O(bodies + rows) for chains and trees, some n^1.2 for frames. 1 factorisation where no row
 // changes sides.
@@ -43,14 +45,17 @@ namespace ductile::solve {
 /// One per island that lasts: it keeps the topology. Not thread-safe.
 class IslandSolver {
   public:
+    /// Also leaves in the island whether it is solved.
     IslandReport solve(Island& island);
 
   private:
+    [[nodiscard]] IslandReport answer(Island& island);
     bool polished(IslandReport& report);
-    bool lagged(IslandReport& report);
-    void fall_back(IslandReport& report);
-    void finish(IslandReport& report);
-    void give_up();
+    bool lagged(IslandReport& report, const std::vector<double>& from);
+    void fall_back(IslandReport& report, bool touch);
+    void certify(IslandReport& report);
+    void give_up(IslandReport& report);
+    void begin_from(const std::vector<double>& impulses);
     void put(const std::vector<double>& impulses);
     void take(std::vector<double>& impulses) const;
 

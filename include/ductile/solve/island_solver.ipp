@@ -15,6 +15,10 @@ namespace ductile::solve {
 
 namespace detail {
 
+/// A velocity below which digits are lost, however small the unit [m/s | rad/s].
+inline constexpr double nothing =
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
 /// Into bounds and blocks.
 DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
     Island& island = system.island();
@@ -35,6 +39,15 @@ DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
 } // namespace detail
 
 DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
+    const IslandReport report = answer(island);
+    const double off =
+        std::isnan(report.residual) ? std::numeric_limits<double>::infinity() : report.residual;
+    const bool little = off <= std::min(unsolved_share * report.scale, unsolved_speed);
+    island.unsolved = report.solved || little ? 0 : off;
+    return report;
+}
+
+DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
     IslandReport report;
     if (solve_one_pair(island, report)) return report;
     system_.open(island);
@@ -47,14 +60,13 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
         return report;
     }
     take(start_);
-    if (report.scale == 0) {
+    if (report.scale < detail::nothing) {
         for (IslandRow& row : island.rows) row.impulse = 0;
         for (IslandBlock& block : island.blocks) {
             block.state = BlockState::inside;
             block.multiplier = 0;
         }
-        detail::project_impulses(system_);
-        finish(report);
+        certify(report);
         return report;
     }
     const auto touches = [](const IslandBlock& block) { return block.kind == BlockKind::contact; };
@@ -64,11 +76,16 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
     const auto any = [&island](const auto& is) {
         return std::any_of(island.blocks.begin(), island.blocks.end(), is);
     };
-    const bool lagged_first = any(slides);
-    const bool solved = lagged_first ? lagged(report) || polished(report)
-                                     : polished(report) || (any(touches) && lagged(report));
-    if (!solved) fall_back(report);
-    finish(report);
+    const bool touch = any(touches);
+    const bool solved = any(slides) ? lagged(report, start_) || polished(report)
+                                    : polished(report) || (touch && lagged(report, start_));
+    if (solved) certify(report);
+    if (!solved || !report.solved) {
+        fall_back(report, touch);
+        certify(report);
+    }
+    if (!report.solved) give_up(report);
+    report.factorisations += system_.factorisations();
     return report;
 }
 
@@ -78,59 +95,58 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
     return settled;
 }
 
-/// From the start.
-DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report) {
+/// With nothing kept of another way.
+DUCTILE_INLINE void IslandSolver::begin_from(const std::vector<double>& impulses) {
     for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
-    put(start_);
+    put(impulses);
+}
+
+DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report, const std::vector<double>& from) {
+    begin_from(from);
     const bool settled = lagged_friction_.solve(system_);
     report.factorisations += lagged_friction_.factorisations();
     return settled;
 }
 
-/// Proximal Newton, polished by the active set; each pass goes on from the best so far.
-DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report) {
-    constexpr int most = 4;
+/// Proximal Newton, polished by the active set; each pass goes on from the best so far, from where
+/// the lagged way often settles that did not from the start.
+DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
+    const int most = touch ? 2 : 4;
     constexpr double cold = 0.1, warm = 1e-4;
     constexpr double well = 1e-8; // joints look closer than `solved_residual`
     double least = std::numeric_limits<double>::infinity();
     const auto keep = [&] {
-        detail::project_impulses(system_);
-        system_.update_velocities();
-        system_.update_residuals();
-        const double off = certificate(system_);
-        if (off <= least) {
-            least = off;
+        certify(report);
+        if (report.residual <= least) {
+            least = report.residual;
             take(best_);
         } else {
             put(best_);
         }
         return least / report.scale;
     };
-    for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
-    put(start_);
+    begin_from(start_);
     best_ = start_;
     for (int pass = 0; pass < most; ++pass) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
         ++report.safe_ways;
         static_cast<void>(keep());
-        if (polished(report) || keep() <= well) return;
+        if (polished(report) || keep() <= well || (touch && lagged(report, best_))) return;
     }
 }
 
-DUCTILE_INLINE void IslandSolver::finish(IslandReport& report) {
+DUCTILE_INLINE void IslandSolver::certify(IslandReport& report) {
     detail::project_impulses(system_);
     system_.update_velocities();
     system_.update_residuals();
     report.residual = certificate(system_);
     // where next to nothing is asked for, round-off is more than a share of it
-    report.solved =
-        report.residual <= std::max(solved_residual * report.scale, system_.round_off(4));
-    if (!report.solved) give_up();
-    report.factorisations += system_.factorisations();
+    report.solved = report.residual <= std::max({solved_residual * report.scale,
+                                                 system_.round_off(4), detail::nothing});
 }
 
 /// Of the answer, the start and nothing the one that leaves the least energy.
-DUCTILE_INLINE void IslandSolver::give_up() {
+DUCTILE_INLINE void IslandSolver::give_up(IslandReport& report) {
     take(best_);
     double least = system_.energy();
     for (const bool nothing : {false, true}) {
@@ -143,6 +159,7 @@ DUCTILE_INLINE void IslandSolver::give_up() {
         }
     }
     put(best_);
+    report.residual = certificate(system_);
 }
 
 DUCTILE_INLINE void IslandSolver::put(const std::vector<double>& impulses) {

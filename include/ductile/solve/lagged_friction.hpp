@@ -12,7 +12,7 @@
 // which four corners of one face are at odds: of a pair of cubes that slides on a floor it took 300
 // factorisations where this takes 7.
 //
-// Where bodies jam, rounds need not settle: then this is not the way.
+// Where bodies jam, rounds wander, and settle late or not at all: then this is not the way.
 //
 // Source: the "lagged" contact of Castro, Han & Masterjohn (2023), arXiv:2312.03908.
 #pragma once

@@ -13,9 +13,9 @@
 namespace ductile::solve {
 
 DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
-    constexpr int most = 20;         // rounds
+    constexpr int most = 60;         // rounds
     constexpr double settled = 1e-9; // of the largest velocity that a row gives
-    constexpr int patience = 4;      // rounds without coming closer by half
+    constexpr int patience = 20;     // rounds without coming closer by half: jammed, it wanders
     begin(system);
     const double enough = std::max(system.round_off(40), settled * system.fastest());
     double least = std::numeric_limits<double>::infinity();

@@ -47,7 +47,8 @@ class AxisQueries : public PairQueries {
     AxisJoint& joint_;
     double position_ = 0; ///< q
     double force_ = 0;
-    double unseen_turn_ = 0; ///< of the last step, where the position does not tell it [rad]
+    double unseen_turn_ = 0;     ///< of the last step, where the position does not tell it [rad]
+    double island_unsolved_ = 0; ///< of it, as JointReport's
 
     /// Of a turning row whose step ended at `velocity` and moved it to `position` [rad/s, rad].
     void see_turn(double velocity, double time, double position) noexcept {
@@ -57,11 +58,13 @@ class AxisQueries : public PairQueries {
 
     [[nodiscard]] Outcome last_outcome() const override {
         const Outcome outcome = joint_.last().outcome;
-        return unseen_turn_ > 0 && outcome != Outcome::broken ? Outcome::unreliable : outcome;
+        const bool believed = !(unseen_turn_ > 0) && !(island_unsolved_ > 0);
+        return believed || outcome == Outcome::broken ? outcome : Outcome::unreliable;
     }
 
   private:
     [[nodiscard]] double last_unseen_turn() const final { return unseen_turn_; }
+    [[nodiscard]] double last_island_unsolved() const final { return island_unsolved_; }
     [[nodiscard]] const JointTotals<double>& state_totals() const final { return joint_.totals(); }
     [[nodiscard]] const Step<double>& last_step() const final { return joint_.last(); }
     [[nodiscard]] std::optional<FractureEvent<double>> fracture() const final {

@@ -42,9 +42,10 @@ int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a, 
 void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                     const LinkPose<double>& pose, const JointImpulse<double>& impulse);
 
-/// Forces along the axes of the link from its six rows, that begin with `first` [N | N m].
-[[nodiscard]] Vector6<double> forces_of(const solve::Island& island, const AnyLink<double>& link,
-                                        int first, double dt) noexcept;
+/// The island is solved, or not: tells the link, and returns the forces along its axes from its six
+/// rows, that begin with `first` [N | N m].
+[[nodiscard]] Vector6<double> take_forces(const solve::Island& island, AnyLink<double>& link,
+                                          int first, double dt) noexcept;
 
 /// The last rows are a contact, a normal first; `contact`: those that its friction couples to it,
 /// after it, with their coefficients. Says where the solve begins, from their impulses.

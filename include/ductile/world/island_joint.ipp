@@ -170,8 +170,9 @@ DUCTILE_INLINE void add_given_rows(solve::Island& island, const IslandSeat& a, c
     }
 }
 
-DUCTILE_INLINE Vector6<double> forces_of(const solve::Island& island, const AnyLink<double>& link,
-                                         int first, double dt) noexcept {
+DUCTILE_INLINE Vector6<double> take_forces(const solve::Island& island, AnyLink<double>& link,
+                                           int first, double dt) noexcept {
+    link.see_island(island.unsolved);
     Vector6<double> forces;
     const detail::RowOrder order = detail::row_order(link);
     for (int i = 0; i < 6; ++i) {

@@ -26,7 +26,8 @@ class JointQueries {
     /// Elastic energy, and what a back force holds [J].
     [[nodiscard]] double stored_energy() const { return totals().stored; }
     [[nodiscard]] bool broken() const { return totals().broken; }
-    /// Unreliable where the solver left a row unsolved, plastic or rigid.
+    /// Unreliable where the solver left a row unsolved, plastic or rigid, or a contact of its
+    /// island.
     [[nodiscard]] Outcome outcome() const {
         return totals().broken ? Outcome::broken : last_outcome();
     }
@@ -55,6 +56,7 @@ class JointQueries {
         auto now = joint_report(state_totals(), last_step(), fracture(), last_outcome(),
                                 last_rigid_residual());
         now.unseen_turn = last_unseen_turn();
+        now.island_unsolved = last_island_unsolved();
         if (const double error = borne_error(); error > 0) {
             now.coarse = true;
             now.borne = borne_blow();
@@ -84,6 +86,7 @@ class JointQueries {
     [[nodiscard]] virtual Outcome last_outcome() const { return last_step().outcome; }
     [[nodiscard]] virtual double last_rigid_residual() const { return 0; }
     [[nodiscard]] virtual double last_unseen_turn() const = 0;
+    [[nodiscard]] virtual double last_island_unsolved() const = 0;
     /// As AnyLink's.
     [[nodiscard]] virtual double borne_blow() const { return 0; }
     [[nodiscard]] virtual double borne_error() const { return 0; }

@@ -31,6 +31,9 @@ struct JointReport {
     bool first_yield = false; ///< it flowed in this step for the first time
     bool coarse = false;      ///< steps were too long for it: step_error.hpp, borne_blow.hpp
     S residual = 0;           ///< worst violation of any of its rows, as Step::residual
+    /// By how much something else that was solved with it was missed, such as a contact of its
+    /// body, where that is left unsolved, else 0 [m/s | rad/s].
+    S island_unsolved = 0;
     S unseen_turn = 0; ///< turn of the step, where the joint could not follow it, else 0 [rad]
     S gained = 0; ///< energy given beyond all that was taken, where too much to be believed [J]
     S borne = 0;  ///< the most of a blow that a step just bore, where it is coarse by that [J]
@@ -65,7 +68,7 @@ template <std::floating_point S>
 /// and still says whether it yielded in its last step.
 template <std::floating_point S>
 [[nodiscard]] JointReport<S> idle_report(JointReport<S> last) noexcept {
-    last.residual = 0;
+    last.residual = last.island_unsolved = 0;
     last.unseen_turn = 0;
     last.gained = last.borne = 0;
     last.coarse = false;

@@ -6,6 +6,7 @@
 // depends on whether steps are frames with a tolerance: those are as short as their budget allows.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <sstream>
@@ -56,6 +57,10 @@ namespace ductile {
     } else if (event.report.gained > 0) {
         line << "has given its bodies " << event.report.gained
              << " J more than it took, at t = " << event.time << " s";
+    } else if (event.report.island_unsolved > event.report.residual) {
+        line << "hangs together with contacts or joints that were left unsolved by the solver at t "
+                "= "
+             << event.time << " s (off by " << event.report.island_unsolved << " m/s or rad/s)";
     } else {
         line << "was left unsolved by the solver at t = " << event.time << " s (off by "
              << event.report.residual << " m/s or rad/s)";
@@ -76,6 +81,12 @@ namespace ductile {
     }
     const bool unsolved = !(report.unseen_turn > 0) && !(report.gained > 0);
     if (!unsolved) return coarse_advice(event, in_frames);
+    if (report.island_unsolved > report.residual) {
+        return in_frames ? "shorter frames do not help: look for bodies that are jammed, or masses "
+                           "more than 1e4 times apart"
+                         : "take shorter steps, or let the World do so (tolerance); where neither "
+                           "helps, look for bodies that are jammed";
+    }
     return in_frames ? "shorter frames do not help: look for joints that hold the same bodies "
                        "against each other, or strengths more than 1e4 times apart"
                      : "take shorter steps, or let the World do so (tolerance); where neither "
@@ -130,7 +141,9 @@ class JointWarning {
     [[nodiscard]] static double badness(const JointEvent<double>& event) noexcept {
         constexpr double infinity = std::numeric_limits<double>::infinity();
         const JointReport<double>& report = event.report;
-        const double off = event.kind == EventKind::coarse ? report.step_error : report.residual;
+        const double off = event.kind == EventKind::coarse
+                               ? report.step_error
+                               : std::max(report.residual, report.island_unsolved);
         return off <= infinity ? off : infinity;
     }
 

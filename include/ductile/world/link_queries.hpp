@@ -52,6 +52,7 @@ class LinkQueries : public PairQueries {
     [[nodiscard]] Outcome last_outcome() const final { return link_.outcome(); }
     [[nodiscard]] double last_rigid_residual() const final { return link_.rigid_residual(); }
     [[nodiscard]] double last_unseen_turn() const final { return link_.unseen_turn(); }
+    [[nodiscard]] double last_island_unsolved() const final { return link_.island_unsolved(); }
     [[nodiscard]] double borne_blow() const final { return link_.borne_blow(); }
     [[nodiscard]] double borne_error() const final { return link_.borne_error(); }
     [[nodiscard]] double last_utilisation() const final {

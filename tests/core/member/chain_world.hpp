@@ -308,7 +308,7 @@ inline void ChainWorld::step(double dt) {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
         Joint& joint = joints_[i];
         joint.link->commit_rows(seen(bodies_[i + 1]), seen(bodies_[i]),
-                                forces_of(island_, *joint.link, joint.first, dt), dt);
+                                take_forces(island_, *joint.link, joint.first, dt), dt);
         SectionState& section = state_[std::size_t(joint.section)];
         section.joint = joint.link->joint().state();
         if (sections_ == Sections::always_open || !closes(section)) continue;

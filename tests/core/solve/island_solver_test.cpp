@@ -202,6 +202,7 @@ TEST_CASE("Friction in random islands: solved means Coulomb's cone with the norm
         ++asked;
         CHECK(islands::energy(island, a) <= 1e-12);
         if (!report.solved) continue;
+        CHECK(island.unsolved == 0);
         ++solved;
         CHECK(violation(island, a) <= 1e-4 * report.scale);
     }
@@ -507,6 +508,7 @@ TEST_CASE("What is not finite gets no impulse and is not called solved", "[solve
             const IslandReport report = solver.solve(island);
             INFO("where " << where << ", " << bad);
             CHECK_FALSE(report.solved);
+            CHECK(island.unsolved == std::numeric_limits<double>::infinity());
             CHECK(island.rows[0].impulse == 0);
             CHECK(island.bodies[0].velocity.isZero());
         }
@@ -551,6 +553,18 @@ TEST_CASE("Nothing asked, nothing done", "[solve]") {
     CHECK(island.rows[0].impulse == 0);
     Island empty;
     CHECK(solver.solve(empty).solved);
+}
+
+TEST_CASE("Next to nothing asked is solved, where its digits are lost", "[solve]") {
+    for (const double asked : {5e-324, 3e-321, 1e-300}) {
+        Island island = one_row(3, asked, 1);
+        island.bodies.push_back(body(7));
+        add_joint(island, 1, 0, {0, 0, 1}, {0, 0, 0});
+        const IslandReport report = IslandSolver().solve(island);
+        INFO(asked << " m/s");
+        CHECK(report.solved);
+        CHECK(report.safe_ways == 0);
+    }
 }
 
 TEST_CASE("A solver gives the same bits again", "[solve]") {

@@ -70,3 +70,30 @@ TEST_CASE("rows are no softer than they are, in a step of any length", "[island_
         }
     }
 }
+
+TEST_CASE("a joint whose own rows are met is unreliable where its island is not solved",
+          "[island_joint]") {
+    Six joint(IndependentAxes<double, 6>({.capacity = V6::Constant(1e12)}),
+              Perfect<double>({.strength = 1}));
+    Link<Six> link(joint, {all_joint_axes}, {}, {});
+    const BodyState<double> at{.inverse_mass = 0.5, .inverse_inertia = Matrix3<double>::Identity()};
+    link.start(at, at);
+    solve::Island island;
+    const auto step = [&](double unsolved) {
+        link.prepare(at, at, 0.01, 0);
+        const int first = add_rows(island, link, {}, {}, 0.01);
+        island.unsolved = unsolved;
+        link.commit_rows(at, at, take_forces(island, link, first, 0.01), 0.01);
+        return link.outcome();
+    };
+    CHECK(step(0) == Outcome::elastic);
+    link.keep();
+    CHECK(step(0.25) == Outcome::unreliable);
+    CHECK(link.island_unsolved() == 0.25);
+    link.put_back();
+    CHECK(link.outcome() == Outcome::elastic);
+    step(0.25);
+    link.prepare(at, at, 0.01, 0); // an engine solves this step
+    link.commit_rows(at, at, V6::Zero(), 0.01);
+    CHECK(link.outcome() == Outcome::elastic);
+}

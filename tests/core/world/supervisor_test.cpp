@@ -64,6 +64,25 @@ TEST_CASE("a supervisor says why a joint is unreliable", "[world]") {
               "the World do so (tolerance)"});
 }
 
+TEST_CASE("a supervisor says where a joint's island is unsolved, and which is the worst",
+          "[world]") {
+    std::vector<std::string> lines;
+    Supervisor supervisor([&lines](const std::string& line) { lines.push_back(line); });
+    Puppet post, beam;
+    supervisor.add(&post, "post", post.ask());
+    supervisor.add(&beam, "beam", beam.ask());
+    post.says = {.outcome = Outcome::unreliable, .residual = 0.125};
+    beam.says = {.outcome = Outcome::unreliable, .residual = 1e-9, .island_unsolved = 0.25};
+    supervisor.open();
+    supervisor.look(0.5);
+    supervisor.close();
+    CHECK(lines == std::vector<std::string>{
+                       "ductile: joint \"beam\" hangs together with contacts or joints that were "
+                       "left unsolved by the solver at t = 0.5 s (off by 0.25 m/s or rad/s), and 1 "
+                       "other; take shorter steps, or let the World do so (tolerance); where "
+                       "neither helps, look for bodies that are jammed"});
+}
+
 TEST_CASE("a supervisor has one line for all joints of a step, and another when they have doubled",
           "[world]") {
     std::vector<std::string> lines;
@@ -139,6 +158,9 @@ TEST_CASE("what helps in a world with a tolerance is not to ask for one", "[worl
     CHECK(said({.outcome = Outcome::unreliable, .residual = 0.25}) ==
           "shorter frames do not help: look for joints that hold the same bodies against each "
           "other, or strengths more than 1e4 times apart");
+    CHECK(said({.outcome = Outcome::unreliable, .residual = 0.1, .island_unsolved = 0.25}) ==
+          "shorter frames do not help: look for bodies that are jammed, or masses more than 1e4 "
+          "times apart");
     CHECK(said({.outcome = Outcome::unreliable,
                 .residual = std::numeric_limits<double>::infinity()}) ==
           "look for what moved or pushed its bodies so");

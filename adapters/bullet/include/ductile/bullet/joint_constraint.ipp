@@ -91,7 +91,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island) {
     if (first_row_ == no_rows) return;
-    forces_ = forces_of(island, link_, first_row_, dt_);
+    forces_ = take_forces(island, link_, first_row_, dt_);
     told_ = true;
     internalSetAppliedImpulse(btScalar(forces_[Eigen::Index(order_.back())] * dt_));
     if (m_jointFeedback == nullptr) return;

@@ -107,7 +107,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     /// What `keep_all` keeps beside the joint.
     struct Kept {
         BreakRelease<double> release;
-        double position = 0, force = 0, unseen_turn = 0;
+        double position = 0, force = 0, unseen_turn = 0, island_unsolved = 0;
         bool restored = false, hinge_enabled = true;
     };
 

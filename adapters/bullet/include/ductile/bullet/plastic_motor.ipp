@@ -85,6 +85,7 @@ DUCTILE_INLINE void MotorConstraint::close_rows(const solve::Island& island) {
     const double impulse = island.rows[std::size_t(row_)].impulse;
     internalSetAppliedImpulse(btScalar(impulse));
     moment_ = impulse / dt_;
+    island_unsolved_ = island.unsolved;
     if (m_jointFeedback == nullptr) return;
     const Vector3<double> none = Vector3<double>::Zero();
     write_feedback(*m_jointFeedback, m_rbA, m_rbB, none, none, none, scaled(impulse / dt_, axis_));
@@ -128,6 +129,7 @@ DUCTILE_INLINE void MotorConstraint::prepare() {
     tell_keepers_of_step();
     dt_ = double(world_->getSolverInfo().m_timeStep);
     const BodyState<double> a = at_start(0, dt_, false), b = at_start(1, dt_, false);
+    island_unsolved_ = 0;
     axis_ = column(times(a.orientation, to_core(hinge_.getAFrame().getBasis())), 2);
     const double now = measure(a, b, position_);
     if (!ahead_) take_in_hands(now); // else begin_part did
@@ -157,7 +159,8 @@ DUCTILE_INLINE void MotorConstraint::keep_all() {
     settle();
     keep_life();
     joint_.keep();
-    kept_ = {release_, position_, force_, unseen_turn_, restored_, hinge_.isEnabled()};
+    kept_ = {release_,  position_,         force_, unseen_turn_, island_unsolved_,
+             restored_, hinge_.isEnabled()};
 }
 
 DUCTILE_INLINE void MotorConstraint::put_all_back() {
@@ -169,6 +172,7 @@ DUCTILE_INLINE void MotorConstraint::put_all_back() {
     position_ = kept_.position;
     force_ = kept_.force;
     unseen_turn_ = kept_.unseen_turn;
+    island_unsolved_ = kept_.island_unsolved;
     restored_ = kept_.restored;
     if (!kept_.hinge_enabled || hinge_.isEnabled()) return;
     hinge_.setEnabled(true);

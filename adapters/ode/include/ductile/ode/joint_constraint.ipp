@@ -175,7 +175,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 }
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
-    const Vector6<double> forces = forces_of(island, link_, first_row_, dt);
+    const Vector6<double> forces = take_forces(island, link_, first_row_, dt);
     solved_rows_ = forces;
     const LinkPose<double>& pose = link_.pose();
     centre_ = {.force = times(pose.axes(), linear(forces)),
