@@ -33,7 +33,7 @@
 // c = 0.487 at an end that is free, where nothing holds the other one, of one side, else 1. Fitted
 // to Timoshenko's beam with plastic sections, the striker 0.03 to 20 times the member, wherever it
 // strikes and however that is held: within 0.04 of E in the mean, 0.2 where it just yields. What
-// it may be off by is told as `astray`, and so is what flows of a blow that the rule above bears.
+// it may be off by is told as `astray`.
 //
 // Limits: EI → ∞: n → ∞, every blow yields it and all of E flows (Parkes); E → 0: n → 0. Against a
 // chain of elastic-plastic joints: bullet_member_physics_test.cpp.
@@ -144,16 +144,14 @@ struct Wave {
         both = std::max(both, used_by(bent + sent_out.turned_back * wave));
     }
     blow.in_all = std::max(blow.utilisation, std::hypot(profile, beside));
-    const double n = sent_out.kept * both,
-                 squares = sent_out.kept * std::hypot(profile, sent_out.turned_back * all),
-                 in_all = std::max(std::pow(n, 2.0 / 3), squares);
     if (3 * all > 2 * profile) {
-        blow.utilisation = n;
-        blow.in_all = in_all;
         constexpr double off = 0.2;
-        if (n > 1) blow.astray = energy * (off / (in_all * in_all) + sent_out.taken);
-    } else if (n > 1 && !blow.yields()) {
-        blow.astray = energy * (1 - 1 / (in_all * in_all));
+        const double n = sent_out.kept * both,
+                     squares = sent_out.kept * std::hypot(profile, sent_out.turned_back * all);
+        blow.utilisation = n;
+        blow.in_all = std::max(std::pow(n, 2.0 / 3), squares);
+        const double share = off / (blow.in_all * blow.in_all) + sent_out.taken;
+        if (blow.yields()) blow.astray = energy * share;
     }
     return blow;
 }
