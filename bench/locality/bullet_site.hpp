@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Posts of plastic hinges, boxes and a ball on a floor in Bullet, looked after by a ductile World.
+// Posts of plastic hinges, or that are members, boxes and a ball on a floor in Bullet, looked after
+// by a ductile World.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -10,6 +11,7 @@
 
 #include "cpu_time.hpp"
 #include "ductile/bullet/bullet.hpp"
+#include "ductile/bullet/members.hpp"
 
 namespace bench::locality {
 
@@ -30,6 +32,7 @@ class Site {
         add(floor_, 0, {0, -1, 0});
     }
     ~Site() {
+        member_.reset();
         hinges_.clear();
         world_.reset();
         for (auto& body : bodies_) engine_.removeRigidBody(body.get());
@@ -52,6 +55,20 @@ class Site {
             world_->add(*hinges_.back());
             below = &piece;
         }
+    }
+    /// One that is clamped at the origin, of 16 segments, and one body until it is struck.
+    static constexpr bool has_members = true;
+    void member() {
+        MemberParameters p;
+        p.segments = lumped_segments(2, 60, 16, {1e-3, 1e-3, 2e-3});
+        p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+        p.sections.assign(16, UsualAxisJoint(Perfect<double>({.strength = 4000})));
+        around_.addChildShape(at({0, 1, 0}), &whole_);
+        btTransform upright = at({0, 0, 0}); // it bends in the plane of the blow
+        upright.setBasis({0, 1, 0, 0, 0, 1, 1, 0, 0});
+        member_ = std::make_unique<bullet::Member>(add(around_, 0, {0, 0, 0}), Member(p), upright,
+                                                   MemberBox{0.05, 0.05});
+        world_->add(*member_);
     }
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {
@@ -101,10 +118,13 @@ class Site {
     btBoxShape floor_{btVector3(500, 1, 500)},
         piece_{btVector3(btScalar(0.05), btScalar(0.2), btScalar(0.05))},
         box_{btVector3(btScalar(0.5), btScalar(0.5), btScalar(0.5))};
+    btBoxShape whole_{btVector3(btScalar(0.05), 1, btScalar(0.05))};
+    btCompoundShape around_;
     btSphereShape ball_{btScalar(0.2)};
     std::vector<std::unique_ptr<btRigidBody>> bodies_;
     std::unique_ptr<bullet::World> world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
+    std::unique_ptr<bullet::Member> member_;
 };
 
 } // namespace bench::locality

@@ -52,6 +52,8 @@ class Site {
             below = piece;
         }
     }
+    static constexpr bool has_members = false;
+    void member() {}
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {
         dMass mass;

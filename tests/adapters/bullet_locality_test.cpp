@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "adapters/bullet_engine.hpp"
+#include "core/member/strips.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
+#include "ductile/bullet/members.hpp"
 #include "ductile/bullet/world_parts.hpp"
 #include "support/bit_hash.hpp"
 
@@ -243,6 +245,73 @@ struct Scene : Site {
 };
 
 } // namespace
+
+TEST_CASE("Locality: others keep their bits while a member is open", "[frame][member]") {
+    /// Boxes as in a Scene, and a clamped post that is one body until it is
+    /// struck.
+    struct WithMember : Scene {
+        std::unique_ptr<bullet::Member> member;
+        btRigidBody* far;
+
+        WithMember(int boxes, bool struck) : Scene(boxes, false) {
+            auto around = std::make_unique<btCompoundShape>();
+            shapes.push_back(std::make_unique<btBoxShape>(
+                btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+            around->addChildShape(at({0, 1, 0}), shapes.back().get());
+            btRigidBody& foot = body(std::move(around), 0, {0, 0, -9});
+            const btTransform upright(
+                btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
+            member = std::make_unique<bullet::Member>(foot, test::heavy_post(10, 4000), upright,
+                                                      MemberBox{0.05, 0.05});
+            far = &ball({0, btScalar(struck ? 1.9 : 60), btScalar(-9.6)},
+                        {0, 0, btScalar(struck ? 5 : 0)});
+            world->add(*member);
+        }
+        ~WithMember() { member.reset(); }
+    };
+    WithMember struck(200, true), quiet(200, false);
+    int differ = 0, open = 0;
+    for (int i = 0; i < 60; ++i) {
+        struck.step();
+        quiet.step();
+        differ += hash_of(struck.others) != hash_of(quiet.others);
+        open += !struck.member->whole();
+    }
+    CHECK(differ == 0);
+    CHECK(open > 3);
+    CHECK(struck.worst > 4);
+    CHECK(struck.member->absorbed_energy() > 500);
+    CHECK(quiet.member->absorbed_energy() == 0);
+    CHECK(std::abs(struck.world->ledger().unexplained()) < (rough ? 2 : 1e-6));
+}
+
+TEST_CASE("Locality: what a member meets within the frame comes along", "[frame][member]") {
+    // a bar that a ball sends into a box that stands a metre behind it
+    for (const double step : {1.0 / 30, 1.0 / 240}) {
+        std::vector<double> ends;
+        for (const int boxes : {0, 200}) {
+            Scene scene(boxes, false);
+            const Member of = test::free_bar();
+            const MemberPiece whole = make_piece(of, straight(of), {0, of.segments() - 1});
+            btRigidBody& bar = scene.body(
+                std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(0.05), 1)),
+                of.mass(), {0, btScalar(20), -9});
+            bar.setMassProps(btScalar(of.mass()), bullet::to_bullet(whole.inertia));
+            bar.setGravity({0, 0, 0});
+            bullet::Member member(bar, of, at({0, 0, -1}), MemberBox{0.05, 0.05});
+            scene.world->add(member);
+            btRigidBody& ball = scene.ball({0, btScalar(19.6), -9}, {0, 8, 0});
+            btRigidBody& wall = scene.ball({0, btScalar(20.35), btScalar(-8.1)}, {0, 0, 0});
+            for (btRigidBody* each : {&bar, &ball, &wall}) each->setFriction(0);
+            for (int i = 0; i < int(0.25 / step); ++i) scene.world->step(step);
+            CHECK(wall.getLinearVelocity().y() > btScalar(0.3));
+            ends.push_back(member.absorbed_energy());
+        }
+        CAPTURE(step, ends[0], ends[1]);
+        CHECK(ends[0] > 10);
+        CHECK(ends[1] == Approx(ends[0]).epsilon(0.01));
+    }
+}
 
 TEST_CASE("Locality: others keep their bits while one island is done in parts", "[frame]") {
     Scene struck(200, true), quiet(200, false);

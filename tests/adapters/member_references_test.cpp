@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/member/elastic_plastic_chain.hpp"
+#include "core/member/timoshenko_post.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -49,10 +50,10 @@ TEST_CASE(
     "of what sticks to a post's end it absorbs what a chain of forty elastic-plastic joints "
     "does",
     "[member]") {
-    // chains of 20 and 40 joints differ by up to 0.07 of the blow's energy, of a mass as large as
-    // the post's by 0.03 at most, of ten times that by 0.002
+    // chains of 20 and 40 joints differ by up to 0.03 of the blow's energy, of ten times the post's
+    // mass by 0.002; of what is lighter they do not converge (timoshenko_post.hpp)
     const Member of = elastic_post(32);
-    for (const double share : {0.2, 1.0, 2.0, 10.0}) { // of the post's mass
+    for (const double share : {1.0, 2.0, 10.0}) { // of the post's mass
         const double mass = share * post_mass, at_yield = speed_at_yield(of, mass);
         for (const double times : {1.2, 2.0, 3.0, 5.0, 8.0}) {
             const double speed = times * at_yield, energy = mass * speed * speed / 2;
@@ -64,9 +65,32 @@ TEST_CASE(
             const double absorbed = scene.absorbed_energy() / energy,
                          chain = share_of_chain(40, mass, speed);
             CAPTURE(share, times, absorbed, chain);
-            const double most = share < 1 ? (times < 2 ? 0.18 : 0.06) : 0.03;
-            CHECK(absorbed == Approx(chain).epsilon(0).margin(most));
+            CHECK(absorbed == Approx(chain).epsilon(0).margin(0.03));
             CHECK(scene.world.run().believed());
+        }
+    }
+}
+
+TEST_CASE("of a light body's blow a post absorbs what Timoshenko's beam does, and is not believed",
+          "[member]") {
+    const Member of = elastic_post(32);
+    const double segment = post_mass / 32 / 2; // that a contact at its end takes with it
+    for (const double share : {0.05, 0.1, 0.2, 0.5}) {
+        for (const double speed : {5.0, 8.0, 12.0, 20.0, 40.0}) {
+            const double mass = share * post_mass, energy = mass * speed * speed / 2;
+            Struck scene(of, true, 0.01, mass);
+            scene.strike(speed);
+            for (int i = 0; i < 180 && (i < 30 || !scene.member->whole()); ++i) {
+                scene.world.step(frame);
+            }
+            const TimoshenkoPost exact{.striker = mass, .speed = speed};
+            const double seen = exact.work(0.1 + 4 * mass * speed / post_strength) / energy,
+                         taken = segment / (segment + mass),
+                         absorbed = scene.absorbed_energy() / energy;
+            CAPTURE(share, speed, absorbed, seen, scene.world.run().believed());
+            const double flows = seen * (1 - taken) / (1 - exact.lumped());
+            CHECK(absorbed == Approx(flows).margin(speed < 20 ? 0.12 : 0.09));
+            if (scene.world.run().believed()) CHECK(absorbed == Approx(seen).margin(0.08));
         }
     }
 }

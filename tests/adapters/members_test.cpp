@@ -158,20 +158,20 @@ TEST_CASE("held along at both ends a beam that flows is said to be locked", "[me
 }
 
 TEST_CASE("what a member bears but by bending about its x, and cannot, is said", "[member]") {
-    // 1 kg fixed by a point to the tip: 48 J bend it, about either axis, or 190 J stretch it, to
-    // yield
+    // 5 kg, as much as it weighs, fixed by a point to the tip: 48 J bend it, about either
+    // axis, or 190 J stretch it, to yield
     const Rectangle<double> section({.width = 0.064, .height = 0.01});
     const Member of = beam(section, Material<double>(s355<double>()),
                            {.length = 1, .segments = 10, .clamped = true});
     const Vector3<double> along_y(0, 1, 0), along_x(1, 0, 0), along_z(0, 0, 1);
     for (const double tolerance : {0.01, 0.0}) {
         const double dt = tolerance > 0 ? 1.0 / 60 : 1e-4;
-        for (const auto& [way, speed, bears] : {std::tuple{along_y, 20.0, true},
-                                                {along_x, 5.0, true},
-                                                {along_x, 20.0, false},
-                                                {along_z, 10.0, true},
-                                                {along_z, 30.0, false}}) {
-            Struck scene(of, true, tolerance);
+        for (const auto& [way, speed, bears] : {std::tuple{along_y, 9.0, true},
+                                                {along_x, 2.2, true},
+                                                {along_x, 9.0, false},
+                                                {along_z, 4.5, true},
+                                                {along_z, 13.5, false}}) {
+            Struck scene(of, true, tolerance, 5);
             set_velocity(scene.mass, scaled(speed, way));
             for (int i = 0; i < 6; ++i) scene.world.step(dt);
             CAPTURE(tolerance, way.transpose(), speed, scene.absorbed_energy());

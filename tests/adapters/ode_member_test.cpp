@@ -1059,6 +1059,25 @@ TEST_CASE("a clamped member may stand in the ground that it has contacts with", 
     }
 }
 
+TEST_CASE("a ball that grazes the end of a post strikes its edge in any frame", "[ode][member]") {
+    // 10, 5 and 1 mm of it reach over the end
+    for (const double over : {0.09, 0.095, 0.099}) {
+        for (const double speed : {5.0, 10.0, 20.0}) {
+            std::vector<double> absorbed;
+            for (const double frame : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+                BallOnPost scene(heavy_post(10, 1500), 100, speed, 0.01, 0.05, 0.044, 2 + over,
+                                 false);
+                scene.go(0.3, frame);
+                absorbed.push_back(scene.post->absorbed_energy());
+            }
+            CAPTURE(over, speed, absorbed[0]);
+            CHECK(absorbed[0] > 10);
+            CHECK(absorbed[1] == Approx(absorbed[0]).epsilon(0.06));
+            CHECK(absorbed[2] == Approx(absorbed[0]).epsilon(0.06));
+        }
+    }
+}
+
 TEST_CASE("a driven body that passes through what does not move of a member is said to do so",
           "[ode][member]") {
     const Rectangle<double> section({.width = 0.1, .height = 0.1});

@@ -161,7 +161,7 @@ class MemberCourse {
     /// A blow begins: the next `struck` is its first. Joints that take no more than `noticed` [J]
     /// do not count: their bodies came with what a part left of their velocities.
     void begin_blow(double noticed = 0) noexcept {
-        struck_ = yields_ = is_opened_ = false;
+        struck_ = rough_ = yields_ = is_opened_ = false;
         noticed_ = noticed;
     }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
@@ -183,6 +183,7 @@ class MemberCourse {
             const MemberBlow blow = member_blow(member_, state_, elastic_forces(steps, loads),
                                                 strike.energy, strike.speed, strike.segment);
             utilisation = std::max(utilisation, blow.in_all);
+            if (first) rough_ = rough_ || blow.is_rough();
             yields_ = yields_ || blow.yields();
             for (const SectionForce& carried : forces_.sections) {
                 if (!yields_) break;
@@ -195,6 +196,7 @@ class MemberCourse {
             }
         }
         if (first && nearest != no_section) expect_vibration(strike.energy, utilisation);
+        if (rough_) unmodelled_ = Unmodelled::rough_blow;
         if (profile.is_off_plane(strike.energy)) unmodelled_ = Unmodelled::off_plane;
         return nearest;
     }
@@ -352,6 +354,7 @@ class MemberCourse {
     double noticed_ = 0;
     Unmodelled unmodelled_ = Unmodelled::nothing;
     bool struck_ = false; ///< this blow was looked at
+    bool rough_ = false;  ///< what flows of it is known roughly
     bool yields_ = false; ///< it does, as a rigid-plastic member then
 };
 

@@ -23,6 +23,10 @@ namespace ductile {
         case Unmodelled::off_plane:
             return "had to bear more than it can along its axis, about it or across the plane in "
                    "which it bends, of which it knows nothing";
+        case Unmodelled::rough_blow:
+            return "took a blow by what is light against it, of which it is not known within 5 % "
+                   "of "
+                   "its energy how much flowed";
         case Unmodelled::driven:
             return "does not move, and a driven body passes through it: the engine solves no "
                    "contacts between them";
@@ -36,6 +40,9 @@ namespace ductile {
             return "let one of its ends slide";
         case Unmodelled::off_plane:
             return "a structure (StructureInTime) yields whichever way it is loaded";
+        case Unmodelled::rough_blow:
+            return "take what it absorbed as an estimate; shorter segments where it is struck "
+                   "(BeamParameters) take less of a light body's blow";
         case Unmodelled::driven:
             return "strike it with a body that has a mass, as large as it may be";
         default:

@@ -34,10 +34,10 @@ inline Member strip(int segments, bool clamped = true, Lumping lumping = Lumping
 /// P39's post, clamped: 2 m, a box of S355, 100 x 100 x 4 mm.
 constexpr double post_length = 2, post_mass = 24.1152, post_strength = 19641.44,
                  post_stiffness = 496312.32;
-inline Member elastic_post(int segments) {
+inline Member elastic_post(int segments, bool clamped = true) {
     MemberParameters p;
     p.segments = lumped_segments(post_length, post_mass, segments, {1.54e-3, 1.54e-3, 3.08e-3});
-    p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+    if (clamped) p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
     p.sections.assign(p.segments.size() - 1,
                       UsualAxisJoint(Perfect<double>({.strength = post_strength})));
     p.bending_stiffness = post_stiffness;

@@ -17,6 +17,7 @@ class btRigidBody;
 
 namespace ductile::bullet {
 
+class LocalScope;
 class PlasticConstraint;
 
 /// Not thread-safe.
@@ -43,6 +44,9 @@ class Divisibles {
                                              int& /*section*/) const {
         return nullptr;
     }
+    [[nodiscard]] virtual bool any_open() const { return false; }
+    /// From now on contacts of these alone are looked at; null: of all again.
+    void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
     /// Of sections that are closed [J].
     [[nodiscard]] virtual double closed_work() const { return 0; }
     /// As PartMotion::closed_work.
@@ -77,6 +81,7 @@ class Divisibles {
     virtual void tell_idle(const TellIdle& /*tell*/) {}
 
   protected:
+    const LocalScope* scope_ = nullptr;
     bool ahead_ = false; ///< bodies are half a step ahead where rows are solved
 };
 

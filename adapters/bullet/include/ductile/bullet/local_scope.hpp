@@ -40,27 +40,26 @@ class LocalScope {
         }
         for (int i = 0; i < world.getNumConstraints(); ++i) {
             btTypedConstraint* constraint = world.getConstraint(i);
-            if (!has(constraint->getRigidBodyA()) && !has(constraint->getRigidBodyB())) continue;
+            if (!has(*constraint)) continue;
             constraints_.push_back(constraint);
             if (PlasticConstraint* joint = as_plastic(*constraint)) joints_.push_back({joint, i});
         }
-        for (const Joint& joint : joints_) {
-            sorted_joints_.push_back(static_cast<const btTypedConstraint*>(joint.joint));
-        }
-        std::sort(sorted_joints_.begin(), sorted_joints_.end());
         find_manifolds(*world.getDispatcher());
     }
     void clear() {
         bodies_.clear();
         constraints_.clear();
         joints_.clear();
-        sorted_joints_.clear();
         manifolds_.clear();
         numbers_.clear();
     }
 
     [[nodiscard]] bool has(const btCollisionObject& object) const noexcept {
         return number(object) != nowhere;
+    }
+    /// One of its bodies.
+    [[nodiscard]] bool has(const btTypedConstraint& constraint) const noexcept {
+        return has(constraint.getRigidBodyA()) || has(constraint.getRigidBodyB());
     }
     /// Among `bodies`.
     [[nodiscard]] int number(const btCollisionObject& object) const noexcept {
@@ -80,9 +79,6 @@ class LocalScope {
         int place;
     };
     [[nodiscard]] std::span<const Joint> joints() const noexcept { return joints_; }
-    [[nodiscard]] bool has_joint(const void* constraint) const noexcept {
-        return std::binary_search(sorted_joints_.begin(), sorted_joints_.end(), constraint);
-    }
     /// That have one of the bodies, with contact points or without.
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds() const noexcept {
         return manifolds_;
@@ -104,7 +100,6 @@ class LocalScope {
     std::vector<btRigidBody*> bodies_;
     std::vector<btTypedConstraint*> constraints_;
     std::vector<Joint> joints_;
-    std::vector<const void*> sorted_joints_;
     std::vector<btPersistentManifold*> manifolds_;
     std::vector<int> numbers_; ///< by place in the world
 };

@@ -70,6 +70,7 @@ class Members final : public Divisibles {
     DUCTILE_INLINE void require_known() const override;
     [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
                                                     int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
     [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     [[nodiscard]] bool is_member(const btCollisionObject& object) const override {

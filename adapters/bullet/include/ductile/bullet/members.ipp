@@ -111,6 +111,10 @@ DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& 
     return nullptr;
 }
 
+DUCTILE_INLINE bool Members::any_open() const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Course& course) { return !course.of->whole(); });
+}
 DUCTILE_INLINE double Members::closed_work() const {
     double sum = 0;
     for (const Course& course : members_) sum += course.of->closed_work();
@@ -172,11 +176,10 @@ DUCTILE_INLINE void Members::before_solve() {
     if (members_.empty()) return;
     forget_doubts();
     before_.resize(std::size_t(world_.getNumCollisionObjects()));
-    const auto& moving = MovingBodies::of(world_);
-    for (int i = 0; i < moving.size(); ++i) {
-        const btRigidBody& body = *moving[i];
-        before_[std::size_t(body.getWorldArrayIndex())] = {
-            body.getCenterOfMassTransform(), body.getLinearVelocity(), body.getAngularVelocity()};
+    for (const btRigidBody* body : bodies_of(world_, scope_)) {
+        before_[std::size_t(body->getWorldArrayIndex())] = {body->getCenterOfMassTransform(),
+                                                            body->getLinearVelocity(),
+                                                            body->getAngularVelocity()};
     }
     for (Course* course : here_) course->here = false;
     here_.clear();
@@ -220,9 +223,8 @@ DUCTILE_INLINE double Members::noticed_impulse(const Course& course, double dt) 
 }
 
 DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
-    btDispatcher& dispatcher = *world_.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    for (const btPersistentManifold* each : manifolds_of(*world_.getDispatcher(), scope_)) {
+        const btPersistentManifold& manifold = *each;
         if (manifold.getNumContacts() == 0) continue;
         const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
         Course *of_a = course_of(a), *of_b = course_of(b);
@@ -320,12 +322,10 @@ DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> clos
         return std::find(closing.begin(), closing.end(), object) != closing.end();
     };
     for (const btRigidBody* body : closing) solve_at_once(*body);
-    btDispatcher& dispatcher = *world_.getDispatcher();
-    for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
-        const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-        if (manifold.getNumContacts() == 0) continue;
-        if (closes(manifold.getBody0())) solve_at_once(*manifold.getBody1());
-        if (closes(manifold.getBody1())) solve_at_once(*manifold.getBody0());
+    for (const btPersistentManifold* manifold : manifolds_of(*world_.getDispatcher(), scope_)) {
+        if (manifold->getNumContacts() == 0) continue;
+        if (closes(manifold->getBody0())) solve_at_once(*manifold->getBody1());
+        if (closes(manifold->getBody1())) solve_at_once(*manifold->getBody0());
     }
 }
 

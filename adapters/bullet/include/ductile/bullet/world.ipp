@@ -78,7 +78,7 @@ DUCTILE_INLINE void World::start_frames(double tolerance, int budget) {
         [this](double h) {
             tell_of_members(); // what opened did so as the part began
             if (parts_->is_local()) {
-                part_stands(h, [this](const void* joint) { return parts_->has_joint(joint); });
+                part_stands(h, [this](const void* joint) { return !parts_->is_outside(joint); });
             } else {
                 part_stands(h);
             }
@@ -96,7 +96,7 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
 DUCTILE_INLINE void World::end_frame() {
     parts_->end();
     if (parts_->is_local()) { // the joints that were not done again
-        part_stands(0, [this](const void* joint) { return !parts_->has_joint(joint); });
+        part_stands(0, [this](const void* joint) { return parts_->is_outside(joint); });
     }
     members_->drop_forces();
     tell_of_members();

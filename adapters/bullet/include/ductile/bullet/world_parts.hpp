@@ -21,18 +21,21 @@
 //
 //   in trouble   islands, before or after that part, with a plastic row that moved, a joint that
 //                broke, a contact that closes; islands that these may reach within the frame
+//   members      where one is open, or something closes: all, with the islands of what they hold or
+//                touch; else nothing is done alone
 //   met          an island that one of these is about to touch, or does, is put back to the
 //                frame's begin, brought to where the part begins by a part of its own, and comes
 //                along; a part that found it is done again
 //
-// Not so with members, kinematic bodies, continuous collision, callbacks and actions, or worlds and
-// solvers of another kind, nor where half of the bodies are in trouble: then all is done again.
+// Not so with kinematic bodies, continuous collision, callbacks and actions, or worlds and solvers
+// of another kind, nor where half of the bodies are in trouble: then all is done again.
 //
 // Not thread-safe.
 #pragma once
 
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -82,8 +85,10 @@ class WorldParts final : public PartEngine {
     void end();
     /// True where the frame, since its begin or until the next one, does some islands again alone.
     [[nodiscard]] bool is_local() const noexcept { return local_; }
-    /// Whether a joint, by its address as a constraint, is in one of those.
-    [[nodiscard]] bool has_joint(const void* joint) const { return scope_.has_joint(joint); }
+    /// Whether a joint, by its address as a constraint, is in none of those.
+    [[nodiscard]] bool is_outside(const void* joint) const {
+        return std::binary_search(outside_.begin(), outside_.end(), joint);
+    }
     /// Joints have other numbers from now on.
     void forget_numbers() noexcept { numbers_.clear(); }
 
@@ -104,6 +109,8 @@ class WorldParts final : public PartEngine {
                      Lent<btScalar>& lent, Lent<int>& modes);
     void share_brakes(btScalar share, Lent<btScalar>& lent);
     void tick(double h, bool ahead);
+    /// The same, with whom it touched.
+    void tick_with_met(double h, bool ahead);
     /// The engine's gyroscopic moments take no energy in the coming part (joint/gyroscopic.hpp).
     void keep_spins(double h);
     [[nodiscard]] LocalScope* scope() noexcept { return local_ ? &scope_ : nullptr; }
@@ -116,11 +123,15 @@ class WorldParts final : public PartEngine {
     void find_risk();
     [[nodiscard]] bool is_little() const;
     void try_all();
-    [[nodiscard]] std::vector<btRigidBody*> find_trouble();
+    [[nodiscard]] std::vector<btRigidBody*> find_trouble(std::vector<char>& chosen);
     void add_reached(std::vector<char>& chosen) const;
     void narrow_to(LocalScope& scope);
     void widen();
     void go_back_alone(LocalScope& scope);
+    /// Bodies of members, and what these hold or meet.
+    void choose_members(std::vector<char>& chosen);
+    /// Bodies of members came or went.
+    void see_members();
     /// Islands of these come along from now on.
     void join(const std::vector<btRigidBody*>& met);
     /// Those of bodies that the last tick touched; true where there were some, and the tick was put
@@ -183,10 +194,11 @@ class WorldParts final : public PartEngine {
     LocalScope scope_, joining_;
     LocalTick local_tick_;
     bool decided_ = false, local_ = false;
-    bool narrow_ = false;     ///< others look at the scope alone
-    double outside_work_ = 0; ///< plastic, of joints outside of the scope [J]
-    bool forces_act_ = false; ///< they are applied for the coming tick
-    bool pairs_were_sorted_;  ///< the user's setting
+    bool narrow_ = false;              ///< others look at the scope alone
+    double outside_work_ = 0;          ///< plastic, of joints outside of the scope [J]
+    std::vector<const void*> outside_; ///< these, sorted
+    bool forces_act_ = false;          ///< they are applied for the coming tick
+    bool pairs_were_sorted_;           ///< the user's setting
 };
 
 } // namespace ductile::bullet

@@ -132,6 +132,7 @@ DUCTILE_INLINE void WorldParts::widen() {
     meter_.set_scope(nullptr);
     meter_.narrow(true);
     closing_.set_scope(nullptr);
+    members_->set_scope(nullptr);
 }
 
 DUCTILE_INLINE void WorldParts::find_risk() {
@@ -222,8 +223,14 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     if (metered) meter_.after_step(double(btScalar(h)));
 }
 
+DUCTILE_INLINE void WorldParts::tick_with_met(double h, bool ahead) {
+    do {
+        tick(h, ahead);
+    } while (local_ && join_touched());
+}
+
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
-    if (local_ && scope_.bodies().empty()) { // all stands
+    if (local_ && scope_.bodies().empty() && members_->empty()) { // all stands
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
         motion_.contact_lost = false;
         motion_.turned = 0;
@@ -240,11 +247,10 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         const auto length = double(btScalar(h));
         return instant ? members_->look_blow(length) : members_->look(length);
     };
-    for (tick(h, true); look(); tick(h, true)) {
+    for (tick_with_met(h, true); look(); tick_with_met(h, true)) {
         do_again();
         (void)closing_.find(world_, h, touching_, apart_); // of other bodies
     }
-    while (local_ && join_touched()) tick(h, true);
     tell();
     const bool metered = keeps_ledger_ || at_risk_;
     motion_.rigid_work = metered ? meter_.step_of_plastic_joints() : 0;
@@ -291,7 +297,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
-    if (local_) {
+    if (local_ && members_->empty()) { // whose joints come and go
         motion_.plastic_work = outside_work_;
         for (const LocalScope::Joint& entry : scope_.joints()) {
             const PlasticConstraint& joint = *entry.joint;

@@ -13,7 +13,8 @@ DUCTILE_INLINE void WorldParts::decide() {
     for (const btRigidBody* body : closing_.found_bodies()) suspects_.push_back(body);
     for (const btRigidBody* body : thrown_.bodies()) suspects_.push_back(body);
     at_risk_ = true;
-    if (!members_->empty() || !ways_.empty() || calls_others_ || islands_ == nullptr) return;
+    if (!ways_.empty() || calls_others_ || islands_ == nullptr) return;
+    if (!members_->empty() && !closes_ && !members_->any_open()) return;
     if (!is_little() || !LocalTick::is_possible(world_, front_.usual())) return;
     try_all();
 }
@@ -23,14 +24,15 @@ DUCTILE_INLINE bool WorldParts::is_little() const {
     const auto objects = std::size_t(world_.getNumCollisionObjects());
     std::vector<char> suspected(2 * objects + 1), by_place(objects);
     for (const btRigidBody* body : suspects_) {
-        const int tag = body->getIslandTag(); // none yet, of a body that is new here
+        if (body->getWorldArrayIndex() < 0) continue; // somebody took it out
+        const int tag = body->getIslandTag();         // none yet, of a body that is new here
         by_place[std::size_t(body->getWorldArrayIndex())] = 1;
         if (tag >= 0 && std::size_t(tag) < suspected.size()) suspected[std::size_t(tag)] = 1;
     }
     const auto bodies = MovingBodies::all(world_);
     const auto of_these = std::count_if(bodies.begin(), bodies.end(), [&](const btRigidBody* body) {
         const int tag = body->getIslandTag();
-        return by_place[std::size_t(body->getWorldArrayIndex())] ||
+        return by_place[std::size_t(body->getWorldArrayIndex())] || members_->is_member(*body) ||
                (tag >= 0 && std::size_t(tag) < suspected.size() && suspected[std::size_t(tag)]);
     });
     return 2 * std::size_t(of_these) < bodies.size();
@@ -43,9 +45,12 @@ DUCTILE_INLINE void WorldParts::try_all() {
     for (const btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
         were_enabled_.push_back(constraint->isEnabled());
     }
+    std::vector<char> chosen(std::size_t(world_.getNumCollisionObjects()));
+    choose_members(chosen);
     tick(length_, true);
     tell();
-    std::vector<btRigidBody*> trouble = find_trouble();
+    choose_members(chosen);
+    std::vector<btRigidBody*> trouble = find_trouble(chosen);
     if (2 * trouble.size() >= MovingBodies::all(world_).size()) {
         frame_.put_back(world_, front_.usual());
         meter_.put_back();
@@ -55,18 +60,49 @@ DUCTILE_INLINE void WorldParts::try_all() {
         local_ = narrow_ = true;
         meter_.keep_step(double(btScalar(length_)));
         go_back_alone(scope_);
+        frame_.leave_out(scope_);
         narrow_to(scope_);
     }
     forces_act_ = false;
     time_ = 0;
 }
 
-/// Of islands, before and after the part of all, with something in trouble.
-DUCTILE_INLINE std::vector<btRigidBody*> WorldParts::find_trouble() {
+DUCTILE_INLINE void WorldParts::choose_members(std::vector<char>& chosen) {
+    if (members_->empty()) return;
+    const auto choose = [&](const btCollisionObject& a, const btCollisionObject& b) {
+        if (!members_->is_member(a) && !members_->is_member(b)) return;
+        for (const btCollisionObject* object : {&a, &b}) {
+            if (object->isStaticOrKinematicObject() || object->getWorldArrayIndex() < 0) continue;
+            chosen[std::size_t(object->getWorldArrayIndex())] = 1;
+        }
+    };
+    for (const btRigidBody* body : MovingBodies::all(world_)) choose(*body, *body);
+    for (const btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
+        choose(constraint->getRigidBodyA(), constraint->getRigidBodyB());
+    }
+    for (const btPersistentManifold* manifold : manifolds_of(*world_.getDispatcher(), nullptr)) {
+        if (manifold->getNumContacts() > 0) choose(*manifold->getBody0(), *manifold->getBody1());
+    }
+}
+
+DUCTILE_INLINE void WorldParts::see_members() {
+    if (!local_) return;
+    std::vector<const btRigidBody*> before(scope_.bodies().begin(), scope_.bodies().end());
+    std::sort(before.begin(), before.end());
+    std::vector<btRigidBody*> bodies;
+    for (btRigidBody* body : MovingBodies::all(world_)) {
+        if (members_->is_member(*body) || std::binary_search(before.begin(), before.end(), body)) {
+            bodies.push_back(body);
+        }
+    }
+    scope_.set(world_, std::move(bodies));
+}
+
+/// Of islands, before and after the part of all, with something in trouble, beside the chosen.
+DUCTILE_INLINE std::vector<btRigidBody*> WorldParts::find_trouble(std::vector<char>& chosen) {
     const auto bodies = MovingBodies::all(world_);
-    std::vector<char> chosen(std::size_t(world_.getNumCollisionObjects()));
     const auto choose = [&chosen](const btRigidBody& body) {
-        if (!body.isStaticOrKinematicObject()) {
+        if (!body.isStaticOrKinematicObject() && body.getWorldArrayIndex() >= 0) {
             chosen[std::size_t(body.getWorldArrayIndex())] = 1;
         }
     };
@@ -172,12 +208,16 @@ DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
     meter_.set_scope(&scope);
     meter_.narrow();
     closing_.set_scope(&scope);
+    members_->set_scope(&scope);
     outside_work_ = 0;
+    outside_.clear();
     for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
         const PlasticConstraint* plastic = as_plastic(*constraint);
-        if (plastic == nullptr || scope.has_joint(constraint)) continue;
+        if (plastic == nullptr || scope.has(*constraint)) continue;
         outside_work_ += plastic->queries().absorbed_energy();
+        outside_.push_back(constraint);
     }
+    std::sort(outside_.begin(), outside_.end());
 }
 
 DUCTILE_INLINE bool WorldParts::join_touched() {
@@ -211,6 +251,7 @@ DUCTILE_INLINE void WorldParts::join(const std::vector<btRigidBody*>& met) {
         time_ = 0;
         tick(now, true);
         std::swap(scope_, joining_);
+        for (btRigidBody* body : scope_.bodies()) body->clearForces(); // members' own, too
     }
     scope_.set(world_, std::move(joined));
     narrow_to(scope_);

@@ -12,6 +12,7 @@ DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
     const double before = meter_.held().total();
     members_->open_found();
+    see_members();
     forces_.forget_gone(world_);
     meter_.bodies_rearranged(before);
     save();
@@ -58,6 +59,7 @@ DUCTILE_INLINE void WorldParts::see_coming() {
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
     const double before = meter_.held().total();
     if (!members_->close_held(when)) return;
+    see_members();
     meter_.bodies_rearranged(before);
     closing_.forget_open();
     forces_.forget_gone(world_);
@@ -67,10 +69,10 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     closing_.show_struck(manifolds());
     if (members_->empty() && local_) save();
     begin_blow();
-    for (tick(blow_length, false); members_->look_blow(blow_length); tick(blow_length, false)) {
+    for (tick_with_met(blow_length, false); members_->look_blow(blow_length);
+         tick_with_met(blow_length, false)) {
         do_again();
     }
-    while (local_ && join_touched()) tick(blow_length, false);
     thrown_.strike();
     motion_.closed = 0;
     motion_.contact_lost = false;

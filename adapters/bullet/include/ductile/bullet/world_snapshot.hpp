@@ -47,6 +47,8 @@ class WorldSnapshot {
     /// `collide` looks for the contacts of the scope's bodies.
     void put_back(btDiscreteDynamicsWorld& world, btConstraintSolver& solver,
                   LocalScope* scope = nullptr, const std::function<void()>& collide = {});
+    /// Others alone are put back from now on: bodies and constraints of these may end.
+    void leave_out(const LocalScope& scope);
     /// What island each body was in, of all bodies that move if all were taken.
     template <class Tell>
     void tell_islands(const Tell& tell) const {

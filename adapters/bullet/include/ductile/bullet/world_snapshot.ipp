@@ -78,10 +78,7 @@ DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
         (void)write_manifolds(*world.getDispatcher(), scope);
     }
     for (const Constraint& kept : constraints_) {
-        if (scope != nullptr && !scope->has(kept.constraint->getRigidBodyA()) &&
-            !scope->has(kept.constraint->getRigidBodyB())) {
-            continue;
-        }
+        if (scope != nullptr && !scope->has(*kept.constraint)) continue;
         if (PlasticConstraint* plastic = as_plastic(*kept.constraint)) {
             plastic->put_all_back();
             continue;
@@ -91,6 +88,15 @@ DUCTILE_INLINE void WorldSnapshot::put_back(btDiscreteDynamicsWorld& world,
     }
     auto* sweeps = dynamic_cast<btSequentialImpulseConstraintSolver*>(&solver);
     if (sweeps != nullptr) sweeps->setRandSeed(seed_);
+}
+
+DUCTILE_INLINE void WorldSnapshot::leave_out(const LocalScope& scope) {
+    std::erase_if(bodies_, [&scope](const Body& kept) { return scope.has(*kept.body); });
+    std::erase_if(constraints_,
+                  [&scope](const Constraint& kept) { return scope.has(*kept.constraint); });
+    std::erase_if(manifolds_, [&scope](const Manifold& kept) {
+        return scope.has(*kept.a) || scope.has(*kept.b);
+    });
 }
 
 DUCTILE_INLINE void WorldSnapshot::list_manifolds(btDispatcher& dispatcher, const LocalScope* scope,

@@ -14,8 +14,9 @@
 //   one that was not closed at  t - 2 d/(v + √(v² - 2 a d)),  where the bodies overlap at t
 //
 // Looked at are the middle of a part of h, where v is that before it and a = 0, and its end, where
-// v is that after it and a = (v - v before)/h; what was closed before the start is not new. Before
-// a part in which bodies pass each other by more than half of the thinner of their geoms they are
+// v is that after it and a = (v - v before)/h; what was closed before the start is not new. One
+// that overlaps and does not close there went another way: past an edge, which it struck. Before a
+// part in which bodies pass each other by more than half of the thinner of their geoms they are
 // moved along, as they would go without any force, and looked at after every such length.
 //
 // A stop of a joint of ODE's (joint_stops.hpp) is a gap that is always known, and a blow when it
@@ -54,6 +55,7 @@ inline constexpr double closed_depth = 1e-4;
 struct ContactClosing {
     SeenContact seen; ///< its normal on the first of its bodies
     double speed;     ///< v, along the normal [m/s]
+    double comes;     ///< whichever way, [m/s]
     double yields;    ///< K [1/kg]
     double sinks;     ///< as fast as it may sink, to stay known as it turns [m/s]
 
@@ -134,7 +136,7 @@ class ClosingContactsFinder {
         double depth;                ///< at which it is closed [m]
         double speed;                ///< v [m/s]
         double before;               ///< v before the solve [m/s]
-        double energy;               ///< v²/(2 K) [J]
+        double energy;               ///< v²/(2 K), whichever way where it does not close [J]
         bool is_new;                 ///< the bodies had no contact when last remembered
         bool closes;                 ///< else it leaves already, and closed since
         const NamedContact* contact; ///< null: a stop

@@ -132,11 +132,12 @@ DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
     constexpr double followed = 0.02; // of what turns it
     const AttachedBodies bodies = attached_bodies(named.joint);
     const ContactBody a = contact_body(bodies.a), b = contact_body(bodies.b);
-    const Vector3<double> comes = difference(b.at(seen.arm_b), a.at(seen.arm_a));
-    speed = dot(seen.normal, comes);
+    const Vector3<double> velocity = difference(b.at(seen.arm_b), a.at(seen.arm_a));
+    speed = dot(seen.normal, velocity);
+    comes = norm(velocity);
     yields = detail::yield_at(bodies.a, seen.arm_a, seen.normal) +
              detail::yield_at(bodies.b, seen.arm_b, seen.normal);
-    sinks = followed * (norm(difference(comes, scaled(speed, seen.normal))) +
+    sinks = followed * (norm(difference(velocity, scaled(speed, seen.normal))) +
                         norm(a.spin) * norm(seen.arm_a) + norm(b.spin) * norm(seen.arm_b));
 }
 DUCTILE_INLINE double ContactClosing::depth() const { return detail::closing_depth(speed); }
@@ -205,10 +206,14 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
         const ContactClosing it(named);
         const bool closes = it.closes();
-        if (!closes && !(is_new && double(named.contact.geom.depth) > closed_depth)) continue;
+        const bool came_other_way =
+            is_new && it.yields > 0 && double(named.contact.geom.depth) > closed_depth;
+        if (!closes && !came_other_way) continue;
         const double before = it.speed_of(motion_before(a), motion_before(b));
+        const double struck_at = closes ? it.speed : it.comes; // past an edge
         touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
-                            before, it.speed * it.speed / (2 * it.yields), is_new, closes, &named});
+                            before, struck_at * struck_at / (2 * it.yields), is_new, closes,
+                            &named});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
