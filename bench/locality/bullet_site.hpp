@@ -53,6 +53,18 @@ class Site {
             below = &piece;
         }
     }
+    /// Two boxes of 1 m on the floor, one on the other, with a hinge between.
+    void pair(double x, double z, bool awake) {
+        btRigidBody& lower = add(box_, 100, {btScalar(x), btScalar(0.5), btScalar(z)});
+        btRigidBody& upper = add(box_, 100, {btScalar(x), btScalar(1.5), btScalar(z)});
+        for (btRigidBody* box : {&lower, &upper}) {
+            if (awake) box->setActivationState(DISABLE_DEACTIVATION);
+        }
+        const btVector3 half(0, btScalar(0.5), 0);
+        hinges_.push_back(std::make_unique<Hinge>(upper, lower, at(-half), at(half),
+                                                  Law(Perfect<double>({.strength = 4000}))));
+        world_->add(*hinges_.back());
+    }
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {
         for (int i = 0; i < count; ++i) {

@@ -52,14 +52,18 @@ class Site {
             below = piece;
         }
     }
+    /// Two boxes of 1 m on the floor, one on the other, with a hinge between.
+    void pair(double x, double z, bool awake) {
+        const dBodyID lower = box({x, 0.5, z}, awake), upper = box({x, 1.5, z}, awake);
+        hinges_.push_back(std::make_unique<Hinge>(
+            engine_.id, upper, lower, ode::HingeFrame{.anchor = {x, 1, z}, .axis = {0, 0, 1}},
+            Law(Perfect<double>({.strength = 4000}))));
+        world_->add(*hinges_.back());
+    }
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {
-        dMass mass;
-        dMassSetBoxTotal(&mass, 100, 1, 1, 1);
         for (int i = 0; i < count; ++i) {
-            const dBodyID made = add(mass, dCreateBox(engine_.space, 1, 1, 1),
-                                     {4 + 1.5 * (i % 32), 0.5, 4 + 1.5 * (i / 32)});
-            dBodySetAutoDisableFlag(made, awake ? 0 : 1);
+            (void)box({4 + 1.5 * (i % 32), 0.5, 4 + 1.5 * (i / 32)}, awake);
         }
     }
     void strike() {
@@ -118,6 +122,13 @@ class Site {
             dJointAttach(joint, of_a, of_b);
             site.world_->add_contact(joint, contact);
         }
+    }
+    dBodyID box(const Vector3<double>& at, bool awake) {
+        dMass mass;
+        dMassSetBoxTotal(&mass, 100, 1, 1, 1);
+        const dBodyID made = add(mass, dCreateBox(engine_.space, 1, 1, 1), at);
+        dBodySetAutoDisableFlag(made, awake ? 0 : 1);
+        return made;
     }
     dBodyID add(const dMass& mass, dGeomID geom, const Vector3<double>& at) {
         const dBodyID made = dBodyCreate(engine_.id);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Frames with a tolerance in ODE do in parts what hangs on plastic joints alone: all others go
-// through the frame once.
+// through the frame once. Where all stands the frame is looked at once, and nothing is kept.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -30,6 +30,7 @@ struct Site {
     std::optional<ode::World> world;
     std::vector<std::unique_ptr<Hinge>> hinges;
     std::vector<dBodyID> mine, others;
+    int looks = 0;           ///< for contacts
     int looks_at_others = 0; ///< pairs of geoms that ODE's space found near each other
     int worst = 0;           ///< solves of a frame
     double gained = 0;       ///< most that a frame leaves unexplained [J]
@@ -42,8 +43,10 @@ struct Site {
         world.emplace(engine.id,
                       ode::WorldParameters{
                           .solver = solver, .tolerance = 0.01, .rest_damping = 0, .warn = nullptr});
-        world->on_contacts({.space = engine.space, .group = engine.contacts},
-                           [this] { dSpaceCollide(engine.space, this, &Site::near); });
+        world->on_contacts({.space = engine.space, .group = engine.contacts}, [this] {
+            ++looks;
+            dSpaceCollide(engine.space, this, &Site::near);
+        });
     }
 
     dBodyID box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
@@ -274,4 +277,65 @@ TEST_CASE("Locality: contacts that the program makes by itself bring others in",
     CHECK(speed > 0.1);
     CHECK(among == speed);
     CHECK(among_work == work);
+}
+
+TEST_CASE("Locality: contacts of a world that stands are made once a frame", "[frame]") {
+    Site site;
+    for (int i = 0; i < 6; ++i) {
+        const dBodyID lower = site.box(50, {0.5, 0.5, 0.5}, {2.0 * i, 0.5, 0});
+        const dBodyID upper = site.box(50, {0.5, 0.5, 0.5}, {2.0 * i, 1.5, 0});
+        site.hinge(upper, lower, {2.0 * i, 1, 0}, 100);
+    }
+    for (int i = 0; i < 30; ++i) site.step();
+    const int before = site.looks;
+    for (int i = 0; i < 10; ++i) site.step();
+    CHECK(site.looks - before == 10);
+    CHECK(site.work() == 0);
+    // what comes flying is seen before it is there
+    site.ball(40, 0.2, {-1.2, 1.5, 0}, {5, 0, 0});
+    for (int i = 0; i < 20; ++i) site.step();
+    CHECK(site.work() > 1);
+    CHECK(site.world->run().blows > 0);
+}
+
+TEST_CASE("Locality: what hands do to a world that stands is resolved", "[frame]") {
+    // bars that hang on by one end bear themselves; then something comes to them within one frame
+    enum Deed { nothing, force, gravity, mass, other_joint };
+    for (const Deed deed : {nothing, force, gravity, mass, other_joint}) {
+        CAPTURE(int(deed));
+        Site site;
+        const dBodyID bar = site.box(10, {0.5, 0.05, 0.05}, {0.5, 5, 0});
+        const Hinge& hinge = site.hinge(bar, nullptr, {0, 5, 0}, 150);
+        const dBodyID other = site.box(10, {0.1, 0.1, 0.1}, {0.5, 5.5, 0});
+        dBodySetGravityMode(other, 0);
+        for (int i = 0; i < 10; ++i) site.step();
+        CHECK(site.worst == 1);
+        switch (deed) {
+            case force:
+                dBodyAddForce(bar, 0, -600, 0);
+                break;
+            case gravity:
+                dWorldSetGravity(site.engine.id, 0, -60, 0);
+                break;
+            case mass: {
+                dMass heavier;
+                dMassSetBoxTotal(&heavier, 100, 1, dReal(0.1), dReal(0.1));
+                dBodySetMass(bar, &heavier);
+                break;
+            }
+            case other_joint: {
+                const dJointID motor = dJointCreateSlider(site.engine.id, nullptr);
+                dJointAttach(motor, other, bar);
+                dJointSetSliderAxis(motor, 0, 1, 0);
+                dJointSetSliderParam(motor, dParamVel, 5);
+                dJointSetSliderParam(motor, dParamFMax, 600);
+                break;
+            }
+            case nothing:
+                break;
+        }
+        site.step();
+        CHECK((site.worst > 1) == (deed != nothing));
+        CHECK((hinge.absorbed_energy() > 0) == (deed != nothing));
+    }
 }

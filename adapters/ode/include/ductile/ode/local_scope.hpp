@@ -54,6 +54,10 @@ class LocalScope {
     [[nodiscard]] std::vector<dBodyID> with_theirs(std::vector<dBodyID> bodies) const;
     /// They are in.
     void take_in(std::span<const dBodyID> bodies);
+    /// ω r, of the farthest point of its geoms [m/s].
+    [[nodiscard]] static double turning_speed(dBodyID body) {
+        return turning_speed(body, box(body));
+    }
 
   private:
     /// Where a body may be; empty: it has no geoms.
@@ -74,6 +78,7 @@ class LocalScope {
         }
     };
     [[nodiscard]] static Box box(dBodyID body);
+    [[nodiscard]] static double turning_speed(dBodyID body, const Box& box);
     [[nodiscard]] Pace pace(dBodyID body, const Box& box, const HeldForces& forces) const;
     [[nodiscard]] std::vector<Box> reached_in(const HeldForces& forces, double h) const;
     [[nodiscard]] bool gather(std::span<const dBodyID> bodies, const HeldForces& forces);

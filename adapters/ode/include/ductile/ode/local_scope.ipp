@@ -47,15 +47,18 @@ DUCTILE_INLINE LocalScope::Box LocalScope::box(dBodyID body) {
 DUCTILE_INLINE auto LocalScope::pace(dBodyID body, const Box& box, const HeldForces& forces) const
     -> Pace {
     if (dBodyIsEnabled(body) == 0) return {};
+    return {.speed = norm(linear_velocity(body)),
+            .turning = turning_speed(body, box),
+            .pushed = gravity_ + norm(forces.force_on(body)) / mass(body)};
+}
+DUCTILE_INLINE double LocalScope::turning_speed(dBodyID body, const Box& box) {
     const Vector3<double> at = to_core(dBodyGetPosition(body));
     double farthest = 0; // square
     for (int k = 0; k < 3; ++k) {
         const double low = box.low[std::size_t(k)] - at[k], high = box.high[std::size_t(k)] - at[k];
         if (low <= high) farthest += std::max(low * low, high * high);
     }
-    return {.speed = norm(linear_velocity(body)),
-            .turning = norm(angular_velocity(body)) * std::sqrt(farthest),
-            .pushed = gravity_ + norm(forces.force_on(body)) / mass(body)};
+    return norm(angular_velocity(body)) * std::sqrt(farthest);
 }
 
 /// By joints and contacts, from those that are in at `from` on.

@@ -95,6 +95,7 @@ DUCTILE_INLINE void World::take_in(PlasticConstraint& joint) {
     plastic_.push_back(&joint);
     islands_->add(joint);
     joint.set_ahead(parts_ != nullptr);
+    if (parts_ != nullptr) parts_->joints_changed();
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
     joint.came_into_world();
@@ -110,6 +111,7 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     std::erase(constraints_, &joint);
     std::erase(plastic_, &joint);
     islands_->remove(joint);
+    if (parts_ != nullptr) parts_->joints_changed();
     if (meter_) meter_->remove(joint);
 }
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
@@ -141,6 +143,7 @@ DUCTILE_INLINE void World::add(dBodyID body) {
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
+    number_bodies();
     if (meter_) meter_->remove(body);
     members_->body_left(body);
     forces_.forget(body);

@@ -41,6 +41,7 @@
 #include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/resting_islands.hpp"
+#include "ductile/ode/standing_world.hpp"
 #include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -80,6 +81,10 @@ class WorldParts final : public PartEngine {
     /// To be called before a body is destroyed, in a frame too.
     void forget(dBodyID body);
 
+    /// A plastic joint came or went.
+    void joints_changed() noexcept { standing_.forget_joints(); }
+
+    [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;
     DUCTILE_INLINE const PartMotion& part(double h) override;
@@ -134,9 +139,17 @@ class WorldParts final : public PartEngine {
     void damp(double share);
     void drop_forces();
     void see_contacts();
+    /// The bodies are elsewhere, or other ones.
+    void moved() {
+        looked_ = false;
+        stir_.reset();
+    }
+    /// No contact can close in a part of `h` [s] with more than `least` [J].
+    [[nodiscard]] bool is_still(double h, double least) const;
+    [[nodiscard]] const Stir& stir() const;
     /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
-    /// back where that throws.
-    void look(const WorldSnapshot* moved = nullptr);
+    /// back where that throws. `still`: none closes.
+    void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
     /// Energy of contacts that strike and give way by their CFM, which are taken for hard ones: it
@@ -189,6 +202,9 @@ class WorldParts final : public PartEngine {
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
     std::vector<Damped> damped_;
     RestingIslands resting_;
+    StandingWorld standing_;
+    mutable std::optional<Stir> stir_; ///< of the bodies as they are
+    bool still_ = false;               ///< before the coming part
     WorldSnapshot snapshot_, looked_from_;
     LocalScope scope_, joining_;
     WorldSnapshot began_; ///< those that are out, as the frame began

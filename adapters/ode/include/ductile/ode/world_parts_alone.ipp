@@ -40,7 +40,8 @@ DUCTILE_INLINE void WorldParts::tick_out(double h) {
     half_ahead_.move_on(h / 2);
     drop_forces();
     of_.meter.after_step(h);
-    out_ = looked_ = false;
+    out_ = false;
+    moved();
 }
 
 DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
@@ -49,7 +50,7 @@ DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
     const double before = of_.meter.held().total();
     began_.put_back(met);
     of_.meter.bodies_rearranged(before, Account::integration);
-    looked_ = false;
+    moved();
     if (time_ > 0) { // as far as the others are
         joining_.set(of_.bodies, met);
         std::swap(scope_, joining_);

@@ -4,19 +4,20 @@
 // of world_parts.ipp.
 #pragma once
 
+#include "ductile/frame/frame_rules.hpp"
 #include "ductile/joint/gyroscopic.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
 
-DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
+DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved, bool still) try {
     of_.contacts.clear();
     {
         const Untouched waiting(aside());
         if (of_.maker) of_.maker->make(bodies());
     }
     leave_aside();
-    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies());
+    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies(), still);
 } catch (...) {
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
@@ -142,9 +143,22 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
     closing_.remember();
 }
 
+DUCTILE_INLINE const Stir& WorldParts::stir() const {
+    if (!stir_) stir_ = Stir::of(of_.bodies, length_);
+    return *stir_;
+}
+DUCTILE_INLINE bool WorldParts::is_still(double h, double least) const {
+    if (local_ || !of_.members->empty() || !thrown_.bodies().empty()) return false;
+    const Stir& bodies = stir();
+    return bodies.spin * length_ <= ductile::detail::followed_turn && !(2 * bodies.most > least) &&
+           !closing_.counts(0, 2 * bodies.speed * h, apart_);
+}
+
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     touching_ = touching;
     apart_ = apart;
+    still_ = is_still(h, touching);
+    if (still_) return {};
     if (local_) {
         if (std::vector<dBodyID> met = scope_.met(forces_, h); !met.empty()) join(std::move(met));
     }
