@@ -6,11 +6,13 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "cpu_time.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace bench::locality {
@@ -51,6 +53,28 @@ class Site {
             world_->add(*hinges_.back());
             below = piece;
         }
+    }
+    /// Of ten sections, one body until it yields, at x, z.
+    void member_post(double x, double z) {
+        MemberParameters parameters;
+        parameters.segments.push_back({.length = 0, .mass = 0, .held = true});
+        const dBodyID post = dBodyCreate(engine_.id);
+        dBodySetKinematic(post);
+        dBodySetPosition(post, dReal(x), dReal(0.05), dReal(z));
+        dQuaternion up; // its z, its y along x
+        dQFromAxisAndAngle(up, 1, 1, 1, dReal(-2 * std::acos(-1.0) / 3));
+        dBodySetQuaternion(post, up);
+        for (int k = 0; k < 10; ++k) {
+            parameters.segments.push_back(
+                {.length = 0.2, .mass = 6, .inertia = {0.025, 0.025, 0.01}});
+            parameters.sections.emplace_back(Perfect<double>({.strength = 4000}));
+            const dGeomID geom = dCreateBox(engine_.space, dReal(0.1), dReal(0.1), dReal(0.2));
+            dGeomSetBody(geom, post);
+            dGeomSetOffsetPosition(geom, 0, 0, dReal(0.1 + 0.2 * k));
+        }
+        members_.push_back(std::make_unique<ode::Member>(post, ductile::Member(parameters),
+                                                         JointFrame<double>{}));
+        world_->add(*members_.back());
     }
     /// Two boxes of 1 m on the floor, one on the other, with a hinge between.
     void pair(double x, double z, bool awake) {
@@ -142,6 +166,7 @@ class Site {
     Engine engine_;
     std::optional<ode::World> world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
+    std::vector<std::unique_ptr<ode::Member>> members_;
 };
 
 } // namespace bench::locality

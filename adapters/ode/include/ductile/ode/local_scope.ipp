@@ -77,17 +77,21 @@ DUCTILE_INLINE void LocalScope::add_attached(std::size_t from) {
 
 DUCTILE_INLINE bool LocalScope::find(dWorldID world, std::span<const dBodyID> bodies,
                                      std::span<PlasticConstraint* const> joints,
-                                     const HeldForces& forces, double length) {
+                                     std::span<const dBodyID> members, const HeldForces& forces,
+                                     double length) {
     clear();
     length_ = length;
     gravity_ = norm(gravity_of(world));
+    const auto add = [this](dBodyID body) {
+        if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);
+    };
+    for (dBodyID body : members) add(body);
+    const auto stands = [this](dBodyID body) { return !can_move(body) && !has(body); };
+    const bool driven = std::any_of(bodies.begin(), bodies.end(), stands);
     for (const PlasticConstraint* joint : joints) {
-        for (dBodyID body : {joint->bodies().a, joint->bodies().b}) {
-            if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);
-        }
+        for (dBodyID body : {joint->bodies().a, joint->bodies().b}) add(body);
     }
-    if (in_.empty() || !std::all_of(bodies.begin(), bodies.end(), can_move) ||
-        !gather(bodies, forces)) {
+    if (in_.empty() || driven || !gather(bodies, forces)) {
         clear();
         return false;
     }

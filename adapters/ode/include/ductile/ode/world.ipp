@@ -140,6 +140,7 @@ DUCTILE_INLINE void World::add(dBodyID body) {
     known_.enter(body);
     if (meter_) meter_->add(body);
     members_->body_came(body);
+    if (parts_ != nullptr) parts_->came(body);
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);

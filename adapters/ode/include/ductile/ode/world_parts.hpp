@@ -80,6 +80,8 @@ class WorldParts final : public PartEngine {
     void end();
     /// To be called before a body is destroyed, in a frame too.
     void forget(dBodyID body);
+    /// A body is new, in a frame too.
+    void came(dBodyID body);
 
     /// A plastic joint came or went.
     void joints_changed() noexcept { standing_.forget_joints(); }

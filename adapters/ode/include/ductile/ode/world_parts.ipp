@@ -202,7 +202,7 @@ DUCTILE_INLINE void WorldParts::put_back() {
 /// Into the middle of a part.
 DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
     forces_.apply_to(bodies());
-    of_.members->apply_forces();
+    if (!out_) of_.members->apply_forces();
     of_.meter.before_step(false); // contacts are to come
     const bool moved = half_ahead_.move(bodies(), half);
     if (moved) of_.meter.bodies_ahead();

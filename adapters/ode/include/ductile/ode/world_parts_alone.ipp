@@ -13,8 +13,10 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE bool WorldParts::go_local() {
-    if (!std::exchange(may_be_local_, false) || !of_.maker || !of_.members->empty()) return false;
-    if (!scope_.find(of_.world, of_.bodies, of_.joints, forces_, length_)) return false;
+    if (!std::exchange(may_be_local_, false) || !of_.maker) return false;
+    if (!scope_.find(of_.world, of_.bodies, of_.joints, of_.members->bodies(), forces_, length_)) {
+        return false;
+    }
     of_.meter.see_changes();
     began_.take(scope_.out(), {});
     local_ = true;
@@ -24,6 +26,10 @@ DUCTILE_INLINE bool WorldParts::go_local() {
     scope_.out_went();
     (void)join_touched();
     return true;
+}
+
+DUCTILE_INLINE void WorldParts::came(dBodyID body) {
+    if (local_) scope_.take_in({&body, 1});
 }
 
 DUCTILE_INLINE void WorldParts::widen() {
