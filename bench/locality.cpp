@@ -133,9 +133,11 @@ void struck(Table& table, int boxes, bool awake, bool member, int times) {
         ratios.push_back(most / step);
         of_25.push_back(1 + (most / step - 1) * 25 / solves);
     }
-    table.add("struck", fmt::format("{} boxes {}{}", boxes, awake ? "awake" : "asleep", member ? ", member" : ""),
-              bench::median(steps), bench::median(dearest), bench::median(ratios),
-              int(bench::median(all_solves)), bench::median(of_25));
+    table.add(
+        "struck",
+        fmt::format("{} boxes {}{}", boxes, awake ? "awake" : "asleep", member ? ", member" : ""),
+        bench::median(steps), bench::median(dearest), bench::median(ratios),
+        int(bench::median(all_solves)), bench::median(of_25));
 }
 
 } // namespace

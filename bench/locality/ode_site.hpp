@@ -72,8 +72,8 @@ class Site {
             dGeomSetBody(geom, post);
             dGeomSetOffsetPosition(geom, 0, 0, dReal(0.1 + 0.2 * k));
         }
-        members_.push_back(std::make_unique<ode::Member>(post, ductile::Member(parameters),
-                                                         JointFrame<double>{}));
+        members_.push_back(
+            std::make_unique<ode::Member>(post, ductile::Member(parameters), JointFrame<double>{}));
         world_->add(*members_.back());
     }
     /// Two boxes of 1 m on the floor, one on the other, with a hinge between.

@@ -157,12 +157,14 @@ class WorldParts final : public PartEngine {
     /// Energy of contacts that strike and give way by their CFM, which are taken for hard ones: it
     /// is left unresolved, and said once [J].
     [[nodiscard]] double yielding(double touching);
-    /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s]. What slides and is
-    /// not `plastic` is closed too, or loses its contacts by a micrometre and falls for the part.
-    [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;
+    /// How fast one that is `depth` [m] deep may come nearer, in the middle of a part of `h` [s]
+    /// [m/s]. What slides and is not `plastic` is closed too, or loses its contacts by a micrometre
+    /// and falls for the part.
+    [[nodiscard]] double closes(const ContactClosing& it, double depth, double h,
+                                bool plastic) const;
     /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
-    [[nodiscard]] double turned(const NamedContact& named, double h) const;
-    void hold_turning(NamedContact& named, double h);
+    [[nodiscard]] double turned(const ContactClosing& it, double h) const;
+    void hold_turning(NamedContact& named, const ContactClosing& it, double h);
     /// Contacts begin with what the nearest one of their bodies bore in the last part.
     void begin_pushes();
     void remember_pushes();

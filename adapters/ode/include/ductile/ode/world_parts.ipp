@@ -357,6 +357,8 @@ void WorldParts::rearrange(const Change& change) {
 DUCTILE_INLINE void WorldParts::accept(double h) try {
     may_be_local_ = may_be_local_ && h == 0;
     seen_.clear();
+    still_ = false;
+    stir_.reset(); // listeners may do what hands do
     const bool open = h > 0 && of_.members->any_open();
     if (open) of_.meter.rings_down(of_.members->count_vibration());
     of_.accept(h);
