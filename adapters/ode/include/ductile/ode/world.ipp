@@ -45,6 +45,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         .contacts = contacts_,
         .maker = maker_,
         .meter = *meter_,
+        .keeps_ledger = tells_ledger_,
         .members = members_,
         .solve = [this](double dt) { solve(dt); },
         .step = [this](double dt) { step_engine(dt); },

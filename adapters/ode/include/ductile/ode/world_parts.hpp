@@ -60,6 +60,7 @@ class WorldParts final : public PartEngine {
         std::vector<NamedContact>& contacts; ///< of the coming step
         std::optional<ContactMaker>& maker;
         EnergyMeter& meter;
+        bool keeps_ledger = true;
         const std::unique_ptr<Divisibles>& members;
         std::function<void(double)> solve; ///< ODE's step, with what joints do before it [s]
         std::function<void(double)> step;  ///< ODE's alone [s]
@@ -209,6 +210,7 @@ class WorldParts final : public PartEngine {
     StandingWorld standing_;
     mutable std::optional<Stir> stir_; ///< of the bodies as they are
     bool still_ = false;               ///< before the coming part
+    bool metered_ = true;              ///< the coming part is
     WorldSnapshot snapshot_, looked_from_;
     LocalScope scope_, joining_;
     WorldSnapshot began_; ///< those that are out, as the frame began

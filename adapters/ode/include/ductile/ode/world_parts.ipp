@@ -78,6 +78,7 @@ DUCTILE_INLINE void WorldParts::leave_bodies() {
 DUCTILE_INLINE void WorldParts::leave() {
     widen();
     leave_bodies();
+    metered_ = true;
     for (const Driven& driven : driven_) {
         drive(driven.mean.velocity, driven.mean.spin, driven.body);
     }
@@ -173,6 +174,7 @@ DUCTILE_INLINE void WorldParts::damp(double share) {
 
 DUCTILE_INLINE bool WorldParts::may_be_put_back() {
     if (!still_ || !standing_.is_calm(stir())) return true;
+    metered_ = of_.keeps_ledger;
     // where a callback throws, bodies go back to where they were
     of_.meter.keep();
     snapshot_.take(bodies(), {});
@@ -203,9 +205,9 @@ DUCTILE_INLINE void WorldParts::put_back() {
 DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
     forces_.apply_to(bodies());
     if (!out_) of_.members->apply_forces();
-    of_.meter.before_step(false); // contacts are to come
+    if (metered_) of_.meter.before_step(false); // contacts are to come
     const bool moved = half_ahead_.move(bodies(), half);
-    if (moved) of_.meter.bodies_ahead();
+    if (moved && metered_) of_.meter.bodies_ahead();
     if (half > 0) keep_spins(h);
 }
 
@@ -253,7 +255,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     time_ = end;
     of_.book(h);
     drop_forces(); // those of bodies that sleep stay in ODE
-    of_.meter.after_step(h);
+    metered_ ? of_.meter.after_step(h) : of_.meter.step_is_over();
     moved();
 }
 
@@ -275,9 +277,9 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         tick(h, false);
     }
     tell();
-    motion_.rigid_work = of_.meter.step_of_plastic_joints();
-    motion_.others_work = of_.meter.step_of_other_joints();
-    motion_.stored = of_.meter.stored();
+    motion_.rigid_work = metered_ ? of_.meter.step_of_plastic_joints() : 0;
+    motion_.others_work = metered_ ? of_.meter.step_of_other_joints() : 0;
+    motion_.stored = metered_ ? of_.meter.stored() : 0;
     motion_.contact_lost = false;
     motion_.turned = 0;
     const bool stood = still_ && !motion_.flows() && is_still(h, apart_);
@@ -289,7 +291,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         motion_.contact_lost = closing_.lost();
     }
     motion_.contact_work = 0;
-    if (motion_.flows()) {
+    if (metered_ && motion_.flows()) {
         motion_.contact_work = of_.meter.step_of_contacts([this](const void* body) {
             return body != nullptr &&
                    closing_.is_plastic(static_cast<dBodyID>(const_cast<void*>(body)));
@@ -358,6 +360,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
     may_be_local_ = may_be_local_ && h == 0;
     seen_.clear();
     still_ = false;
+    metered_ = true;
     stir_.reset(); // listeners may do what hands do
     const bool open = h > 0 && of_.members->any_open();
     if (open) of_.meter.rings_down(of_.members->count_vibration());
@@ -386,10 +389,6 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         motion_.plastic_work += joint->queries().absorbed_energy();
     }
     return motion_;
-}
-
-DUCTILE_INLINE double WorldParts::kinetic_energy() const {
-    return local_ ? of_.meter.held().kinetic : stir().kinetic;
 }
 
 } // namespace ductile::ode

@@ -17,6 +17,7 @@ DUCTILE_INLINE bool WorldParts::go_local() {
     if (!scope_.find(of_.world, of_.bodies, of_.joints, of_.members->bodies(), forces_, length_)) {
         return false;
     }
+    metered_ = true;
     of_.meter.see_changes();
     began_.take(scope_.out(), {});
     local_ = true;

@@ -146,6 +146,9 @@ DUCTILE_INLINE const Stir& WorldParts::stir() const {
     if (!stir_) stir_ = Stir::of(of_.bodies, length_);
     return *stir_;
 }
+DUCTILE_INLINE double WorldParts::kinetic_energy() const {
+    return local_ ? of_.meter.held().kinetic : stir().kinetic;
+}
 DUCTILE_INLINE bool WorldParts::is_still(double h, double least) const {
     if (local_ || !of_.members->empty() || !thrown_.bodies().empty()) return false;
     const Stir& bodies = stir();
