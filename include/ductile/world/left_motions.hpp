@@ -22,12 +22,12 @@ class LeftMotions {
     /// A frame is over: they are as follow.
     void clear() noexcept {
         left_.clear();
-        sorted_ = false;
         next_ = 0;
     }
     /// `joints`: the sum of joint_mark over what is joined to it.
     void leave(const void* body, const ContactBody& motion, std::size_t joints) {
         left_.push_back({body, motion, joints});
+        sorted_ = false;
     }
     /// To be called before it is destroyed.
     void forget(const void* body) {
