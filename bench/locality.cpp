@@ -4,12 +4,14 @@
 // is struck? Beside the same world without a tolerance.
 //
 //   locality-<engine> [--quick] [--csv FILE]
-//   locality-<engine> --count POSTS JOINTS TOLERANCE FRAMES      for callgrind
+//   locality-<engine> --count HINGES STANDING TOLERANCE FRAMES      for callgrind; STANDING: as
+//                     0 posts of one, 1 posts of five, 2 pairs that are awake, 3 asleep
 //
 // Scenes
-//   intact     1000 hinges that stand, awake, as posts of one or five pieces, with a ledger or
-//              without: two worlds, with a tolerance of 1 % and with none, take their frames of
-//              1/60 s in turn; the median of the ratios of pairs
+//   intact     1000 hinges that stand, as posts of one or five pieces, awake, or between pairs of
+//              boxes on a floor, awake or asleep, with a ledger or without: two worlds, with a
+//              tolerance of 1 % and with none, take their frames of 1/60 s in turn; the median of
+//              the ratios of pairs
 //   struck     a post of five hinges among 1000 boxes on a floor, awake or asleep, hit by a ball of
 //              100 kg at 5 m/s, twenty times anew: the dearest frame beside the median step of the
 //              same world without a tolerance; its solves; the same scaled to 25 solves; the post
@@ -19,6 +21,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -61,27 +64,35 @@ class Table {
     std::ofstream file_;
 };
 
-std::unique_ptr<Site> standing(int posts, int joints, double tolerance, bool ledger) {
+enum Standing { posts_of_1, posts_of_5, pairs_awake, pairs_asleep };
+
+std::unique_ptr<Site> stand(int hinges, Standing as, double tolerance, bool ledger) {
     auto site = std::make_unique<Site>(tolerance, ledger);
-    for (int i = 0; i < posts; ++i) {
-        site->post(2 * (i % 32), 2 * (i / 32), joints);
+    const int joints = as == posts_of_5 ? 5 : 1;
+    for (int i = 0; i < hinges / joints; ++i) {
+        const double x = 2 * (i % 32), z = 2 * (i / 32);
+        if (as < pairs_awake) {
+            site->post(x, z, joints);
+        } else {
+            site->pair(x, z, as == pairs_awake);
+        }
     }
     return site;
 }
 
-void intact(Table& table, int hinges, int joints, bool ledger, int frames) {
-    const auto without = standing(hinges / joints, joints, 0, ledger);
-    const auto with = standing(hinges / joints, joints, 0.01, ledger);
+void intact(Table& table, int hinges, Standing as, bool ledger, int frames) {
+    const int before = as == pairs_asleep ? 200 : 20; // frames, to fall asleep
+    const auto without = stand(hinges, as, 0, ledger), with = stand(hinges, as, 0.01, ledger);
     std::vector<double> steps, times, ratios;
-    for (int i = 0; i < 20 + frames; ++i) {
+    for (int i = 0; i < before + frames; ++i) {
         const double step = without->timed_step(), time = with->timed_step();
-        if (i < 20) continue;
+        if (i < before) continue;
         steps.push_back(step);
         times.push_back(time);
         ratios.push_back(time / step);
     }
-    table.add("intact",
-              fmt::format("{} posts of {}{}", hinges / joints, joints, ledger ? ", ledger" : ""),
+    constexpr std::array names{"posts of 1", "posts of 5", "pairs awake", "pairs asleep"};
+    table.add("intact", fmt::format("{} in {}{}", hinges, names[as], ledger ? ", ledger" : ""),
               bench::median(steps), bench::median(times), bench::median(ratios), 1, 0);
 }
 
@@ -136,20 +147,21 @@ int main(int argc, char** argv) try {
     std::vector<double> count;
     app.add_flag("--quick", quick, "fewer frames");
     app.add_option("--csv", csv, "file to write");
-    app.add_option("--count", count, "posts, joints of each, tolerance, frames")->expected(4);
+    app.add_option("--count", count, "hinges, how they stand, tolerance, frames")->expected(4);
     CLI11_PARSE(app, argc, argv);
     if (!count.empty()) {
-        const auto site = standing(int(count[0]), int(count[1]), count[2], true);
+        const auto site = stand(int(count[0]), Standing(int(count[1])), count[2], true);
         for (int i = 0; i < int(count[3]); ++i) (void)site->timed_step();
         return 0;
     }
     Table table(csv);
     for (const bool ledger : {true, false}) {
-        for (const int joints : {1, 5}) intact(table, 1000, joints, ledger, quick ? 40 : 200);
+        for (const Standing as : {posts_of_1, posts_of_5, pairs_awake, pairs_asleep}) {
+            intact(table, 1000, as, ledger, quick ? 40 : 200);
+        }
     }
     for (const bool member : {false, true}) {
         for (const bool awake : {true, false}) {
-            if (member && !Site::has_members) continue;
             struck(table, 1000, awake, member, quick ? 3 : 20);
         }
     }

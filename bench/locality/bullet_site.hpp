@@ -57,7 +57,6 @@ class Site {
         }
     }
     /// One that is clamped at the origin, of 16 segments, and one body until it is struck.
-    static constexpr bool has_members = true;
     void member() {
         MemberParameters p;
         p.segments = lumped_segments(2, 60, 16, {1e-3, 1e-3, 2e-3});
@@ -69,6 +68,18 @@ class Site {
         member_ = std::make_unique<bullet::Member>(add(around_, 0, {0, 0, 0}), Member(p), upright,
                                                    MemberBox{0.05, 0.05});
         world_->add(*member_);
+    }
+    /// Two boxes of 1 m on the floor, one on the other, with a hinge between.
+    void pair(double x, double z, bool awake) {
+        btRigidBody& lower = add(box_, 100, {btScalar(x), btScalar(0.5), btScalar(z)});
+        btRigidBody& upper = add(box_, 100, {btScalar(x), btScalar(1.5), btScalar(z)});
+        for (btRigidBody* box : {&lower, &upper}) {
+            if (awake) box->setActivationState(DISABLE_DEACTIVATION);
+        }
+        const btVector3 half(0, btScalar(0.5), 0);
+        hinges_.push_back(std::make_unique<Hinge>(upper, lower, at(-half), at(half),
+                                                  Law(Perfect<double>({.strength = 4000}))));
+        world_->add(*hinges_.back());
     }
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {

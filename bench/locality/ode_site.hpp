@@ -6,11 +6,13 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "cpu_time.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/ode.hpp"
 
 namespace bench::locality {
@@ -52,16 +54,39 @@ class Site {
             below = piece;
         }
     }
-    static constexpr bool has_members = false;
-    void member() {}
+    /// One that is clamped at the origin, of 16 segments, and one body until it is struck.
+    void member() {
+        constexpr int count = 16;
+        constexpr double length = 2.0 / count;
+        MemberParameters p;
+        p.segments = lumped_segments(2, 60, count, {1e-3, 1e-3, 2e-3});
+        p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
+        p.sections.assign(count, UsualAxisJoint(Perfect<double>({.strength = 4000})));
+        const dBodyID post = dBodyCreate(engine_.id);
+        dBodySetKinematic(post);
+        dQuaternion up; // its z, its y along x
+        dQFromAxisAndAngle(up, 1, 1, 1, dReal(-2 * std::acos(-1.0) / 3));
+        dBodySetQuaternion(post, up);
+        for (int k = 0; k < count; ++k) {
+            const dGeomID geom = dCreateBox(engine_.space, dReal(0.1), dReal(0.1), dReal(length));
+            dGeomSetBody(geom, post);
+            dGeomSetOffsetPosition(geom, 0, 0, dReal((k + 0.5) * length));
+        }
+        members_.push_back(std::make_unique<ode::Member>(post, Member(p), JointFrame<double>{}));
+        world_->add(*members_.back());
+    }
+    /// Two boxes of 1 m on the floor, one on the other, with a hinge between.
+    void pair(double x, double z, bool awake) {
+        const dBodyID lower = box({x, 0.5, z}, awake), upper = box({x, 1.5, z}, awake);
+        hinges_.push_back(std::make_unique<Hinge>(
+            engine_.id, upper, lower, ode::HingeFrame{.anchor = {x, 1, z}, .axis = {0, 0, 1}},
+            Law(Perfect<double>({.strength = 4000}))));
+        world_->add(*hinges_.back());
+    }
     /// In rows of 32, beside the post.
     void boxes(int count, bool awake) {
-        dMass mass;
-        dMassSetBoxTotal(&mass, 100, 1, 1, 1);
         for (int i = 0; i < count; ++i) {
-            const dBodyID made = add(mass, dCreateBox(engine_.space, 1, 1, 1),
-                                     {4 + 1.5 * (i % 32), 0.5, 4 + 1.5 * (i / 32)});
-            dBodySetAutoDisableFlag(made, awake ? 0 : 1);
+            (void)box({4 + 1.5 * (i % 32), 0.5, 4 + 1.5 * (i / 32)}, awake);
         }
     }
     void strike() {
@@ -121,6 +146,13 @@ class Site {
             site.world_->add_contact(joint, contact);
         }
     }
+    dBodyID box(const Vector3<double>& at, bool awake) {
+        dMass mass;
+        dMassSetBoxTotal(&mass, 100, 1, 1, 1);
+        const dBodyID made = add(mass, dCreateBox(engine_.space, 1, 1, 1), at);
+        dBodySetAutoDisableFlag(made, awake ? 0 : 1);
+        return made;
+    }
     dBodyID add(const dMass& mass, dGeomID geom, const Vector3<double>& at) {
         const dBodyID made = dBodyCreate(engine_.id);
         dBodySetMass(made, &mass);
@@ -133,6 +165,7 @@ class Site {
     Engine engine_;
     std::optional<ode::World> world_;
     std::vector<std::unique_ptr<Hinge>> hinges_;
+    std::vector<std::unique_ptr<ode::Member>> members_;
 };
 
 } // namespace bench::locality

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Frames with a tolerance in ODE do in parts what hangs on plastic joints alone: all others go
-// through the frame once.
+// through the frame once. Where all stands the frame is looked at once, and nothing is kept.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
+#include "core/member/strips.hpp"
+#include "ductile/ode/members.hpp"
 #include "ductile/ode/ode.hpp"
 #include "support/bit_hash.hpp"
 
@@ -29,7 +31,9 @@ struct Site {
     test::OdeEngine engine;
     std::optional<ode::World> world;
     std::vector<std::unique_ptr<Hinge>> hinges;
+    std::unique_ptr<ode::Member> member;
     std::vector<dBodyID> mine, others;
+    int looks = 0;           ///< for contacts
     int looks_at_others = 0; ///< pairs of geoms that ODE's space found near each other
     int worst = 0;           ///< solves of a frame
     double gained = 0;       ///< most that a frame leaves unexplained [J]
@@ -42,8 +46,10 @@ struct Site {
         world.emplace(engine.id,
                       ode::WorldParameters{
                           .solver = solver, .tolerance = 0.01, .rest_damping = 0, .warn = nullptr});
-        world->on_contacts({.space = engine.space, .group = engine.contacts},
-                           [this] { dSpaceCollide(engine.space, this, &Site::near); });
+        world->on_contacts({.space = engine.space, .group = engine.contacts}, [this] {
+            ++looks;
+            dSpaceCollide(engine.space, this, &Site::near);
+        });
     }
 
     dBodyID box(double mass, const Vector3<double>& half, const Vector3<double>& at) {
@@ -83,6 +89,27 @@ struct Site {
             hinge(mine.back(), below, {0, 0.05 + 0.4 * i, 0}, 4000);
         }
         mine.push_back(ball(100, 0.2, {-0.6, struck ? 1.9 : 50, 0}, {struck ? 5.0 : 0, 0, 0}));
+    }
+    /// The same as one body until it yields.
+    void member_post(bool struck) {
+        const Member of = test::heavy_post();
+        const dBodyID post = dBodyCreate(engine.id);
+        dBodySetKinematic(post);
+        dBodySetPosition(post, 0, dReal(0.05), 0);
+        dQuaternion up; // its z
+        dQFromAxisAndAngle(up, 1, 0, 0, dReal(-std::acos(0)));
+        dBodySetQuaternion(post, up);
+        for (int k = 1; k < of.segments(); ++k) {
+            const double length = of.segment(k).length;
+            const dGeomID geom = dCreateBox(engine.space, dReal(0.1), dReal(0.1), dReal(length));
+            dGeomSetBody(geom, post);
+            dGeomSetOffsetPosition(geom, 0, 0, dReal(of.place(k - 1) + length / 2));
+        }
+        member = std::make_unique<ode::Member>(post, of, JointFrame<double>{});
+        world->add(*member, "post");
+        mine.push_back(
+            ball(100, 0.1, {0, of.length(), struck ? -0.4 : 50}, {0, 0, struck ? 2.0 : 0}));
+        dBodySetGravityMode(mine.back(), 0);
     }
     /// Boxes in stacks of four that slide a little.
     void stacks(int boxes) {
@@ -274,4 +301,126 @@ TEST_CASE("Locality: contacts that the program makes by itself bring others in",
     CHECK(speed > 0.1);
     CHECK(among == speed);
     CHECK(among_work == work);
+}
+
+TEST_CASE("Locality: contacts of a world that stands are made once a frame", "[frame]") {
+    Site site;
+    for (int i = 0; i < 6; ++i) {
+        const dBodyID lower = site.box(50, {0.5, 0.5, 0.5}, {2.0 * i, 0.5, 0});
+        const dBodyID upper = site.box(50, {0.5, 0.5, 0.5}, {2.0 * i, 1.5, 0});
+        site.hinge(upper, lower, {2.0 * i, 1, 0}, 100);
+    }
+    for (int i = 0; i < 30; ++i) site.step();
+    const int before = site.looks;
+    for (int i = 0; i < 10; ++i) site.step();
+    CHECK(site.looks - before == 10);
+    CHECK(site.work() == 0);
+    // what comes flying is seen before it is there
+    site.ball(40, 0.2, {-1.2, 1.5, 0}, {5, 0, 0});
+    for (int i = 0; i < 20; ++i) site.step();
+    CHECK(site.work() > 1);
+    CHECK(site.world->run().blows > 0);
+}
+
+TEST_CASE("Locality: what hands do to a world that stands is resolved", "[frame]") {
+    // bars that hang on by one end bear themselves; then something comes to them within one frame
+    enum Deed { nothing, force, gravity, mass, other_joint };
+    for (const Deed deed : {nothing, force, gravity, mass, other_joint}) {
+        CAPTURE(int(deed));
+        Site site;
+        const dBodyID bar = site.box(10, {0.5, 0.05, 0.05}, {0.5, 5, 0});
+        const Hinge& hinge = site.hinge(bar, nullptr, {0, 5, 0}, 150);
+        const dBodyID other = site.box(10, {0.1, 0.1, 0.1}, {0.5, 5.5, 0});
+        dBodySetGravityMode(other, 0);
+        for (int i = 0; i < 10; ++i) site.step();
+        CHECK(site.worst == 1);
+        switch (deed) {
+            case force:
+                dBodyAddForce(bar, 0, -600, 0);
+                break;
+            case gravity:
+                dWorldSetGravity(site.engine.id, 0, -60, 0);
+                break;
+            case mass: {
+                dMass heavier;
+                dMassSetBoxTotal(&heavier, 100, 1, dReal(0.1), dReal(0.1));
+                dBodySetMass(bar, &heavier);
+                break;
+            }
+            case other_joint: {
+                const dJointID motor = dJointCreateSlider(site.engine.id, nullptr);
+                dJointAttach(motor, other, bar);
+                dJointSetSliderAxis(motor, 0, 1, 0);
+                dJointSetSliderParam(motor, dParamVel, 5);
+                dJointSetSliderParam(motor, dParamFMax, 600);
+                break;
+            }
+            case nothing:
+                break;
+        }
+        site.step();
+        CHECK((site.worst > 1) == (deed != nothing));
+        CHECK((hinge.absorbed_energy() > 0) == (deed != nothing));
+    }
+}
+
+TEST_CASE("Locality: others go through a frame once while a member is open", "[frame]") {
+    Site struck, quiet, alone;
+    for (Site* site : {&struck, &quiet}) site->stacks(80);
+    for (Site* site : {&struck, &quiet, &alone}) site->member_post(site != &quiet);
+    int differ = 0, mine_differ = 0, split = 0;
+    for (int i = 0; i < 60; ++i) {
+        for (Site* site : {&struck, &quiet, &alone}) {
+            site->step();
+            split += int(site->world->events().size());
+        }
+        differ += hash_of(struck.others) != hash_of(quiet.others);
+        mine_differ += hash_of(struck.mine) != hash_of(alone.mine);
+    }
+    CHECK(split > 0);
+    CHECK(struck.worst > 4);
+    CHECK(struck.member->absorbed_energy() > 10);
+    CHECK(struck.member->absorbed_energy() == alone.member->absorbed_energy());
+    CHECK(differ == 0);
+    CHECK(mine_differ == 0);
+    CHECK(struck.looks_at_others < 2 * quiet.looks_at_others);
+    for (const Site* site : {&struck, &quiet, &alone}) CHECK(site->gained < 1e-6);
+}
+
+TEST_CASE("Locality: a body that is touched may end before it comes in", "[frame]") {
+    // the program's own contact is there at the end of the first part, in which a hinge yields: who
+    // hears of that takes the plate away
+    Site site(ode::Solver::direct, true, 0);
+    const dBodyID rotor = site.box(10, {0.2, 0.2, 0.2}, {-5, 3, 0});
+    site.hinge(rotor, nullptr, {-5, 3, 0}, 40);
+    dBodyID plate = site.box(1, {0.2, 0.2, 0.2}, {-4.8, 13, 0});
+    for (int i = 0; i < 40; ++i) {
+        site.others.push_back(site.box(20, {0.1, 0.1, 0.1}, {6.0 + i, 1, 4}));
+    }
+    bool touched = false;
+    site.world->on_contacts({.space = site.engine.space, .group = site.engine.contacts}, [&] {
+        dSpaceCollide(site.engine.space, &site, &Site::near);
+        const double angle = 2 * double(dBodyGetQuaternion(rotor)[3]);
+        touched = plate != nullptr && angle > 2.2e-5 && angle < 0.012;
+        if (!touched) return;
+        dContact contact{};
+        contact.geom.normal[1] = 1;
+        contact.geom.depth = dReal(1e-4);
+        const dJointID joint = dJointCreateContact(site.engine.id, site.engine.contacts, &contact);
+        dJointAttach(joint, plate, rotor);
+        site.world->add_contact(joint, contact);
+    });
+    bool ended = false;
+    site.world->on_event([&](const auto&) {
+        if (!touched || ended) return;
+        ended = true;
+        site.world->remove(plate);
+        dGeomDestroy(dBodyGetFirstGeom(plate));
+        dBodyDestroy(std::exchange(plate, nullptr));
+    });
+    dBodySetAngularVel(rotor, 0, 0, 2);
+    for (int i = 0; i < 3; ++i) site.step();
+    CHECK(ended);
+    CHECK(site.worst > 1);
+    CHECK(site.work() == Approx(10 * 0.32 / 12 * 4 / 2).epsilon(1e-3)); // I ω²/2
 }

@@ -102,7 +102,8 @@ class EnergyMeter {
     [[nodiscard]] const Ledger<double>& ledger() const noexcept { return ledger_; }
     /// Books as from outside what somebody changed since the last step.
     void see_changes();
-    void before_step();
+    /// `watches`: all contacts are there; else watch_step is to be called once they are.
+    void before_step(bool watches = true);
     /// The bodies were moved half a step ahead since before_step (frame/README.md): rows are solved
     /// where they are now.
     void bodies_ahead();

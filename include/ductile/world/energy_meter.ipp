@@ -50,7 +50,7 @@ DUCTILE_INLINE void EnergyMeter::see_changes() {
     last_ = now;
 }
 
-DUCTILE_INLINE void EnergyMeter::before_step() {
+DUCTILE_INLINE void EnergyMeter::before_step(bool watches) {
     step_plastic_ = step_others_ = 0;
     pairs_.begin_step(!narrow_);
     see_changes();
@@ -67,7 +67,7 @@ DUCTILE_INLINE void EnergyMeter::before_step() {
         plastic_start_.push_back({joint->absorbed_energy(), joint->damped_energy(),
                                   joint->stored_energy(), joint->release().energy});
     }
-    watch_step();
+    if (watches) watch_step();
 }
 
 DUCTILE_INLINE void EnergyMeter::bodies_rearranged(double before, Account account) {

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "ductile/world/turned_contact.hpp"
@@ -19,13 +20,15 @@ namespace ductile {
 class LeftMotions {
   public:
     /// A frame is over: they are as follow.
-    void clear() noexcept { left_.clear(); }
+    void clear() noexcept {
+        left_.clear();
+        next_ = 0;
+    }
     /// `joints`: the sum of joint_mark over what is joined to it.
     void leave(const void* body, const ContactBody& motion, std::size_t joints) {
         left_.push_back({body, motion, joints});
+        sorted_ = false;
     }
-    /// All were told.
-    void sort() { std::sort(left_.begin(), left_.end(), is_before); }
     /// To be called before it is destroyed.
     void forget(const void* body) {
         std::erase_if(left_, [body](const Body& left) { return left.body == body; });
@@ -33,12 +36,10 @@ class LeftMotions {
     /// It moves, and is joined, as it was left.
     [[nodiscard]] bool is_left(const void* body, const ContactBody& motion,
                                std::size_t joints) const {
-        const Body now{body, motion, joints};
-        const auto was = std::lower_bound(left_.begin(), left_.end(), now, is_before);
-        const bool known = was != left_.end() && was->body == body;
-        const ContactBody before = known ? was->motion : ContactBody{};
+        const Body* was = find(body);
+        const ContactBody before = was != nullptr ? was->motion : ContactBody{};
         return before.velocity == motion.velocity && before.spin == motion.spin &&
-               (!known || was->joints == joints);
+               (was == nullptr || was->joints == joints);
     }
 
   private:
@@ -50,7 +51,20 @@ class LeftMotions {
     [[nodiscard]] static bool is_before(const Body& x, const Body& y) {
         return std::less<const void*>()(x.body, y.body);
     }
-    std::vector<Body> left_; ///< sorted
+    /// Mostly they are asked for in the order in which they were left.
+    [[nodiscard]] const Body* find(const void* body) const {
+        if (next_ < left_.size() && left_[next_].body == body) return &left_[next_++];
+        if (!std::exchange(sorted_, true)) std::sort(left_.begin(), left_.end(), is_before);
+        const auto found =
+            std::lower_bound(left_.begin(), left_.end(), Body{body, {}, 0}, is_before);
+        if (found == left_.end() || found->body != body) return nullptr;
+        next_ = std::size_t(found - left_.begin()) + 1;
+        return &*found;
+    }
+
+    mutable std::vector<Body> left_;
+    mutable bool sorted_ = false;
+    mutable std::size_t next_ = 0; ///< place of the one that is likely asked for
 };
 
 /// Of a joint that acts between two bodies: another one almost certainly has another mark.

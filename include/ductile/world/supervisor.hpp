@@ -106,9 +106,12 @@ class Supervisor {
 
     void forget_removed() noexcept;
 
+    /// At the end where it is not here.
     [[nodiscard]] std::vector<Entry>::iterator find(const void* joint);
+    [[nodiscard]] std::size_t place(const void* joint) const;
 
     std::vector<Entry> joints_;
+    mutable std::size_t next_ = 0; ///< place that is likely asked for next, as they are in turn
     Watch<double> watch_;
     Warn warn_;
     JointWarning unreliable_{unreliable_warning, unreliable_advice};

@@ -43,13 +43,11 @@ DUCTILE_INLINE void Supervisor::remove(const void* joint) {
     if (!looking_) forget_removed();
 }
 DUCTILE_INLINE std::size_t Supervisor::number(const void* joint) const {
-    const auto found = std::find_if(joints_.begin(), joints_.end(),
-                                    [joint](const Entry& entry) { return entry.joint == joint; });
-    return found != joints_.end() ? found->number : Watch<double>::nobody;
+    const std::size_t at = place(joint);
+    return at < joints_.size() ? joints_[at].number : Watch<double>::nobody;
 }
 DUCTILE_INLINE bool Supervisor::knows(const void* joint) const {
-    return std::any_of(joints_.begin(), joints_.end(),
-                       [joint](const Entry& entry) { return entry.joint == joint; });
+    return place(joint) < joints_.size();
 }
 DUCTILE_INLINE void Supervisor::look(double time, const std::function<bool(const void*)>& whom) {
     time_ = time;
@@ -79,8 +77,17 @@ DUCTILE_INLINE void Supervisor::forget_removed() noexcept {
     std::erase_if(joints_, [](const Entry& entry) { return entry.joint == nullptr; });
 }
 DUCTILE_INLINE std::vector<Supervisor::Entry>::iterator Supervisor::find(const void* joint) {
-    return std::find_if(joints_.begin(), joints_.end(),
-                        [joint](const Entry& entry) { return entry.joint == joint; });
+    return joints_.begin() + std::ptrdiff_t(place(joint));
+}
+DUCTILE_INLINE std::size_t Supervisor::place(const void* joint) const {
+    const std::size_t here = joints_.size();
+    for (std::size_t i = 0; i < here; ++i) {
+        const std::size_t at = (next_ + i) % here;
+        if (joints_[at].joint != joint) continue;
+        next_ = at + 1;
+        return at;
+    }
+    return here;
 }
 
 } // namespace ductile

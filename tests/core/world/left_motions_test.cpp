@@ -22,7 +22,6 @@ TEST_CASE("a body was thrown where it moves, or is joined, other than it was lef
     CHECK_FALSE(left.is_left(&a, flies, 0));
     left.leave(&b, flies, joint_mark(&c, &a, &b));
     left.leave(&a, still, 0);
-    left.sort();
     CHECK(left.is_left(&a, still, 0));
     CHECK_FALSE(left.is_left(&a, spins, 0));
     CHECK(left.is_left(&b, flies, joint_mark(&c, &a, &b)));

@@ -28,7 +28,6 @@ class ThrownBodies {
             left_.leave(&body, contact_body(body), 0);
         });
         left_.leave(&world, {}, joints);
-        left_.sort();
     }
     /// A frame begins; `matters(body)`: its island does. Plastic joints see themselves what they
     /// are thrown with.

@@ -43,6 +43,7 @@
 #include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/ode/world_snapshot.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 #include "ductile/world/turned_contact.hpp"
 
@@ -53,10 +54,10 @@ inline constexpr double closed_depth = 1e-4;
 
 /// How a contact closes.
 struct ContactClosing {
+    AttachedBodies bodies;
     SeenContact seen; ///< its normal on the first of its bodies
     double speed;     ///< v, along the normal [m/s]
     double comes;     ///< whichever way, [m/s]
-    double yields;    ///< K [1/kg]
     double sinks;     ///< as fast as it may sink, to stay known as it turns [m/s]
 
     explicit ContactClosing(const NamedContact& named);
@@ -64,10 +65,12 @@ struct ContactClosing {
     [[nodiscard]] double speed_of(const ContactBody& a, const ContactBody& b) const {
         return dot(seen.normal, difference(b.at(seen.arm_b), a.at(seen.arm_a)));
     }
+    /// K [1/kg]
+    [[nodiscard]] double yields() const;
     /// Overlap at which it is closed [m].
     [[nodiscard]] double depth() const;
     /// It comes nearer, and not as what is closed may.
-    [[nodiscard]] bool closes() const { return speed > 2 * sinks && yields > 0; }
+    [[nodiscard]] bool closes() const { return speed > 2 * sinks && yields() > 0; }
     /// It leaves at least as fast as it would rebound, so that it is open although it overlaps:
     /// where another blow sends it back it is struck anew.
     [[nodiscard]] bool rebounds(const NamedContact& named) const;
@@ -76,10 +79,10 @@ struct ContactClosing {
 class ClosingContactsFinder {
   public:
     /// The contacts of the bodies as they are, of islands of these joints and of bodies of
-    /// `members`, which are struck like them.
+    /// `members`, which are struck like them. `still`: none closes so that it counts.
     /// @throws std::logic_error where one has a contact that was not named.
     void look(std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints,
-              std::span<const dBodyID> members);
+              std::span<const dBodyID> members, bool still);
     /// Which bodies have contacts now, so that others are new.
     void remember() { before_ = pairs_; }
     /// Before the solve of a part: as fast as the bodies come to it.
@@ -102,6 +105,12 @@ class ClosingContactsFinder {
     [[nodiscard]] bool lost();
     /// The farthest that a body turned in a part of `h` [s] that something pushed in it [rad].
     [[nodiscard]] double turn(double h) const;
+    /// Whether a contact of `energy` [J] that overlaps by `overlap` [m] beyond where it closed
+    /// does, where `apart` [J] is the least.
+    [[nodiscard]] bool counts(double energy, double overlap, double apart) const noexcept {
+        constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
+        return energy > apart || force_ * overlap > pushed_out * apart;
+    }
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
     /// `see(contact, yields, energy)` of each contact that strikes: K [1/kg], [J].
@@ -119,7 +128,7 @@ class ClosingContactsFinder {
     /// their velocities from those before the solve; 0: they had them all the time.
     [[nodiscard]] double closed(double past, double hurried, double apart) const;
     /// Whether a body is in one of these islands.
-    [[nodiscard]] bool is_plastic(dBodyID body) const;
+    [[nodiscard]] bool is_plastic(dBodyID body) const { return numbers_.has(body); }
     [[nodiscard]] bool any_plastic() const noexcept { return !island_.empty(); }
     /// Whether joints of ODE's on these islands have stops.
     [[nodiscard]] bool any_stops() const noexcept { return any_stops_; }
@@ -145,7 +154,6 @@ class ClosingContactsFinder {
             return closes && gap < depth / 2 && energy > touching;
         }
     };
-    using Motion = std::pair<dBodyID, ContactBody>;
     using Pair = std::pair<dBodyID, dBodyID>;
     /// Who touches whom: bodies and geoms, which are null where `make` collides without any.
     using Mates = std::pair<Pair, std::pair<dGeomID, dGeomID>>;
@@ -157,8 +165,9 @@ class ClosingContactsFinder {
     void look_at_stops();
     [[nodiscard]] ContactBody motion_before(dBodyID body) const;
 
-    std::vector<Motion> motions_;       ///< before the solve, sorted
-    std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all, sorted
+    AddressMap<ContactBody> motions_;   ///< before the solve
+    std::vector<dBodyID> island_;       ///< bodies that can move, or a member's, of all
+    AddressBook numbers_;               ///< of these
     std::vector<Touch> touches_;        ///< that close, or did
     std::vector<Pair> pairs_, before_;  ///< of bodies with contacts, sorted
     std::vector<Mates> touching_;       ///< looked at, sorted

@@ -13,7 +13,6 @@
 #include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/joint_stops.hpp"
-#include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
 
@@ -128,17 +127,18 @@ struct MovingGeom {
 } // namespace detail
 
 DUCTILE_INLINE ContactClosing::ContactClosing(const NamedContact& named)
-    : seen(detail::seen_contact(named).second) {
+    : bodies(attached_bodies(named.joint)), seen(detail::seen_contact(named).second) {
     constexpr double followed = 0.02; // of what turns it
-    const AttachedBodies bodies = attached_bodies(named.joint);
     const ContactBody a = contact_body(bodies.a), b = contact_body(bodies.b);
     const Vector3<double> velocity = difference(b.at(seen.arm_b), a.at(seen.arm_a));
     speed = dot(seen.normal, velocity);
     comes = norm(velocity);
-    yields = detail::yield_at(bodies.a, seen.arm_a, seen.normal) +
-             detail::yield_at(bodies.b, seen.arm_b, seen.normal);
     sinks = followed * (norm(difference(velocity, scaled(speed, seen.normal))) +
                         norm(a.spin) * norm(seen.arm_a) + norm(b.spin) * norm(seen.arm_b));
+}
+DUCTILE_INLINE double ContactClosing::yields() const {
+    return detail::yield_at(bodies.a, seen.arm_a, seen.normal) +
+           detail::yield_at(bodies.b, seen.arm_b, seen.normal);
 }
 DUCTILE_INLINE double ContactClosing::depth() const { return detail::closing_depth(speed); }
 
@@ -154,14 +154,15 @@ DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
                                                         std::span<PlasticConstraint* const> joints,
                                                         std::span<const dBodyID> members) {
-    AddressBook found, named;
+    AddressBook named;
     for (const NamedContact& contact : contacts) named.enter(contact.joint);
     island_.clear();
+    numbers_.clear();
     const auto add = [&](dBodyID body) {
-        if (can_move(body) && found.enter(body) == island_.size()) island_.push_back(body);
+        if (can_move(body) && numbers_.enter(body) == island_.size()) island_.push_back(body);
     };
     for (dBodyID body : members) {
-        if (found.enter(body) == island_.size()) island_.push_back(body);
+        if (numbers_.enter(body) == island_.size()) island_.push_back(body);
     }
     for (const PlasticConstraint* joint : joints) {
         if (joint->queries().broken() || dJointIsEnabled(joint->id()) == 0) continue;
@@ -184,16 +185,11 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
             for (const int side : {0, 1}) add(dJointGetBody(joint, side));
         }
     }
-    std::sort(island_.begin(), island_.end(), std::less<dBodyID>());
-}
-
-DUCTILE_INLINE bool ClosingContactsFinder::is_plastic(dBodyID body) const {
-    return std::binary_search(island_.begin(), island_.end(), body, std::less<dBodyID>());
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> contacts,
                                                 std::span<PlasticConstraint* const> joints,
-                                                std::span<const dBodyID> members) {
+                                                std::span<const dBodyID> members, bool still) {
     find_islands(contacts, joints, members);
     touches_.clear();
     pairs_.clear();
@@ -203,16 +199,17 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         if (!is_plastic(a) && !is_plastic(b)) continue;
         touching_.push_back(mates(named));
         pairs_.push_back(touching_.back().first);
+        if (still) continue;
         const bool is_new = !std::binary_search(before_.begin(), before_.end(), pairs_.back());
         const ContactClosing it(named);
         const bool closes = it.closes();
         const bool came_other_way =
-            is_new && it.yields > 0 && double(named.contact.geom.depth) > closed_depth;
+            is_new && it.yields() > 0 && double(named.contact.geom.depth) > closed_depth;
         if (!closes && !came_other_way) continue;
         const double before = it.speed_of(motion_before(a), motion_before(b));
         const double struck_at = closes ? it.speed : it.comes; // past an edge
         touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
-                            before, struck_at * struck_at / (2 * it.yields), is_new, closes,
+                            before, struck_at * struck_at / (2 * it.yields()), is_new, closes,
                             &named});
     }
     std::sort(pairs_.begin(), pairs_.end());
@@ -240,16 +237,11 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
 
 DUCTILE_INLINE void ClosingContactsFinder::see_motions(std::span<const dBodyID> bodies) {
     motions_.clear();
-    for (dBodyID body : bodies) motions_.emplace_back(body, contact_body(body));
-    std::sort(motions_.begin(), motions_.end(), [](const Motion& x, const Motion& y) {
-        return std::less<dBodyID>()(x.first, y.first);
-    });
+    for (dBodyID body : bodies) motions_[body] = contact_body(body);
 }
 DUCTILE_INLINE ContactBody ClosingContactsFinder::motion_before(dBodyID body) const {
-    const auto found = std::lower_bound(
-        motions_.begin(), motions_.end(), body,
-        [](const Motion& one, dBodyID key) { return std::less<dBodyID>()(one.first, key); });
-    return found != motions_.end() && found->first == body ? found->second : contact_body(body);
+    const ContactBody* found = motions_.find(body);
+    return found != nullptr ? *found : contact_body(body);
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::see_forces(std::span<const NamedContact> contacts) {
@@ -320,14 +312,13 @@ DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
 
 DUCTILE_INLINE double ClosingContactsFinder::closed(double past, double hurried,
                                                     double apart) const {
-    constexpr double pushed_out = 0.1; // of `apart`: each one adds to the next
     // of a first hit nobody knows yet how hard the contact will push
     const double unmissed = force_ > 0 ? 0.25 : 0.01; // of the overlap at which it is closed
     double first = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
         const double overlap = -touch.gap;
-        const bool counts = touch.energy > apart || force_ * overlap > pushed_out * apart;
-        if (!counts || (hurried > 0 && !(overlap > unmissed * touch.depth))) continue;
+        if (!counts(touch.energy, overlap, apart)) continue;
+        if (hurried > 0 && !(overlap > unmissed * touch.depth)) continue;
         const double a = hurried > 0 ? (touch.speed - touch.before) / hurried : 0;
         double ago = time_to_close(overlap, touch.speed, -a); // back to where it closed
         if (!touch.closes || !(ago < past)) {

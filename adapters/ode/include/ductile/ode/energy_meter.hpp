@@ -54,8 +54,11 @@ class EnergyMeter final : public ductile::EnergyMeter {
         out_ = out;
         narrow(scope == nullptr, out);
     }
-    /// Contacts of the step were named after `before_step`.
+    /// Contacts of the step were named after `before_step`, or nobody books it: they have feedback
+    /// until it is over.
     void look_at_contacts() { watch_step(); }
+    /// It was not booked.
+    void step_is_over() { end_watch(); }
     /// Energy that all rows of a joint took from the bodies since the meter was made [J].
     [[nodiscard]] double taken_by(dJointID joint) const { return taken_by_address(joint); }
 

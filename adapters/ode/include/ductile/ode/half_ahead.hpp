@@ -27,9 +27,10 @@ namespace ductile::ode {
 class HalfAhead {
   public:
     /// Moves the bodies that are awake on by `time` [s], which may be 0, and remembers where they
-    /// are then.
-    void move(std::span<const dBodyID> bodies, double time) {
+    /// are then. True where one did move.
+    bool move(std::span<const dBodyID> bodies, double time) {
         middles_.clear();
+        bool moved = false;
         for (dBodyID body : bodies) {
             const auto here = [body] {
                 Middle middle{body, {}, {}};
@@ -37,14 +38,17 @@ class HalfAhead {
                 std::copy_n(dBodyGetQuaternion(body), 4, middle.turn.begin());
                 return middle;
             };
-            if (time > 0 && dBodyIsEnabled(body) != 0) put(here(), time);
             middles_.push_back(here());
+            if (!(time > 0) || dBodyIsEnabled(body) == 0 || !put(middles_.back(), time)) continue;
+            middles_.back() = here();
+            moved = true;
         }
+        return moved;
     }
     /// After ODE's step: from there on by `time` [s] with the velocities that they have now.
     void move_on(double time) const {
         for (const Middle& middle : middles_) {
-            if (dBodyIsEnabled(middle.body) != 0) put(middle, time);
+            if (dBodyIsEnabled(middle.body) != 0) (void)put(middle, time);
         }
     }
 
@@ -54,21 +58,29 @@ class HalfAhead {
         std::array<dReal, 3> place;
         std::array<dReal, 4> turn; ///< quaternion
     };
-    static void put(const Middle& from, double time) {
+    /// False where it is there to the last bit.
+    static bool put(const Middle& from, double time) {
+        constexpr double nothing = 1e-18; // [rad]
         const dReal* velocity = dBodyGetLinearVel(from.body);
         const dReal* spin = dBodyGetAngularVel(from.body);
         const double rate = std::hypot(double(spin[0]), double(spin[1]), double(spin[2]));
         const double half = rate * time / 2;
-        const double share = rate > 0 ? std::sin(half) / rate : 0;
-        const dQuaternion by{dReal(std::cos(half)), dReal(share * double(spin[0])),
-                             dReal(share * double(spin[1])), dReal(share * double(spin[2]))};
-        dQuaternion turn;
-        dQMultiply0(turn, by, from.turn.data());
-        const auto at = [&](int i) {
-            return dReal(double(from.place[std::size_t(i)]) + time * double(velocity[i]));
-        };
-        dBodySetPosition(from.body, at(0), at(1), at(2));
-        dBodySetQuaternion(from.body, turn);
+        std::array<dReal, 4> turn = from.turn;
+        if (half > nothing) {
+            const double share = std::sin(half) / rate;
+            const dQuaternion by{dReal(std::cos(half)), dReal(share * double(spin[0])),
+                                 dReal(share * double(spin[1])), dReal(share * double(spin[2]))};
+            dQMultiply0(turn.data(), by, from.turn.data());
+        }
+        std::array<dReal, 3> at{};
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            at[i] = dReal(double(from.place[i]) + time * double(velocity[i]));
+        }
+        const bool goes = !std::equal(at.begin(), at.end(), dBodyGetPosition(from.body));
+        const bool turns = !std::equal(turn.begin(), turn.end(), dBodyGetQuaternion(from.body));
+        if (goes) dBodySetPosition(from.body, at[0], at[1], at[2]);
+        if (turns) dBodySetQuaternion(from.body, turn.data());
+        return goes || turns;
     }
 
     std::vector<Middle> middles_;

@@ -17,13 +17,16 @@ namespace ductile::ode {
 /// Not thread-safe.
 class HeldForces {
   public:
-    void hold(std::span<const dBodyID> bodies) {
+    /// False where they are others than those held.
+    bool hold(std::span<const dBodyID> bodies) {
+        std::swap(before_, held_);
         held_.clear();
         for (dBodyID body : bodies) {
             const Held held{body, to_core(dBodyGetForce(body)), to_core(dBodyGetTorque(body))};
             if (!is_zero(held.force) || !is_zero(held.torque)) held_.push_back(held);
         }
         number();
+        return held_ == before_;
     }
     void apply() const {
         for (const auto& [body, force, torque] : held_) add_force(body, force, torque);
@@ -51,6 +54,9 @@ class HeldForces {
     struct Held {
         dBodyID body;
         Vector3<double> force, torque;
+        bool operator==(const Held& other) const {
+            return body == other.body && force == other.force && torque == other.torque;
+        }
     };
 
     void number() {
@@ -58,7 +64,7 @@ class HeldForces {
         for (const Held& held : held_) numbers_.enter(held.body);
     }
 
-    std::vector<Held> held_;
+    std::vector<Held> held_, before_;
     AddressBook numbers_; ///< of these
 };
 

@@ -90,7 +90,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     DUCTILE_INLINE void stand() override;
 
     DUCTILE_INLINE void left_world() override;
-    DUCTILE_INLINE void begin_frame() override;
+    DUCTILE_INLINE bool begin_frame() override;
     DUCTILE_INLINE void driven_begins(dBodyID body, const Vector3<double>& velocity,
                                       const Vector3<double>& spin) override;
     DUCTILE_INLINE void keep_all() override;

@@ -259,10 +259,11 @@ DUCTILE_INLINE void JointConstraint::left_world() {
 
 // ---- a part of a frame
 
-DUCTILE_INLINE void JointConstraint::begin_frame() {
-    if (link_.broken() || detached()) return;
-    const BodyState<double> a = body_motion(a_), b = body_motion(b_);
-    if (!std::exchange(put_back_, false)) link_.teleport(a, b);
+DUCTILE_INLINE bool JointConstraint::begin_frame() {
+    if (link_.broken() || detached()) return false;
+    const bool put_back = std::exchange(put_back_, false);
+    if (!put_back) link_.teleport(body_motion(a_), body_motion(b_));
+    return put_back;
 }
 
 DUCTILE_INLINE void JointConstraint::driven_begins(dBodyID body, const Vector3<double>& velocity,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
 // The bodies that are put back and stepped alone within a frame, while those that have nothing to
-// do with any plastic joint stand aside: they went through the whole frame in one part, as they
-// would have gone without the rest.
+// do with any plastic joint or member stand aside: they went through the whole frame in one part,
+// as they would have gone without the rest.
 //
-//   in    what hangs together with a plastic joint by joints and contacts, and whoever may meet
-//         that within the frame, with theirs; closed under both
+//   in    members, what hangs together with them or a plastic joint by joints and contacts, and
+//         whoever may meet that within the frame, with theirs; closed under both
 //   out   all others
 //
 // How far a body goes in a time t is at most  (v + ω r) t + (g + |F|/m) t²,  r the farthest point
@@ -32,9 +32,10 @@ namespace ductile::ode {
 class LocalScope {
   public:
     /// What is in for a frame of `length` [s]: false, and nothing is, where that is half of them or
-    /// more, or one is kinematic.
+    /// more, or one is kinematic and no member's.
     [[nodiscard]] bool find(dWorldID world, std::span<const dBodyID> bodies,
-                            std::span<PlasticConstraint* const> joints, const HeldForces& forces,
+                            std::span<PlasticConstraint* const> joints,
+                            std::span<const dBodyID> members, const HeldForces& forces,
                             double length);
     /// Of the bodies these are out.
     void set(std::span<const dBodyID> bodies, std::span<const dBodyID> out);
@@ -54,6 +55,10 @@ class LocalScope {
     [[nodiscard]] std::vector<dBodyID> with_theirs(std::vector<dBodyID> bodies) const;
     /// They are in.
     void take_in(std::span<const dBodyID> bodies);
+    /// ω r, of the farthest point of its geoms [m/s].
+    [[nodiscard]] static double turning_speed(dBodyID body) {
+        return turning_speed(body, box(body));
+    }
 
   private:
     /// Where a body may be; empty: it has no geoms.
@@ -74,6 +79,7 @@ class LocalScope {
         }
     };
     [[nodiscard]] static Box box(dBodyID body);
+    [[nodiscard]] static double turning_speed(dBodyID body, const Box& box);
     [[nodiscard]] Pace pace(dBodyID body, const Box& box, const HeldForces& forces) const;
     [[nodiscard]] std::vector<Box> reached_in(const HeldForces& forces, double h) const;
     [[nodiscard]] bool gather(std::span<const dBodyID> bodies, const HeldForces& forces);

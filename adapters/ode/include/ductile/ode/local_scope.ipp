@@ -47,15 +47,18 @@ DUCTILE_INLINE LocalScope::Box LocalScope::box(dBodyID body) {
 DUCTILE_INLINE auto LocalScope::pace(dBodyID body, const Box& box, const HeldForces& forces) const
     -> Pace {
     if (dBodyIsEnabled(body) == 0) return {};
+    return {.speed = norm(linear_velocity(body)),
+            .turning = turning_speed(body, box),
+            .pushed = gravity_ + norm(forces.force_on(body)) / mass(body)};
+}
+DUCTILE_INLINE double LocalScope::turning_speed(dBodyID body, const Box& box) {
     const Vector3<double> at = to_core(dBodyGetPosition(body));
     double farthest = 0; // square
     for (int k = 0; k < 3; ++k) {
         const double low = box.low[std::size_t(k)] - at[k], high = box.high[std::size_t(k)] - at[k];
         if (low <= high) farthest += std::max(low * low, high * high);
     }
-    return {.speed = norm(linear_velocity(body)),
-            .turning = norm(angular_velocity(body)) * std::sqrt(farthest),
-            .pushed = gravity_ + norm(forces.force_on(body)) / mass(body)};
+    return norm(angular_velocity(body)) * std::sqrt(farthest);
 }
 
 /// By joints and contacts, from those that are in at `from` on.
@@ -74,17 +77,21 @@ DUCTILE_INLINE void LocalScope::add_attached(std::size_t from) {
 
 DUCTILE_INLINE bool LocalScope::find(dWorldID world, std::span<const dBodyID> bodies,
                                      std::span<PlasticConstraint* const> joints,
-                                     const HeldForces& forces, double length) {
+                                     std::span<const dBodyID> members, const HeldForces& forces,
+                                     double length) {
     clear();
     length_ = length;
     gravity_ = norm(gravity_of(world));
+    const auto add = [this](dBodyID body) {
+        if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);
+    };
+    for (dBodyID body : members) add(body);
+    const auto stands = [this](dBodyID body) { return !can_move(body) && !has(body); };
+    const bool driven = std::any_of(bodies.begin(), bodies.end(), stands);
     for (const PlasticConstraint* joint : joints) {
-        for (dBodyID body : {joint->bodies().a, joint->bodies().b}) {
-            if (body != nullptr && numbers_.enter(body) == in_.size()) in_.push_back(body);
-        }
+        for (dBodyID body : {joint->bodies().a, joint->bodies().b}) add(body);
     }
-    if (in_.empty() || !std::all_of(bodies.begin(), bodies.end(), can_move) ||
-        !gather(bodies, forces)) {
+    if (in_.empty() || driven || !gather(bodies, forces)) {
         clear();
         return false;
     }

@@ -140,7 +140,7 @@ DUCTILE_INLINE void Member::make_joints(bool ahead) {
             description().section(section), Meeting::as_they_are);
         go_on(*open.hinge, course_.section(section));
         world_->take_in(*open.hinge);
-        if (ahead) open.hinge->begin_frame();
+        if (ahead) (void)open.hinge->begin_frame();
         joints_.push_back(std::move(open));
     }
 }

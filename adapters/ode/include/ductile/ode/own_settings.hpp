@@ -17,19 +17,22 @@
 
 #include "ductile/frame/part_settings.hpp"
 #include "ductile/ode/joint_calls.hpp"
+#include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
 
 class OwnSettings {
   public:
-    /// Rules the joints of these bodies for a part of `h` [s] in a frame of `frame` [s], or a blow.
-    void rule(std::span<const dBodyID> bodies, double h, double frame, bool blow) {
+    /// Rules the joints of these bodies for a part of `h` [s] in a frame of `frame` [s], or a blow,
+    /// but for `ours`, which plastic joints made for themselves.
+    void rule(std::span<const dBodyID> bodies, const AddressBook& ours, double h, double frame,
+              bool blow) {
         own_.clear();
         for (dBodyID body : bodies) {
             for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
                 const dJointID joint = dBodyGetJoint(body, i);
                 const dBodyID first = dJointGetBody(joint, 0);
-                if (first == body || first == nullptr) find(joint);
+                if ((first == body || first == nullptr) && !ours.has(joint)) find(joint);
             }
         }
         for (const Own& own : own_) {

@@ -87,7 +87,8 @@ class PlasticConstraint : public SteppedConstraint, public SharesWork {
     // ---- parts of a frame (world_parts.hpp)
 
     /// A frame begins: what hands did to the bodies is seen now, before they are half a step ahead.
-    virtual void begin_frame() = 0;
+    /// True where they put a saved state into it.
+    virtual bool begin_frame() = 0;
     /// A kinematic body has these velocities where the coming part begins.
     virtual void driven_begins(dBodyID /*body*/, const Vector3<double>& /*velocity*/,
                                const Vector3<double>& /*spin*/) {}

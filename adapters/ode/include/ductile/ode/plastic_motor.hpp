@@ -103,7 +103,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     DUCTILE_INLINE void stand() override;
 
     DUCTILE_INLINE void left_world() override { give_motor_back(); }
-    DUCTILE_INLINE void begin_frame() override;
+    DUCTILE_INLINE bool begin_frame() override;
     DUCTILE_INLINE void keep_all() override;
     DUCTILE_INLINE void put_all_back() override;
     DUCTILE_INLINE void list_part_rows(std::size_t joint,

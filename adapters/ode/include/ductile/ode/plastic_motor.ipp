@@ -182,10 +182,12 @@ DUCTILE_INLINE void MotorConstraint::stand() {
 
 // ---- a part of a frame
 
-DUCTILE_INLINE void MotorConstraint::begin_frame() {
-    if (joint_.broken() || !row_.attached()) return;
+DUCTILE_INLINE bool MotorConstraint::begin_frame() {
+    if (joint_.broken() || !row_.attached()) return false;
     pose_.look(row_);
+    const bool put_back = restored_;
     (void)follow_teleport();
+    return put_back;
 }
 
 DUCTILE_INLINE void MotorConstraint::keep_all() {

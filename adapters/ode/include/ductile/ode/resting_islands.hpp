@@ -47,9 +47,11 @@ class RestingIslands {
         std::erase_if(samples_, [body](const auto& entry) { return entry.first == body; });
         if (Idle* idle = idle_.find(body)) *idle = {};
     }
-    /// A frame of `length` [s] is over, its contacts are there. True where a body fell asleep.
+    /// A frame of `length` [s] is over, its contacts are there. True where a body fell asleep;
+    /// `about_to()` is called before the first one does.
+    template <class Before>
     bool look(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> joints,
-              double length) {
+              double length, const Before& about_to) {
         std::swap(before_, idle_);
         idle_.clear();
         for (dBodyID body : bodies) {
@@ -66,13 +68,13 @@ class RestingIslands {
         for (dBodyID body : bodies) {
             if (!can_move(body) || dBodyIsEnabled(body) == 0 || seen_.has(body)) continue;
             if (!gather(body)) continue;
+            if (!std::exchange(slept, true)) about_to();
             for (dBodyID asleep : found_) {
                 dBodyDisable(asleep);
                 dBodySetLinearVel(asleep, 0, 0, 0);
                 dBodySetAngularVel(asleep, 0, 0, 0);
                 idle_[asleep] = {};
             }
-            slept = true;
         }
         return slept;
     }

@@ -102,7 +102,7 @@ DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& chang
         },
         [this, ahead](OpenJoint& open) {
             world_.take_in(*open.constraint);
-            if (ahead) open.constraint->begin_frame();
+            if (ahead) (void)open.constraint->begin_frame();
         });
 }
 

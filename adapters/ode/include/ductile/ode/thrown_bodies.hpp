@@ -28,16 +28,19 @@ class ThrownBodies {
         for (dBodyID body : bodies) {
             if (is_joined(body)) left_.leave(body, contact_body(body), joints_of(body));
         }
-        left_.sort();
     }
     /// A frame begins, with these plastic joints: these see themselves what they are thrown with.
-    void find(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> plastic) {
+    /// True where anything joined is as it was left.
+    bool find(std::span<const dBodyID> bodies, std::span<PlasticConstraint* const> plastic) {
         thrown_.clear();
+        bool as_left = true;
         for (dBodyID body : bodies) {
             if (!is_joined(body)) continue;
             if (left_.is_left(body, contact_body(body), joints_of(body))) continue;
+            as_left = false;
             if (has_own_joints(body, plastic)) thrown_.push_back(body);
         }
+        return as_left;
     }
     [[nodiscard]] std::span<const dBodyID> bodies() const noexcept { return thrown_; }
     /// They are struck.

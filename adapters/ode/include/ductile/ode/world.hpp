@@ -176,6 +176,8 @@ class World final : public SteppedWorld {
     /// A body that is not known would not be put back: of joints, also ODE's own, of contacts, of
     /// geoms.
     void require_all_bodies();
+    /// One is gone.
+    void number_bodies();
     void require_known(dBodyID body) const;
     void require_finite();
     void require_slow() const;
@@ -188,7 +190,7 @@ class World final : public SteppedWorld {
     std::vector<SteppedConstraint*> constraints_;
     std::vector<PlasticConstraint*> plastic_;
     std::vector<dBodyID> bodies_;
-    AddressBook known_;                  ///< all bodies of the frame
+    AddressBook known_;                  ///< all of these
     std::vector<NamedContact> contacts_; ///< of the coming step
     std::string refused_;                ///< why one of them is
     std::unique_ptr<IslandSolver> islands_;

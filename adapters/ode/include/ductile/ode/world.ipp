@@ -45,6 +45,7 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
         .contacts = contacts_,
         .maker = maker_,
         .meter = *meter_,
+        .keeps_ledger = tells_ledger_,
         .members = members_,
         .solve = [this](double dt) { solve(dt); },
         .step = [this](double dt) { step_engine(dt); },
@@ -95,6 +96,7 @@ DUCTILE_INLINE void World::take_in(PlasticConstraint& joint) {
     plastic_.push_back(&joint);
     islands_->add(joint);
     joint.set_ahead(parts_ != nullptr);
+    if (parts_ != nullptr) parts_->joints_changed();
     if (meter_) meter_->add(joint);
     keep(joint, [this, &joint] { forget(joint); });
     joint.came_into_world();
@@ -110,6 +112,7 @@ DUCTILE_INLINE void World::forget(PlasticConstraint& joint) {
     std::erase(constraints_, &joint);
     std::erase(plastic_, &joint);
     islands_->remove(joint);
+    if (parts_ != nullptr) parts_->joints_changed();
     if (meter_) meter_->remove(joint);
 }
 DUCTILE_INLINE void World::add(SteppedConstraint& constraint) {
@@ -138,9 +141,11 @@ DUCTILE_INLINE void World::add(dBodyID body) {
     known_.enter(body);
     if (meter_) meter_->add(body);
     members_->body_came(body);
+    if (parts_ != nullptr) parts_->came(body);
 }
 DUCTILE_INLINE void World::remove(dBodyID body) {
     std::erase(bodies_, body);
+    number_bodies();
     if (meter_) meter_->remove(body);
     members_->body_left(body);
     forces_.forget(body);

@@ -90,9 +90,11 @@ DUCTILE_INLINE void World::require_known(dBodyID body) const {
         "World.tolerance: every body that moves must have been added, also where only a joint, a "
         "contact or a geom holds it");
 }
-DUCTILE_INLINE void World::require_all_bodies() {
+DUCTILE_INLINE void World::number_bodies() {
     known_.clear();
     for (dBodyID body : bodies_) known_.enter(body);
+}
+DUCTILE_INLINE void World::require_all_bodies() {
     for (dBodyID body : bodies_) {
         for (int i = 0; i < dBodyGetNumJoints(body); ++i) {
             const dJointID joint = dBodyGetJoint(body, i);

@@ -41,6 +41,7 @@
 #include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/resting_islands.hpp"
+#include "ductile/ode/standing_world.hpp"
 #include "ductile/ode/thrown_bodies.hpp"
 #include "ductile/ode/world_snapshot.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -59,6 +60,7 @@ class WorldParts final : public PartEngine {
         std::vector<NamedContact>& contacts; ///< of the coming step
         std::optional<ContactMaker>& maker;
         EnergyMeter& meter;
+        bool keeps_ledger = true;
         const std::unique_ptr<Divisibles>& members;
         std::function<void(double)> solve; ///< ODE's step, with what joints do before it [s]
         std::function<void(double)> step;  ///< ODE's alone [s]
@@ -79,7 +81,13 @@ class WorldParts final : public PartEngine {
     void end();
     /// To be called before a body is destroyed, in a frame too.
     void forget(dBodyID body);
+    /// A body is new, in a frame too.
+    void came(dBodyID body);
 
+    /// A plastic joint came or went.
+    void joints_changed() noexcept { standing_.forget_joints(); }
+
+    [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;
     DUCTILE_INLINE void save() override;
     DUCTILE_INLINE void put_back() override;
     DUCTILE_INLINE const PartMotion& part(double h) override;
@@ -134,20 +142,30 @@ class WorldParts final : public PartEngine {
     void damp(double share);
     void drop_forces();
     void see_contacts();
+    /// The bodies are elsewhere, or other ones.
+    void moved() {
+        looked_ = false;
+        stir_.reset();
+    }
+    /// No contact can close in a part of `h` [s] with more than `least` [J].
+    [[nodiscard]] bool is_still(double h, double least) const;
+    [[nodiscard]] const Stir& stir() const;
     /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
-    /// back where that throws.
-    void look(const WorldSnapshot* moved = nullptr);
+    /// back where that throws. `still`: none closes.
+    void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
     /// Energy of contacts that strike and give way by their CFM, which are taken for hard ones: it
     /// is left unresolved, and said once [J].
     [[nodiscard]] double yielding(double touching);
-    /// How fast it may come nearer, in the middle of a part of `h` [s] [m/s]. What slides and is
-    /// not `plastic` is closed too, or loses its contacts by a micrometre and falls for the part.
-    [[nodiscard]] double closes(const NamedContact& named, double h, bool plastic) const;
+    /// How fast one that is `depth` [m] deep may come nearer, in the middle of a part of `h` [s]
+    /// [m/s]. What slides and is not `plastic` is closed too, or loses its contacts by a micrometre
+    /// and falls for the part.
+    [[nodiscard]] double closes(const ContactClosing& it, double depth, double h,
+                                bool plastic) const;
     /// w of world/turned_contact.hpp, in the middle of a part of `h` [s] [m/s].
-    [[nodiscard]] double turned(const NamedContact& named, double h) const;
-    void hold_turning(NamedContact& named, double h);
+    [[nodiscard]] double turned(const ContactClosing& it, double h) const;
+    void hold_turning(NamedContact& named, const ContactClosing& it, double h);
     /// Contacts begin with what the nearest one of their bodies bore in the last part.
     void begin_pushes();
     void remember_pushes();
@@ -189,6 +207,10 @@ class WorldParts final : public PartEngine {
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
     std::vector<Damped> damped_;
     RestingIslands resting_;
+    StandingWorld standing_;
+    mutable std::optional<Stir> stir_; ///< of the bodies as they are
+    bool still_ = false;               ///< before the coming part
+    bool metered_ = true;              ///< the coming part is
     WorldSnapshot snapshot_, looked_from_;
     LocalScope scope_, joining_;
     WorldSnapshot began_; ///< those that are out, as the frame began

@@ -23,7 +23,8 @@ class WorldParts::Settings {
         dWorldSetERP(world_, dReal(blow ? 0 : part_erp(double(erp_), h)));
         dWorldSetContactSurfaceLayer(world_, std::max(layer_, dReal(closed_depth)));
         if (blow) dWorldSetCFM(world_, cfm_ * dReal(blow_compliance(h)));
-        own_.rule(parts.bodies(), h, parts.length_, blow);
+        own_.rule(parts.bodies(), parts.standing_.own_joints(parts.of_.joints), h, parts.length_,
+                  blow);
     }
     ~Settings() {
         own_.put_back();
@@ -47,18 +48,18 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     length_ = length;
     time_ = 0;
     begin_driven();
-    looked_ = false;
+    moved();
     may_be_local_ = true;
-    touched_.clear();
-    thrown_.find(of_.bodies, of_.joints);
-    forces_.hold(of_.bodies);
+    bool as_left = thrown_.find(of_.bodies, of_.joints);
+    as_left = forces_.hold(of_.bodies) && as_left;
     asleep_.clear();
     for (dBodyID body : of_.bodies) {
         if (dBodyIsEnabled(body) == 0) asleep_.push_back(body);
     }
     drop_forces();
     begin_bodies();
-    for (PlasticConstraint* joint : of_.joints) joint->begin_frame();
+    for (PlasticConstraint* joint : of_.joints) as_left = !joint->begin_frame() && as_left;
+    standing_.begin(of_.world, of_.bodies, of_.joints, as_left);
 }
 
 DUCTILE_INLINE void WorldParts::begin_bodies() {
@@ -77,6 +78,7 @@ DUCTILE_INLINE void WorldParts::leave_bodies() {
 DUCTILE_INLINE void WorldParts::leave() {
     widen();
     leave_bodies();
+    metered_ = true;
     for (const Driven& driven : driven_) {
         drive(driven.mean.velocity, driven.mean.spin, driven.body);
     }
@@ -138,8 +140,9 @@ DUCTILE_INLINE void WorldParts::end() {
     const bool were_aside = local_;
     leave();
     if (were_aside) look(); // what all hang together by
-    const double before = of_.meter.held().total();
-    if (resting_.look(of_.bodies, of_.joints, length_)) {
+    double before = 0;
+    const auto about_to = [&] { before = of_.meter.held().total(); };
+    if (resting_.look(of_.bodies, of_.joints, length_, about_to)) {
         of_.meter.bodies_rearranged(before, Account::sleep);
     }
     // ODE keeps what was applied to a body that sleeps
@@ -169,6 +172,15 @@ DUCTILE_INLINE void WorldParts::damp(double share) {
 
 // ---- a part
 
+DUCTILE_INLINE bool WorldParts::may_be_put_back() {
+    if (!still_ || !standing_.is_calm(stir())) return true;
+    metered_ = of_.keeps_ledger;
+    // where a callback throws, bodies go back to where they were
+    of_.meter.keep();
+    snapshot_.take(bodies(), {});
+    return false;
+}
+
 DUCTILE_INLINE void WorldParts::save() {
     kept_time_ = time_;
     of_.meter.keep();
@@ -185,19 +197,18 @@ DUCTILE_INLINE void WorldParts::put_back() {
     seen_ = kept_seen_;
     pushes_ = kept_pushes_;
     time_ = kept_time_;
-    looked_ = false;
+    moved();
     if (go_local()) save();
 }
 
 /// Into the middle of a part.
 DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
     forces_.apply_to(bodies());
-    of_.members->apply_forces();
-    of_.meter.before_step();
-    half_ahead_.move(bodies(), half);
-    if (!(half > 0)) return;
-    of_.meter.bodies_ahead();
-    keep_spins(h);
+    if (!out_) of_.members->apply_forces();
+    if (metered_) of_.meter.before_step(false); // contacts are to come
+    const bool moved = half_ahead_.move(bodies(), half);
+    if (moved && metered_) of_.meter.bodies_ahead();
+    if (half > 0) keep_spins(h);
 }
 
 DUCTILE_INLINE void WorldParts::solve(double h, bool blow,
@@ -225,7 +236,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     go_ahead(h, half);
     drive_as_at(end);
     if (!blow) closing_.see_motions(bodies());
-    look(blow ? nullptr : &snapshot_);
+    look(blow ? nullptr : &snapshot_, still_ && !blow);
     closed_ = std::numeric_limits<double>::infinity();
     rule_contacts(h, blow);
     if (blow) open_others();
@@ -244,8 +255,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     time_ = end;
     of_.book(h);
     drop_forces(); // those of bodies that sleep stay in ODE
-    of_.meter.after_step(h);
-    looked_ = false;
+    metered_ ? of_.meter.after_step(h) : of_.meter.step_is_over();
+    moved();
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
@@ -266,12 +277,13 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         tick(h, false);
     }
     tell();
-    motion_.rigid_work = of_.meter.step_of_plastic_joints();
-    motion_.others_work = of_.meter.step_of_other_joints();
-    motion_.stored = of_.meter.stored();
+    motion_.rigid_work = metered_ ? of_.meter.step_of_plastic_joints() : 0;
+    motion_.others_work = metered_ ? of_.meter.step_of_other_joints() : 0;
+    motion_.stored = metered_ ? of_.meter.stored() : 0;
     motion_.contact_lost = false;
     motion_.turned = 0;
-    if (closing_.any_plastic() && (of_.maker || closing_.any_stops())) {
+    const bool stood = still_ && !motion_.flows() && is_still(h, apart_);
+    if (!stood && closing_.any_plastic() && (of_.maker || closing_.any_stops())) {
         look();
         looked_ = true;
         closed_ = std::min(closed_, closing_.closed(h, h, apart_));
@@ -279,7 +291,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         motion_.contact_lost = closing_.lost();
     }
     motion_.contact_work = 0;
-    if (motion_.flows()) {
+    if (metered_ && motion_.flows()) {
         motion_.contact_work = of_.meter.step_of_contacts([this](const void* body) {
             return body != nullptr &&
                    closing_.is_plastic(static_cast<dBodyID>(const_cast<void*>(body)));
@@ -340,13 +352,16 @@ void WorldParts::rearrange(const Change& change) {
     change();
     of_.meter.bodies_rearranged(before);
     begin_bodies();
-    looked_ = false;
+    moved();
     see_contacts(); // those that were seen were of other bodies
 }
 
 DUCTILE_INLINE void WorldParts::accept(double h) try {
     may_be_local_ = may_be_local_ && h == 0;
     seen_.clear();
+    still_ = false;
+    metered_ = true;
+    stir_.reset(); // listeners may do what hands do
     const bool open = h > 0 && of_.members->any_open();
     if (open) of_.meter.rings_down(of_.members->count_vibration());
     of_.accept(h);
@@ -358,6 +373,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
+    standing_.forget_rows();
     motion_.plastic_work = of_.members->closed_work();
     motion_.closed_work = of_.members->unmissed_work();
     for (const PlasticConstraint* joint : of_.joints) {
@@ -369,12 +385,11 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
                 motion_.rows[k].section = section + 1;
             }
         }
+        standing_.note(std::span(motion_.rows).subspan(first));
         motion_.plastic_work += joint->queries().absorbed_energy();
     }
     return motion_;
 }
-
-DUCTILE_INLINE double WorldParts::kinetic_energy() const { return of_.meter.held().kinetic; }
 
 } // namespace ductile::ode
 

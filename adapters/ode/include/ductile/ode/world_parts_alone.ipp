@@ -13,8 +13,11 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE bool WorldParts::go_local() {
-    if (!std::exchange(may_be_local_, false) || !of_.maker || !of_.members->empty()) return false;
-    if (!scope_.find(of_.world, of_.bodies, of_.joints, forces_, length_)) return false;
+    if (!std::exchange(may_be_local_, false) || !of_.maker) return false;
+    if (!scope_.find(of_.world, of_.bodies, of_.joints, of_.members->bodies(), forces_, length_)) {
+        return false;
+    }
+    metered_ = true;
     of_.meter.see_changes();
     began_.take(scope_.out(), {});
     local_ = true;
@@ -24,6 +27,10 @@ DUCTILE_INLINE bool WorldParts::go_local() {
     scope_.out_went();
     (void)join_touched();
     return true;
+}
+
+DUCTILE_INLINE void WorldParts::came(dBodyID body) {
+    if (local_) scope_.take_in({&body, 1});
 }
 
 DUCTILE_INLINE void WorldParts::widen() {
@@ -40,7 +47,8 @@ DUCTILE_INLINE void WorldParts::tick_out(double h) {
     half_ahead_.move_on(h / 2);
     drop_forces();
     of_.meter.after_step(h);
-    out_ = looked_ = false;
+    out_ = false;
+    moved();
 }
 
 DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
@@ -49,7 +57,7 @@ DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
     const double before = of_.meter.held().total();
     began_.put_back(met);
     of_.meter.bodies_rearranged(before, Account::integration);
-    looked_ = false;
+    moved();
     if (time_ > 0) { // as far as the others are
         joining_.set(of_.bodies, met);
         std::swap(scope_, joining_);

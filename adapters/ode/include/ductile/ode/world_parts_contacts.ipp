@@ -4,19 +4,20 @@
 // of world_parts.ipp.
 #pragma once
 
+#include "ductile/frame/frame_rules.hpp"
 #include "ductile/joint/gyroscopic.hpp"
 #include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
 
-DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
+DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved, bool still) try {
     of_.contacts.clear();
     {
         const Untouched waiting(aside());
         if (of_.maker) of_.maker->make(bodies());
     }
     leave_aside();
-    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies());
+    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies(), still);
 } catch (...) {
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
@@ -31,10 +32,10 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved) try {
 DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     for (NamedContact& named : of_.contacts) {
         dSurfaceParameters& surface = named.contact.surface;
-        const auto [a, b, reversed] = attached_bodies(named.joint);
-        const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
+        const ContactClosing it(named);
+        const bool plastic = closing_.is_plastic(it.bodies.a) || closing_.is_plastic(it.bodies.b);
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
-        const double closing = blow ? 0 : closes(named, h, plastic);
+        const double closing = blow ? 0 : closes(it, double(named.contact.geom.depth), h, plastic);
         if (!plastic && !own && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
@@ -43,8 +44,8 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         if (!blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
-            surface.motionN += dReal((plastic ? turned(named, h) : 0) - closing);
-            if (plastic) hold_turning(named, h);
+            surface.motionN += dReal((plastic ? turned(it, h) : 0) - closing);
+            if (plastic) hold_turning(named, it, h);
         }
         const dJointID old = named.joint;
         named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
@@ -71,9 +72,8 @@ DUCTILE_INLINE double WorldParts::yielding(double touching) {
     return sum;
 }
 
-DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bool plastic) const {
-    const ContactClosing it(named);
-    const auto depth = double(named.contact.geom.depth);
+DUCTILE_INLINE double WorldParts::closes(const ContactClosing& it, double depth, double h,
+                                         bool plastic) const {
     // what a blow stopped closes no more, although that strikes a little early
     const double left = plastic && it.closes() ? 2 * (it.depth() - depth) / h : 0;
     const bool known = depth > closed_depth / 2;
@@ -81,21 +81,21 @@ DUCTILE_INLINE double WorldParts::closes(const NamedContact& named, double h, bo
     return std::max(left, to);
 }
 
-DUCTILE_INLINE double WorldParts::turned(const NamedContact& named, double h) const {
-    const auto [bodies, now] = detail::seen_contact(named);
-    const SeenContact* then = nearest(seen_, bodies, now.point);
+DUCTILE_INLINE double WorldParts::turned(const ContactClosing& it, double h) const {
+    const SeenContact* then = nearest(seen_, it.bodies, it.seen.point);
     if (then == nullptr) return 0;
-    return turned_contact(now, *then, contact_body(bodies.a), contact_body(bodies.b), h / 2, h / 2);
+    return turned_contact(it.seen, *then, contact_body(it.bodies.a), contact_body(it.bodies.b),
+                          h / 2, h / 2);
 }
 
 /// Friction that holds is right at the end of a part of `h` [s].
-DUCTILE_INLINE void WorldParts::hold_turning(NamedContact& named, double h) {
+DUCTILE_INLINE void WorldParts::hold_turning(NamedContact& named, const ContactClosing& it,
+                                             double h) {
     dSurfaceParameters& surface = named.contact.surface;
-    const auto [bodies, now] = detail::seen_contact(named);
-    const Vector3<double> turns =
-        turning_arms(contact_body(bodies.a), now.arm_a, contact_body(bodies.b), now.arm_b);
+    const Vector3<double> turns = turning_arms(contact_body(it.bodies.a), it.seen.arm_a,
+                                               contact_body(it.bodies.b), it.seen.arm_b);
     if (turns.isZero()) return;
-    const auto along = detail::friction_directions(named.contact, now.normal);
+    const auto along = detail::friction_directions(named.contact, it.seen.normal);
     const auto move = [&](int flag, dReal& motion, const Vector3<double>& way) {
         if ((surface.mode & flag) == 0) motion = 0;
         surface.mode |= flag;
@@ -142,9 +142,25 @@ DUCTILE_INLINE void WorldParts::see_contacts() {
     closing_.remember();
 }
 
+DUCTILE_INLINE const Stir& WorldParts::stir() const {
+    if (!stir_) stir_ = Stir::of(of_.bodies, length_);
+    return *stir_;
+}
+DUCTILE_INLINE double WorldParts::kinetic_energy() const {
+    return local_ ? of_.meter.held().kinetic : stir().kinetic;
+}
+DUCTILE_INLINE bool WorldParts::is_still(double h, double least) const {
+    if (local_ || !of_.members->empty() || !thrown_.bodies().empty()) return false;
+    const Stir& bodies = stir();
+    return bodies.spin * length_ <= ductile::detail::followed_turn && !(2 * bodies.most > least) &&
+           !closing_.counts(0, 2 * bodies.speed * h, apart_);
+}
+
 DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, double apart) {
     touching_ = touching;
     apart_ = apart;
+    still_ = is_still(h, touching);
+    if (still_) return {};
     if (local_) {
         if (std::vector<dBodyID> met = scope_.met(forces_, h); !met.empty()) join(std::move(met));
     }
