@@ -151,8 +151,8 @@ TEST_CASE("Frames: a hand that bends to and fro loses nothing where it turns", "
         const auto vice = rig.body(1e6, V3::Constant(1e6), V3::Zero());
         WorldRig::prescribe(hand);
         const auto& hinge =
-            rig.hinge(hand, vice, V3::Zero(), Joint(Perfect<double>({.strength = strength_of_wire})),
-                      "hinge");
+            rig.hinge(hand, vice, V3::Zero(),
+                      Joint(Perfect<double>({.strength = strength_of_wire})), "hinge");
         const auto angle = [](double t) { return amplitude * std::sin(std::numbers::pi * t); };
         const int frames = int(std::lround(swings / frame));
         for (int i = 1; i <= frames; ++i) {
