@@ -17,9 +17,10 @@
 //           held      ellipse 12.1886
 //           ring      ellipse 13.5164
 //
-// So it stands at 0.995 of each and moves at 1.005 (in Bullet two cases do not at 1.001), the load
-// growing in a second, until membrane forces stop it half a millimetre below: flat parts joined at
-// their middle plane cannot sink without stretching, which the calculation leaves out. Then 5 t
+// So it stands at 0.995 of each, within 0.04 mm, and moves at 1.005 (in Bullet two cases do not at
+// 1.001), the load growing in a second, until membrane forces stop it 0.3 to 0.9 mm below, at
+// frames of 1/30 s before the frame ends: flat parts joined at their middle plane cannot sink
+// without stretching, which the calculation leaves out. Then 5 t
 // (5.527 m_p) put on slowly, which the ring carries without a trace of flow, own weight and all,
 // and the same dropped from 1 m: the ledger says where 49 kJ, and what the block sinks, went. The
 // block sinks 0.047 m where frames are resolved (0.55 m, were there no membrane), 0.053 m with the
@@ -213,20 +214,25 @@ class Plate final : public Scene {
         }
         const auto load = share * of.collapse * per_length / double(loaded.size());
         const int ramp = int(std::lround(1 / take.frame())), hold = ramp / 4;
-        double fastest = 0;
+        double fastest = 0, sunk = 0;
+        std::vector<double> rested; // heights, once it lies on its supports
         for (int i = 1; i <= ramp + hold; ++i) {
             for (const int part : loaded) {
                 stage.push(cast.parts[std::size_t(part)], {0, 0, -load * std::min(i, ramp) / ramp});
             }
             take.step();
-            if (2 * i < ramp) continue; // once it lies on its supports
-            for (const auto part : cast.parts) {
-                fastest = std::max(fastest, std::abs(stage.velocity(part).z()));
+            if (2 * i < ramp) continue;
+            for (std::size_t k = 0; k < cast.parts.size(); ++k) {
+                const double height = stage.place(cast.parts[k]).z();
+                if (k == rested.size()) rested.push_back(height);
+                sunk = std::max(sunk, std::abs(height - rested[k]));
+                fastest = std::max(fastest, std::abs(stage.velocity(cast.parts[k]).z()));
             }
         }
         const std::string what = std::string(of.name) + (moves ? ", 1.005" : ", 0.995");
-        run.tell(what + ": fastest, up or down", fastest, "m/s");
-        run.expect(what + ": it moves (1) or not (0)", fastest > 5e-3 ? 1 : 0, moves ? 1 : 0, 0);
+        run.tell(what + ": it sinks by", 1e3 * sunk, "mm");
+        run.expect(what + ": it moves (1) or not (0)", sunk > 1e-4 ? 1 : 0, moves ? 1 : 0, 0);
+        if (!moves) run.expect(what + ": fastest, up or down", fastest, 0, 5e-3, "m/s");
         take.cut();
     }
     static void put_on(Run& run) {

@@ -10,7 +10,9 @@
 //                         it: the mean force f says which,  s = h |f|/R,  e = |u| h (1 - |f|/R)/2;
 //                         where it went along with u, as a load turned the row round, -|f| for |f|
 //   one that turned round e >= |u' - u| h/8, at  s = h |u|/|u' - u|; however slow it is then, its
-//                         force was that of its flow back
+//                         force was that of its flow back. Where its acceleration went on all the
+//                         same a hand turned it: ten times that, as it adds up from turn to turn,
+//                         and s a thousandth sooner, so that the part ends before it turns
 //   one that its load     lacks the speed Δ that it should go back with, in all that follows: that
 //   turns round           is R Δ T, if it goes back for as much work as there was so far;
 //                         Δ = |c (h - s) -+ |u'||,  s = |u|/b,  T = √(2 W/(R c)),  c = b - 2 r;  it
@@ -193,6 +195,15 @@ struct PartBefore {
     return result;
 }
 
+/// It was turned round at its strength, and its acceleration went on, whatever its force.
+[[nodiscard]] inline bool turned_by_hand(const PartRow& row, double h,
+                                         const PartBefore& before) noexcept {
+    constexpr double whole = 1 - 1e-6, alike = 0.1;
+    const double acceleration = (row.end - row.start) / h;
+    return row.start * row.end < 0 && row.pushes() && row.share >= whole &&
+           std::abs(acceleration - before.acceleration) < alike * std::abs(acceleration);
+}
+
 [[nodiscard]] inline Misplaced misplaced(const PartRow& row, double h,
                                          const PartBefore& before) noexcept {
     Misplaced result;
@@ -214,12 +225,16 @@ struct PartBefore {
         result.travel = start * h * (1 - braked) / 2;
         double stop = braked * h;
         constexpr double whole = 1 - 1e-6, nothing = 1e-3, noticed = 1e-4;
+        constexpr double adds_up = 10, before_it = 0.999;
         const bool turned = row.start * row.end < 0;
         if (turned && (std::abs(row.end) > row.noise || (row.pushes() && share >= whole))) {
             result.travel = std::max(result.travel, std::abs(change) * h / 8);
             stop = h * start / std::abs(change);
         }
-        if (const Misplaced back = turned_round(row, h, before); back.lacking > 0) {
+        if (turned_by_hand(row, h, before)) {
+            result.travel *= adds_up;
+            stop *= before_it;
+        } else if (const Misplaced back = turned_round(row, h, before); back.lacking > 0) {
             result.lacking = back.lacking;
             stop = back.stop;
         }
