@@ -25,8 +25,7 @@ namespace ductile {
                    "which it bends, of which it knows nothing";
         case Unmodelled::rough_blow:
             return "took a blow by what is light against it, of which it is not known within 5 % "
-                   "of "
-                   "its energy how much flowed";
+                   "of its energy how much flowed";
         case Unmodelled::driven:
             return "does not move, and a driven body passes through it: the engine solves no "
                    "contacts between them";

@@ -80,14 +80,14 @@ DUCTILE_INLINE std::vector<Supervisor::Entry>::iterator Supervisor::find(const v
     return joints_.begin() + std::ptrdiff_t(place(joint));
 }
 DUCTILE_INLINE std::size_t Supervisor::place(const void* joint) const {
-    const std::size_t here = joints_.size();
-    for (std::size_t i = 0; i < here; ++i) {
-        const std::size_t at = (next_ + i) % here;
+    const std::size_t count = joints_.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t at = (next_ + i) % count;
         if (joints_[at].joint != joint) continue;
         next_ = at + 1;
         return at;
     }
-    return here;
+    return count;
 }
 
 } // namespace ductile

@@ -4,8 +4,7 @@
 // nothing does has its contacts made once a part and keeps nothing to be put back.
 //
 //   still   no contact can close with more energy than counts: v²/(2 K) of a contact is no more
-//   than
-//           what its two bodies have, and what pushes takes no more of it as far as they go.
+//           than what its two bodies have, and what pushes takes no more of it as far as they go.
 //           Nothing is driven, nothing turns by more than 0.05 rad in the frame.
 //   calm    no plastic joint that is awake flowed, moved or used more than half of its strength in
 //           the last part, and nobody did anything since: velocities, forces, gravity, masses and
