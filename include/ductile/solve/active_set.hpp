@@ -15,8 +15,9 @@
 // otherwise. A block that comes to its surface starts from there.
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
-// where many rows change over together: then those alone that are most wrong do, and where the
-// rounds end without an answer proximal_newton.hpp has the word.
+// where many rows change over together, or blocks leave their surface and come back: then it is
+// cautious, those rows alone go over that are most wrong, and blocks leave by and by. So it is from
+// the start after proximal_newton.hpp, which has the word where the rounds end without an answer.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once
@@ -35,8 +36,8 @@ class ActiveSet {
   public:
     /// From the sides, impulses and multipliers in the island. True where each row is where it
     /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
-    /// them.
-    [[nodiscard]] bool solve(IslandSystem& system);
+    /// them. `cautious`: all but a few are there already.
+    [[nodiscard]] bool solve(IslandSystem& system, bool cautious = false);
 
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 
@@ -63,8 +64,7 @@ class ActiveSet {
     double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
-    bool cautious_ = false;                   ///< rows that are most wrong go first
-    int wrong_rows_ = 0;                      ///< that belong to no block
+    bool cautious_ = false;                   ///< rows most wrong go first, blocks by and by
 };
 
 } // namespace ductile::solve

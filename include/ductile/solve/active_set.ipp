@@ -28,14 +28,14 @@ inline constexpr double settled = 1e-7;     ///< of the fastest row: a slip has 
 
 } // namespace detail
 
-DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
+DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool cautious) {
     constexpr int most = 30;    // rounds
     constexpr int patience = 6; // of them, without fewer rows in the wrong place
     system_ = &system;
     rounds_ = 0;
     begin();
-    int fewest = std::numeric_limits<int>::max(), left = patience;
-    cautious_ = false;
+    cautious_ = cautious;
+    int fewest = std::numeric_limits<int>::max(), left = cautious ? most : patience;
     bool same = false; // all sides are as they were, and the factors of use
     while (rounds_ < most) {
         ++rounds_;
@@ -59,7 +59,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system) {
             fewest = wrong;
             left = patience;
         } else if (--left <= 0) {
-            if (cautious_ || wrong_rows_ == 0) return false;
+            if (cautious_) return false;
             cautious_ = true;
             fewest = std::numeric_limits<int>::max();
             left = most;
@@ -167,7 +167,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         }
         before = worst;
         system_->step();
-        stays = take_step(*system_);
+        stays = take_step(*system_, cautious_);
     }
     return stays && worst <= std::max(exact(), detail::sufficient * system_->scale());
 }
@@ -239,7 +239,6 @@ DUCTILE_INLINE int ActiveSet::change_over() {
         wrong += place.side != island.rows[i].side;
         if (place.off >= worst / 2) island.rows[i].side = place.side;
     }
-    wrong_rows_ = wrong;
     const double least = accepted();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);

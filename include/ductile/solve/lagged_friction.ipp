@@ -48,7 +48,7 @@ DUCTILE_INLINE bool LaggedFriction::solve_round() {
         system_.rows()[i].kept = 0;
     }
     proximal_newton_.solve(system_, cold, false);
-    return active_set_.solve(system_);
+    return active_set_.solve(system_, true);
 }
 
 DUCTILE_INLINE void LaggedFriction::begin(IslandSystem& system) {
