@@ -340,3 +340,47 @@ TEST_CASE("A box that lands as good as flush strikes with its whole face", "[con
         }
     }
 }
+
+TEST_CASE(
+    "A wall of bricks on plastic joints that is struck is solved, and takes the same in any frame",
+    "[contacts]") {
+    if (!StructureRig::in_frames) return;
+    constexpr int wide = 6, high = 4;
+    constexpr double length = 0.4, height = 0.2, joint = 0.01; // [m]
+    const auto absorbed = [](double frame) {
+        StructureRig rig;
+        const UsualSixAxisJoint mortar( // [N, N m], 60 J
+            Ellipsoid<double, 6>(
+                {.capacity = (Vector6<double>() << 3e3, 3e3, 3e3, 120, 120, 120).finished()}),
+            Perfect<double>({.strength = 1}), TravelLimit<double>({.limit = 60}));
+        const V3 half(0.5 * (length - joint), 0.1, 0.5 * (height - joint));
+        std::array<std::array<Body, wide>, high> bricks{};
+        std::vector<StructureRig::Joint*> joints;
+        for (std::size_t k = 0; k < high; ++k) {
+            for (std::size_t i = 0; i < wide; ++i) {
+                const V3 at(length * double(i), 0, half.z() + height * double(k));
+                bricks[k][i] = rig.box(30, half, at);
+                if (i > 0) {
+                    joints.push_back(&rig.connect(bricks[k][i], bricks[k][i - 1],
+                                                  at - V3(length / 2, 0, 0), mortar));
+                }
+                if (k > 0) {
+                    joints.push_back(&rig.connect(bricks[k][i], bricks[k - 1][i],
+                                                  at - V3(0, 0, height / 2), mortar));
+                }
+            }
+        }
+        const Body striker = rig.box(50, V3(0.15, 0.15, 0.15), V3(1.05, -0.6, 0.5));
+        settle(rig, 0.6);
+        StructureRig::set_velocity(striker, V3(0, 5, 0));
+        rig.run(0.5, frame);
+        CHECK(rig.lines() == std::vector<std::string>());
+        double sum = 0;
+        for (const StructureRig::Joint* each : joints) sum += each->absorbed_energy();
+        return sum;
+    };
+    const double coarse = absorbed(1.0 / 60), fine = absorbed(1.0 / 240);
+    CAPTURE(coarse, fine);
+    CHECK(coarse > 140);
+    CHECK(coarse == Approx(fine).epsilon(0.03));
+}

@@ -131,7 +131,9 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
         ++report.safe_ways;
         static_cast<void>(keep());
-        if (polished(report) || keep() <= well || (touch && lagged(report, best_))) return;
+        const bool settled = active_set_.solve(system_, true);
+        report.rounds += active_set_.rounds();
+        if (settled || keep() <= well || (touch && lagged(report, best_))) return;
     }
 }
 
