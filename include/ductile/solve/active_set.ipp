@@ -135,7 +135,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         return block.state == BlockState::surface;
     });
     if (!factored) set_tangents(*system_);
-    bool stays = true;
+    Stay stay = Stay::all;
     double worst = 0, before = std::numeric_limits<double>::infinity();
     kept_.restart();
     least_given_ = last_given_ = before;
@@ -148,9 +148,10 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         if (worst <= exact()) {
             if (!harden()) return true;
             again = true;
-        } else if (!stays || std::isnan(worst) || step >= steps ||
+        } else if (stay == Stay::left || std::isnan(worst) || step >= steps ||
                    (step > 1 && !curved && worst > stalled * before)) {
-            if (!stays || !(least_given_ < std::numeric_limits<double>::infinity())) break;
+            if (stay != Stay::all || !(least_given_ < std::numeric_limits<double>::infinity()))
+                break;
             end_hardening(); // round-off allows no more
             again = true;
         }
@@ -167,9 +168,9 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         }
         before = worst;
         system_->step();
-        stays = take_step(*system_, cautious_);
+        stay = take_step(*system_, cautious_);
     }
-    return stays && worst <= std::max(exact(), detail::sufficient * system_->scale());
+    return stay == Stay::all && worst <= std::max(exact(), detail::sufficient * system_->scale());
 }
 
 /// Takes out what rigid rows give: they give nothing at the impulses that are kept, and are kept at

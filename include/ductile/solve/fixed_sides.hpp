@@ -13,10 +13,11 @@ namespace ductile::solve {
 void set_tangents(IslandSystem& system);
 /// g and e, from the residuals; the worst that is left [m/s | rad/s]. NaN comes through.
 [[nodiscard]] double set_right_sides(IslandSystem& system);
-/// Adds dx to the impulses. False where a block left its surface; one whose multiplier would leave
-/// the range keeps a tenth of it if `cautious`, as what is not yet solved elsewhere may have led
-/// it.
-bool take_step(IslandSystem& system, bool cautious);
+/// What became of the blocks on their surface: one whose multiplier would leave the range has left
+/// it, or keeps a tenth of it, as what is not yet solved elsewhere may have led it.
+enum class Stay { all, eased, left };
+/// Adds dx to the impulses. `cautious`: blocks are eased.
+Stay take_step(IslandSystem& system, bool cautious);
 
 } // namespace ductile::solve
 

@@ -45,24 +45,25 @@ DUCTILE_INLINE double set_right_sides(IslandSystem& system) {
     return worst;
 }
 
-DUCTILE_INLINE bool take_step(IslandSystem& system, bool cautious) {
+DUCTILE_INLINE Stay take_step(IslandSystem& system, bool cautious) {
     constexpr double kept = 0.1;
     Island& island = system.island();
     for (std::size_t i = 0; i < island.rows.size(); ++i) {
         island.rows[i].impulse += system.rows()[i].change;
     }
-    bool stays = true;
+    Stay stay = Stay::all;
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(system, k);
         const double before = view.block.multiplier;
         if (with_form(view, [&view](auto form) { return form.take(view); })) continue;
         if (cautious && view.block.kind == BlockKind::ellipsoid && before > BlockView::known(0)) {
             view.block.multiplier = kept * before;
+            if (stay == Stay::all) stay = Stay::eased;
         } else {
-            stays = false;
+            stay = Stay::left;
         }
     }
-    return stays;
+    return stay;
 }
 
 } // namespace ductile::solve
