@@ -36,8 +36,8 @@ class ActiveSet {
   public:
     /// From the sides, impulses and multipliers in the island. True where each row is where it
     /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
-    /// them. `cautious`: all but a few are there already.
-    [[nodiscard]] bool solve(IslandSystem& system, bool cautious = false);
+    /// them. `near`: all but a few are there already.
+    [[nodiscard]] bool solve(IslandSystem& system, bool near = false);
 
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 
@@ -64,7 +64,9 @@ class ActiveSet {
     double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
-    bool cautious_ = false;                   ///< rows most wrong go first, blocks by and by
+    bool cautious_ = false;                   ///< rows that are most wrong go first
+    bool near_ = false;                       ///< blocks leave their surface by and by
+    int wrong_rows_ = 0;                      ///< that belong to no block
 };
 
 } // namespace ductile::solve

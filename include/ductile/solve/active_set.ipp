@@ -28,14 +28,14 @@ inline constexpr double settled = 1e-7;     ///< of the fastest row: a slip has 
 
 } // namespace detail
 
-DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool cautious) {
+DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool near) {
     constexpr int most = 30;    // rounds
     constexpr int patience = 6; // of them, without fewer rows in the wrong place
     system_ = &system;
     rounds_ = 0;
     begin();
-    cautious_ = cautious;
-    int fewest = std::numeric_limits<int>::max(), left = cautious ? most : patience;
+    near_ = cautious_ = near;
+    int fewest = std::numeric_limits<int>::max(), left = near ? most : patience;
     bool same = false; // all sides are as they were, and the factors of use
     while (rounds_ < most) {
         ++rounds_;
@@ -59,7 +59,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool cautious) {
             fewest = wrong;
             left = patience;
         } else if (--left <= 0) {
-            if (cautious_) return false;
+            if (cautious_ || wrong_rows_ == 0) return false;
             cautious_ = true;
             fewest = std::numeric_limits<int>::max();
             left = most;
@@ -168,7 +168,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
         }
         before = worst;
         system_->step();
-        stay = take_step(*system_, cautious_);
+        stay = take_step(*system_, near_);
     }
     return stay == Stay::all && worst <= std::max(exact(), detail::sufficient * system_->scale());
 }
@@ -240,6 +240,7 @@ DUCTILE_INLINE int ActiveSet::change_over() {
         wrong += place.side != island.rows[i].side;
         if (place.off >= worst / 2) island.rows[i].side = place.side;
     }
+    wrong_rows_ = wrong;
     const double least = accepted();
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(*system_, k);

@@ -17,6 +17,8 @@ struct IslandReport {
 
 /// An answer is solved where its residual is at most this share of `scale` [-].
 inline constexpr double solved_residual = 1e-5;
+/// One that is within this share of it needs no other way to be looked for [-].
+inline constexpr double solved_well = 1e-8;
 
 /// What is not solved is no answer for an island's joints where its residual is more than this
 /// share of `scale` [-], or than this velocity [m/s | rad/s]: what their own rows may be off by.

@@ -113,7 +113,6 @@ DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report, const std::vector
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
     const int most = touch ? 2 : 4;
     constexpr double cold = 0.1, warm = 1e-4;
-    constexpr double well = 1e-8; // joints look closer than `solved_residual`
     double least = std::numeric_limits<double>::infinity();
     const auto keep = [&] {
         certify(report);
@@ -131,9 +130,7 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
         ++report.safe_ways;
         static_cast<void>(keep());
-        const bool settled = active_set_.solve(system_, true);
-        report.rounds += active_set_.rounds();
-        if (settled || keep() <= well || (touch && lagged(report, best_))) return;
+        if (polished(report) || keep() <= solved_well || (touch && lagged(report, best_))) return;
     }
 }
 

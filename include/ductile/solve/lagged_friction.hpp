@@ -42,6 +42,8 @@ class LaggedFriction {
   private:
     void begin(IslandSystem& system);
     [[nodiscard]] bool solve_round();
+    void take_from_flat();
+    void give_to_flat();
     [[nodiscard]] double read(const IslandSystem& system);
     void set_radii(const Island& island);
     void give(IslandSystem& system) const;
@@ -53,7 +55,8 @@ class LaggedFriction {
     numeric::Anderson ahead_;
     std::vector<std::size_t> contacts_;   ///< their blocks, here and there
     std::vector<double> radii_, normals_; ///< n', n by contact
-    std::vector<double> start_;           ///< impulses of a round
+    std::vector<IslandRow> rows_;         ///< what a way starts from, should it fail
+    std::vector<IslandBlock> blocks_;
     int factorisations_ = 0;
 };
 
