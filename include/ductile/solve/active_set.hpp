@@ -15,9 +15,9 @@
 // otherwise. A block that comes to its surface starts from there.
 //
 // From the sides of the last step it takes one round where nothing changed. It may go in circles,
-// where many rows change over together, or blocks leave their surface and come back: then it is
-// cautious, those rows alone go over that are most wrong, and blocks leave by and by. So it is from
-// the start after proximal_newton.hpp, which has the word where the rounds end without an answer.
+// where many rows change over together: then those alone that are most wrong do, and where the
+// rounds end without an answer proximal_newton.hpp has the word. From near the answer it does so
+// from the start, and blocks leave their surface by and by, as those that leave at once come back.
 //
 // Source: block principal pivoting (Júdice & Pires 1994, doi:10.1016/0305-0548(94)90106-6).
 #pragma once

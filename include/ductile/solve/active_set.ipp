@@ -35,7 +35,7 @@ DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool near) {
     rounds_ = 0;
     begin();
     near_ = cautious_ = near;
-    int fewest = std::numeric_limits<int>::max(), left = near ? most : patience;
+    int fewest = std::numeric_limits<int>::max(), left = patience;
     bool same = false; // all sides are as they were, and the factors of use
     while (rounds_ < most) {
         ++rounds_;

@@ -16,8 +16,8 @@ void set_tangents(IslandSystem& system);
 /// What became of the blocks on their surface: one whose multiplier would leave the range has left
 /// it, or keeps a tenth of it, as what is not yet solved elsewhere may have led it.
 enum class Stay { all, eased, left };
-/// Adds dx to the impulses. `cautious`: blocks are eased.
-Stay take_step(IslandSystem& system, bool cautious);
+/// Adds dx to the impulses. `ease`: blocks do not leave their surface at once.
+Stay take_step(IslandSystem& system, bool ease);
 
 } // namespace ductile::solve
 

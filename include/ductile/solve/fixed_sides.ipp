@@ -45,7 +45,7 @@ DUCTILE_INLINE double set_right_sides(IslandSystem& system) {
     return worst;
 }
 
-DUCTILE_INLINE Stay take_step(IslandSystem& system, bool cautious) {
+DUCTILE_INLINE Stay take_step(IslandSystem& system, bool ease) {
     constexpr double kept = 0.1;
     Island& island = system.island();
     for (std::size_t i = 0; i < island.rows.size(); ++i) {
@@ -56,7 +56,7 @@ DUCTILE_INLINE Stay take_step(IslandSystem& system, bool cautious) {
         const BlockView view = view_of(system, k);
         const double before = view.block.multiplier;
         if (with_form(view, [&view](auto form) { return form.take(view); })) continue;
-        if (cautious && view.block.kind == BlockKind::ellipsoid && before > BlockView::known(0)) {
+        if (ease && view.block.kind == BlockKind::ellipsoid && before > BlockView::known(0)) {
             view.block.multiplier = kept * before;
             if (stay == Stay::all) stay = Stay::eased;
         } else {
