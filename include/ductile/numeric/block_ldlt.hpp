@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// Sparse symmetric systems of 6×6 blocks, one block row a body, by L D Lᵀ.
+// Sparse systems of 6×6 blocks, one block row a body, by L D Lᵀ, or by L U where they are not
+// symmetric.
 //
 //   set_pattern(n, edges)      order and fill: once per topology
 //   clear(); diagonal(i) += ..; add(i, j, ..)
 //   factor()                   L D Lᵀ in the stored order
 //   solve(x)                   in place
 //
+//   mirror(); mirrored(..) += ..; factor_general(): from `mirror` on both sides of the diagonal
+//   differ
+//
 // Order. Greedy minimum degree on the graph of the blocks: the block with the fewest neighbours
 // left goes first, and its neighbours become neighbours of each other. A chain gets no fill, a
 // frame of 36 members some dozen blocks. No pivoting: right for positive definite matrices in any
-// order.
+// order. Without symmetry there is pivoting within the blocks of the diagonal alone: right near
+// such matrices.
 //
 // Symbols
 //   n   number of block rows;  edges   pairs (i, j), i ≠ j, whose block A_ij may differ from zero
@@ -27,6 +32,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/numeric/lu.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::numeric {
@@ -59,13 +65,24 @@ class BlockLdlt {
 
     /// False where a pivot is not a positive number; `solve` is then of no use.
     [[nodiscard]] bool factor() noexcept;
-    /// A x = b, b in and x out: `size()` entries in the caller's order. After `factor`.
+
+    /// Sets the blocks across the diagonal from those that are there.
+    void mirror() noexcept;
+    /// The block across the diagonal from `off_diagonal`.
+    [[nodiscard]] Block& mirrored(const Place& place) noexcept { return across_[at(place.at)]; }
+    /// Without symmetry, from `mirrored` too. Where it is singular `solve` gives what is not
+    /// finite.
+    void factor_general() noexcept;
+
+    /// A x = b, b in and x out: `size()` entries in the caller's order. After either factorisation.
     void solve(std::vector<Entry>& x) const noexcept;
 
   private:
     [[nodiscard]] static constexpr std::size_t at(int i) noexcept { return std::size_t(i); }
     void order_blocks(const std::vector<Edge>& edges);
     void plan_updates();
+    void solve_symmetric() const noexcept;
+    void solve_general() const noexcept;
 
     int n_ = 0;
     std::vector<int> order_;  ///< place -> the caller's block
@@ -74,6 +91,9 @@ class BlockLdlt {
     std::vector<int> row_;    ///< places below the diagonal, rising in each column
     std::vector<int> update_; ///< what factor() writes, in the order in which it does
     std::vector<Block> diagonal_, off_;
+    std::vector<Block> across_;           ///< A above the diagonal, then U divided by its own
+    std::vector<Lu<double, 6>> pivots_;   ///< of the diagonal of U
+    bool general_ = false;                ///< the last factors are those without symmetry
     std::vector<Block> scaled_;           ///< a column before it is divided by D
     mutable std::vector<Entry> solution_; ///< by place
 };

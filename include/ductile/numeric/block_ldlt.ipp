@@ -35,6 +35,8 @@ DUCTILE_INLINE void BlockLdlt::set_pattern(int n, const std::vector<Edge>& edges
     plan_updates();
     diagonal_.resize(at(n));
     off_.resize(row_.size());
+    across_.resize(row_.size());
+    pivots_.resize(at(n));
     solution_.resize(at(n));
 }
 
@@ -122,6 +124,7 @@ DUCTILE_INLINE auto BlockLdlt::place(int i, int j) const noexcept -> Place {
 }
 
 DUCTILE_INLINE bool BlockLdlt::factor() noexcept {
+    general_ = false;
     bool positive = true;
     const int* update = update_.data();
     for (int j = 0; j < n_; ++j) {
@@ -147,8 +150,54 @@ DUCTILE_INLINE bool BlockLdlt::factor() noexcept {
     return positive;
 }
 
+DUCTILE_INLINE void BlockLdlt::mirror() noexcept {
+    for (std::size_t q = 0; q < off_.size(); ++q) across_[q] = off_[q].transpose();
+}
+
+/// A_rq -= A_rj A_jj⁻¹ A_jq for all pairs of a column j.
+DUCTILE_INLINE void BlockLdlt::factor_general() noexcept {
+    general_ = true;
+    const int* update = update_.data();
+    for (int j = 0; j < n_; ++j) {
+        const Lu<double, 6>& pivot = pivots_[at(j)] = Lu<double, 6>(diagonal_[at(j)]);
+        const int begin = column_[at(j)], end = column_[at(j) + 1];
+        for (int q = begin; q < end; ++q) {
+            for (int c = 0; c < 6; ++c) {
+                across_[at(q)].col(c) = pivot.solve(Entry(across_[at(q)].col(c)));
+            }
+        }
+        for (int q = begin; q < end; ++q) {
+            diagonal_[at(row_[at(q)])].noalias() -= off_[at(q)] * across_[at(q)];
+            for (int r = q + 1; r < end; ++r, ++update) {
+                off_[at(*update)].noalias() -= off_[at(r)] * across_[at(q)];
+                across_[at(*update)].noalias() -= off_[at(q)] * across_[at(r)];
+            }
+        }
+    }
+}
+
+DUCTILE_INLINE void BlockLdlt::solve_general() const noexcept {
+    for (int j = 0; j < n_; ++j) {
+        Entry& z = solution_[at(j)];
+        z = pivots_[at(j)].solve(z);
+        for (int q = column_[at(j)]; q < column_[at(j) + 1]; ++q) {
+            solution_[at(row_[at(q)])].noalias() -= off_[at(q)] * z;
+        }
+    }
+    for (int j = n_ - 1; j >= 0; --j) {
+        for (int q = column_[at(j)]; q < column_[at(j) + 1]; ++q) {
+            solution_[at(j)].noalias() -= across_[at(q)] * solution_[at(row_[at(q)])];
+        }
+    }
+}
+
 DUCTILE_INLINE void BlockLdlt::solve(std::vector<Entry>& x) const noexcept {
     for (int j = 0; j < n_; ++j) solution_[at(j)] = x[at(order_[at(j)])];
+    general_ ? solve_general() : solve_symmetric();
+    for (int j = 0; j < n_; ++j) x[at(order_[at(j)])] = solution_[at(j)];
+}
+
+DUCTILE_INLINE void BlockLdlt::solve_symmetric() const noexcept {
     for (int j = 0; j < n_; ++j) {
         Entry& z = solution_[at(j)];
         const Block& d = diagonal_[at(j)];
@@ -170,7 +219,6 @@ DUCTILE_INLINE void BlockLdlt::solve(std::vector<Entry>& x) const noexcept {
             for (int r = c + 1; r < 6; ++r) z[c] -= d(r, c) * z[r];
         }
     }
-    for (int j = 0; j < n_; ++j) x[at(order_[at(j)])] = solution_[at(j)];
 }
 
 } // namespace ductile::numeric

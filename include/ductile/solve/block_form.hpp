@@ -5,6 +5,7 @@
 
 #include "ductile/solve/block_view.hpp"
 #include "ductile/solve/contact_form.hpp"
+#include "ductile/solve/coulomb_form.hpp"
 #include "ductile/solve/ellipsoid_form.hpp"
 #include "ductile/solve/surface_form.hpp"
 
@@ -15,7 +16,7 @@ template <class Call>
 decltype(auto) with_form(const BlockView& view, const Call& call) {
     switch (view.block.kind) {
         case BlockKind::contact:
-            return call(ContactForm());
+            return view.tangent.coulomb ? call(CoulombForm()) : call(ContactForm());
         case BlockKind::surface:
             return call(SurfaceForm());
         default:

@@ -40,6 +40,7 @@ struct BlockView {
     }
     void clear_terms() const noexcept {
         for (auto& term : tangent.terms) term.coefficient = 0;
+        tangent.coupling = 0;
     }
     /// A multiplier that is not zero, which means unknown.
     static double known(double multiplier) noexcept {

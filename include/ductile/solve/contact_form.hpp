@@ -173,7 +173,7 @@ struct ContactForm {
         for (int i = 1; i < v.count(); ++i) v.row[i].impulse *= v.row[0].impulse / length;
     }
 
-  private:
+  protected:
     struct Aim {
         double normal = 0, length = 0, d_normal = 1, d = 1;
         Vector6<double> y = Vector6<double>::Zero();
@@ -201,10 +201,14 @@ struct ContactForm {
         const double normal =
             (aim.d_normal * aim.normal + aim.d * aim.length) / (aim.d_normal + aim.d);
         v.row[0].impulse = normal;
-        for (int i = 1; i < v.count(); ++i) {
-            v.row[i].impulse = v.live(i) ? aim.y[i] / aim.length * normal * v.size(i) : 0;
-        }
+        put_friction(v, aim, normal);
         v.block.multiplier = BlockView::known(aim.d_normal * (normal - aim.normal));
+    }
+    /// |y| = `length`, where it is aimed.
+    static void put_friction(const BlockView& v, const Aim& aim, double length) noexcept {
+        for (int i = 1; i < v.count(); ++i) {
+            v.row[i].impulse = v.live(i) ? aim.y[i] / aim.length * length * v.size(i) : 0;
+        }
     }
     static double speed(const BlockView& v) noexcept {
         double square = 0;

@@ -54,7 +54,7 @@ class ContactSlips {
     static void each(IslandSystem& system, const Call& call) {
         for (std::size_t k = 0; k < system.island().blocks.size(); ++k) {
             const BlockView view = view_of(system, k);
-            if (view.block.kind == BlockKind::contact) call(view);
+            if (view.block.kind == BlockKind::contact && !view.tangent.coulomb) call(view);
         }
     }
     void shift(IslandSystem& system) {

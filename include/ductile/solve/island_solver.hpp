@@ -13,11 +13,12 @@
 // Rows without a softness of their own are rigid: the active set takes out what the least softness
 // gives. Among rows that repeat each other the shares stay those of the softness.
 //
-// Friction is more: its slips shift what the normals are asked for (contact_form.hpp). Warm active
-// set first (active_set.hpp), or, where a contact slid, with the normals of one round as the
-// friction's bounds of the next (lagged_friction.hpp); where neither settles Newton on a convex
-// function (proximal_newton.hpp), polished by the active set. At the end the certificate, of
-// Coulomb's law itself.
+// Friction is more. Warm active set first (active_set.hpp), contacts by Coulomb's law itself
+// (coulomb_form.hpp). Where that does not settle, as in jams, convex problems until they repeat
+// themselves: with slips that shift what the normals are asked for (contact_form.hpp), or with the
+// normals of one round as the friction's bounds of the next (lagged_friction.hpp); at last Newton
+// on a convex function (proximal_newton.hpp), polished by the active set. At the end the
+// certificate, of Coulomb's law itself.
 //
 // What is not solved says so, to all joints of the island too where it is much
 // (world/island_joint.hpp): their own rows may be met to the last digit under the wrong forces of a
@@ -51,6 +52,7 @@ class IslandSolver {
   private:
     [[nodiscard]] IslandReport answer(Island& island);
     bool polished(IslandReport& report);
+    bool coulomb(IslandReport& report);
     bool lagged(IslandReport& report, const std::vector<double>& from);
     void fall_back(IslandReport& report, bool touch);
     void certify(IslandReport& report);
@@ -64,6 +66,8 @@ class IslandSolver {
     LaggedFriction lagged_friction_;
     ProximalNewton proximal_newton_;
     std::vector<double> start_, best_;
+    std::vector<Side> sides_; ///< at the start, as are the blocks
+    std::vector<IslandBlock> blocks_;
 };
 
 } // namespace ductile::solve

@@ -77,8 +77,9 @@ DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
         return std::any_of(island.blocks.begin(), island.blocks.end(), is);
     };
     const bool touch = any(touches);
-    const bool solved = any(slides) ? lagged(report, start_) || polished(report)
-                                    : polished(report) || (touch && lagged(report, start_));
+    const bool solved = (touch && coulomb(report)) ||
+                        (any(slides) ? lagged(report, start_) || polished(report)
+                                     : polished(report) || (touch && lagged(report, start_)));
     if (solved) certify(report);
     if (!solved || !report.solved) {
         fall_back(report, touch);
@@ -93,6 +94,27 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
     const bool settled = active_set_.solve(system_);
     report.rounds += active_set_.rounds();
     return settled;
+}
+
+/// Where it does not settle all is as it was.
+DUCTILE_INLINE bool IslandSolver::coulomb(IslandReport& report) {
+    Island& island = system_.island();
+    sides_.clear();
+    for (const IslandRow& row : island.rows) sides_.push_back(row.side);
+    blocks_ = island.blocks;
+    begin_from(start_);
+    for (std::size_t k = 0; k < island.blocks.size(); ++k) {
+        const BlockView view = view_of(system_, k);
+        view.tangent.coulomb = view.block.kind == BlockKind::contact;
+        if (view.tangent.coulomb && view.on_surface()) ContactForm::guess(view);
+    }
+    const bool settled = polished(report);
+    for (IslandSystem::Block& block : system_.blocks()) block.coulomb = false;
+    if (settled) return true;
+    for (std::size_t i = 0; i < sides_.size(); ++i) island.rows[i].side = sides_[i];
+    island.blocks = blocks_;
+    begin_from(start_);
+    return false;
 }
 
 /// With nothing kept of another way.

@@ -8,13 +8,13 @@
 // D is the tangent of the rows' answer to a change of their velocity: diagonal, W = 1/C for a row
 // that is free and 0 for one at its bound, and up to two more ranks for a block,
 //
-//   D = W + Σ c t tᵀ,   two terms at most.
+//   D = W + Σ c t tᵀ + c₀ t₁ e₀ᵀ,   two terms at most; the last where friction follows a normal.
 //
 // A redundant structure makes K no worse than its softness (island.hpp), and contacts add no
 // unknown.
 //
 // Derivation. Rows: C dx + J dv = g where free; bodies: M dv = Jᵀ dx; dx from the first put into
-// the second. K is positive definite as D is semidefinite.
+// the second. Without c₀ K is positive definite as D is semidefinite.
 //
 // Source: the form of implicit plasticity in structural mechanics, K = Σ Jᵀ D J with consistent
 // tangents (Simo & Taylor 1985, doi:10.1016/0045-7825(85)90070-2), here with mass in place of the
@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "ductile/numeric/block_ldlt.hpp"
@@ -58,7 +59,9 @@ class IslandSystem {
             Vector6<double> direction = Vector6<double>::Zero(); ///< t
         };
         std::array<Term, 2> terms;
-        double gap = 0; ///< of a contact, at the last right side [N s]
+        double coupling = 0;  ///< c₀
+        double gap = 0;       ///< of a contact, at the last right side [N s]
+        bool coulomb = false; ///< of a contact: coulomb_form.hpp
         std::size_t run = 0;
     };
 
@@ -115,6 +118,9 @@ class IslandSystem {
 
         void add(double weight, const Vector6<double>& of_a, const Vector6<double>& of_b) noexcept;
     };
+    using Pair = std::pair<Vector6<double>, Vector6<double>>; ///< on bodies a and b
+    [[nodiscard]] Pair along(std::size_t block, const Block::Term& term) const noexcept;
+    void couple() noexcept;
     bool update(Run& run) noexcept;
     void make_isotropic(const IslandBlock& block) noexcept;
     void find_runs();

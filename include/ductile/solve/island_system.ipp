@@ -227,29 +227,67 @@ DUCTILE_INLINE bool IslandSystem::factor() noexcept {
         factors_.diagonal(int(i)) = masses_[i];
     }
     for (Run& run : runs_) run.ranks = false;
+    bool coupled = false;
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        const IslandBlock& given = island_->blocks[k];
         for (const Block::Term& term : blocks_[k].terms) {
             if (term.coefficient == 0) continue;
-            Vector6<double> on_a = Vector6<double>::Zero(), on_b = Vector6<double>::Zero();
-            for (int i = 0; i < given.count; ++i) {
-                const IslandRow& row = island_->rows[std::size_t(given.first + i)];
-                on_a += term.direction[i] * row.on_a;
-                on_b += term.direction[i] * row.on_b;
-            }
+            const auto [on_a, on_b] = along(k, term);
             Run& run = runs_[blocks_[k].run];
             run.add(term.coefficient, on_a, on_b);
             run.ranks = true;
         }
+        coupled = coupled || blocks_[k].coupling != 0;
     }
     for (const Run& run : runs_) {
         if (run.a >= 0) factors_.diagonal(run.a) += run.on_a;
         if (run.b >= 0) factors_.diagonal(run.b) += run.on_b;
         if (run.a >= 0 && run.b >= 0) factors_.off_diagonal(run.place) += run.across;
     }
+    current_ = false;
+    if (coupled) {
+        couple();
+        factors_.factor_general();
+        return true;
+    }
     const bool definite = factors_.factor();
     current_ = definite && flat;
     return definite;
+}
+
+/// Jᵀ t.
+DUCTILE_INLINE auto IslandSystem::along(std::size_t block, const Block::Term& term) const noexcept
+    -> Pair {
+    const IslandBlock& given = island_->blocks[block];
+    Pair on{Vector6<double>::Zero(), Vector6<double>::Zero()};
+    for (int i = 0; i < given.count; ++i) {
+        const IslandRow& row = island_->rows[std::size_t(given.first + i)];
+        on.first += term.direction[i] * row.on_a;
+        on.second += term.direction[i] * row.on_b;
+    }
+    return on;
+}
+
+/// Jᵀ c₀ t e₀ᵀ J, in the factors.
+DUCTILE_INLINE void IslandSystem::couple() noexcept {
+    factors_.mirror();
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        const double coupling = blocks_[k].coupling;
+        if (coupling == 0) continue;
+        auto [on_a, on_b] = along(k, blocks_[k].terms[0]);
+        on_a *= coupling;
+        on_b *= coupling;
+        const IslandRow& first = island_->rows[std::size_t(island_->blocks[k].first)];
+        const Run& run = runs_[blocks_[k].run];
+        if (run.a >= 0) factors_.diagonal(run.a).noalias() += on_a * first.on_a.transpose();
+        if (run.b >= 0) factors_.diagonal(run.b).noalias() += on_b * first.on_b.transpose();
+        if (run.a < 0 || run.b < 0) continue;
+        auto& a_b =
+            run.place.transposed ? factors_.mirrored(run.place) : factors_.off_diagonal(run.place);
+        auto& b_a =
+            run.place.transposed ? factors_.off_diagonal(run.place) : factors_.mirrored(run.place);
+        a_b.noalias() += on_a * first.on_b.transpose();
+        b_a.noalias() += on_b * first.on_a.transpose();
+    }
 }
 
 DUCTILE_INLINE void IslandSystem::step() noexcept {
@@ -258,6 +296,13 @@ DUCTILE_INLINE void IslandSystem::step() noexcept {
         for (Row& row : rows_) row.*to = row.weight * (row.*from) + row.extra;
         for (std::size_t k = 0; k < blocks_.size(); ++k) {
             const IslandBlock& given = island_->blocks[k];
+            if (blocks_[k].coupling != 0) {
+                const double driven = blocks_[k].coupling * (rows_[std::size_t(given.first)].*from);
+                for (int i = 1; i < given.count; ++i) {
+                    rows_[std::size_t(given.first + i)].*to +=
+                        driven * blocks_[k].terms[0].direction[i];
+                }
+            }
             for (const Block::Term& term : blocks_[k].terms) {
                 if (term.coefficient == 0) continue;
                 double along = 0;

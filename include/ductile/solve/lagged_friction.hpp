@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The fast way through an island whose contacts slide: the friction of each is bounded by a disc,
-// whose radius is the normal impulse of the round before,
+// The way through an island whose contacts slide where Newton on Coulomb's law does not settle
+// (coulomb_form.hpp): the friction of each is bounded by a disc, whose radius is the normal impulse
+// of the round before,
 //
 //   n >= 0,   |t/f| <= n',   n' <- n
 //

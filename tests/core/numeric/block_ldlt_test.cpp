@@ -2,6 +2,7 @@
 #include "ductile/numeric/block_ldlt.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -50,6 +51,30 @@ Filled fill(BlockLdlt& factors, int n, const Edges& edges, std::mt19937& random)
     return result;
 }
 
+/// Adds to each block what is not symmetric.
+void skew(BlockLdlt& factors, Filled& filled, int n, const Edges& edges, std::mt19937& random) {
+    std::uniform_real_distribution<double> some(-0.1, 0.1);
+    const auto add = [&](BlockLdlt::Block& block, int i, int j) {
+        const BlockLdlt::Block more = BlockLdlt::Block::NullaryExpr([&] { return some(random); });
+        block += more;
+        filled.dense.block<6, 6>(6 * i, 6 * j) += more;
+    };
+    for (int i = 0; i < n; ++i) add(factors.diagonal(i), i, i);
+    for (const auto& [i, j] : edges) {
+        const auto place = factors.place(i, j);
+        const bool turned = place.transposed;
+        add(factors.off_diagonal(place), turned ? j : i, turned ? i : j);
+        add(factors.mirrored(place), turned ? i : j, turned ? j : i);
+    }
+}
+
+void compare(const Filled& ours, const Eigen::VectorXd& theirs) {
+    for (Eigen::Index i = 0; i < theirs.size(); ++i) {
+        CHECK(ours.right[std::size_t(i / 6)][i % 6] ==
+              Approx(theirs[i]).epsilon(1e-9).margin(1e-9 * theirs.norm()));
+    }
+}
+
 } // namespace
 
 TEST_CASE("Sparse blocks are solved as Eigen solves the dense matrix", "[numeric]") {
@@ -67,11 +92,14 @@ TEST_CASE("Sparse blocks are solved as Eigen solves the dense matrix", "[numeric
             Filled filled = fill(factors, n, edges, random);
             REQUIRE(factors.factor());
             factors.solve(filled.right);
-            const Eigen::VectorXd theirs = filled.dense.llt().solve(filled.right_dense);
-            for (int i = 0; i < 6 * n; ++i) {
-                CHECK(filled.right[std::size_t(i / 6)][i % 6] ==
-                      Approx(theirs[i]).epsilon(1e-9).margin(1e-9 * theirs.norm()));
-            }
+            compare(filled, filled.dense.llt().solve(filled.right_dense));
+
+            filled = fill(factors, n, edges, random);
+            factors.mirror();
+            skew(factors, filled, n, edges, random);
+            factors.factor_general();
+            factors.solve(filled.right);
+            compare(filled, filled.dense.partialPivLu().solve(filled.right_dense));
         }
     }
 }

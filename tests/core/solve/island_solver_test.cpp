@@ -211,17 +211,20 @@ TEST_CASE("Friction in random islands: solved means Coulomb's cone with the norm
 
 TEST_CASE("Boxes that slide and rock on faces are solved, whatever their slips", "[solve]") {
     std::mt19937 random(1);
+    int factorisations = 0;
     for (int repeat = 0; repeat < 90; ++repeat) {
         const int beams = 1 + repeat % 6, stack = 1 + repeat / 6 % 3;
         Island island = islands::stacked_boxes(random, beams, stack);
         const Eigen::MatrixXd a = islands::system_matrix(island);
         IslandSolver solver;
         const IslandReport report = solver.solve(island);
+        factorisations += report.factorisations;
         INFO("island " << repeat << ", " << beams << " beams, " << stack << " boxes on each");
         CHECK(report.solved);
         CHECK(violation(island, a) <= 1e-4 * report.scale);
         CHECK(islands::energy(island, a) <= 1e-12);
     }
+    CHECK(factorisations <= 30 * 90);
 }
 
 TEST_CASE("A rigid grid that is struck is solved, however many of its joints flow", "[solve]") {
@@ -361,7 +364,7 @@ TEST_CASE("Two cubes on a hinge slide on their corners, whose shares are those o
         CHECK(report.residual <= 1e-8 * report.scale);
         if (step > 0) {
             CHECK(report.safe_ways == 0);
-            CHECK(report.factorisations <= 12);
+            CHECK(report.factorisations <= 3);
         }
         for (int i = 0; i < 2; ++i) v[i] += island.bodies[std::size_t(i)].velocity;
         // what does not tilt presses as a plane does
