@@ -102,11 +102,10 @@ DUCTILE_INLINE bool IslandSolver::coulomb(IslandReport& report) {
     sides_.clear();
     for (const IslandRow& row : island.rows) sides_.push_back(row.side);
     blocks_ = island.blocks;
-    begin_from(start_);
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(system_, k);
         view.tangent.coulomb = view.block.kind == BlockKind::contact;
-        if (view.tangent.coulomb && view.on_surface()) ContactForm::guess(view);
+        if (view.tangent.coulomb) view.block.multiplier = 0; // known no better than by a guess
     }
     const bool settled = polished(report);
     for (IslandSystem::Block& block : system_.blocks()) block.coulomb = false;
