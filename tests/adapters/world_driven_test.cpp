@@ -142,9 +142,8 @@ TEST_CASE("a hinge to a swaying base breaks at its travel", "[world][driven]") {
 
 TEST_CASE("Frames: an arm on a turntable that starts smoothly", "[frame][driven]") {
     if (rough) return;
-    // 2 kg, 0.05 kg m², 0.3 m from its hinge, which is 0.2 m from the table's axis; as θ = 6
-    // t⁴/(1/20
-    // + t²) begins, and at up to 11 rad/s, its load grows from frame to frame
+    // 2 kg, 0.05 kg m², 0.3 m from its hinge, which is 0.2 m from the table's axis. That turns by
+    // θ = 6 t⁴/(0.05 + t²), at up to 11 rad/s
     constexpr double mass = 2, own = 0.05, length = 0.3, radius = 0.2, moment = 2;
     const auto angle = [](double t) { return 6 * std::pow(t, 4) / (0.05 + t * t); };
     // (I + m l²)(θ'' + φ'') + m l r (θ'' cos φ + θ'² sin φ) = -M, |M| <= moment
