@@ -10,8 +10,8 @@
 //   it is a jump: the row starts at the new one
 //
 //   Δv/dt goes on where it is off a by no more than |a|, or, as a smooth motion has a = 0 where it
-//   is fastest, than twice what a was off the one before it, where that went on too; and where it
-//   is more than a, up to 16 times that the same way within 60°: as tⁿ begins.
+//   is fastest, than twice what a was off the one before it, where that went on too. So it does as
+//   tⁿ begins: the same way within 60° and up to 16 times a, 4 times where it went on twice.
 //
 // So the travel (u + u')/2 dt is of second order in both. The first change of a motion that begins
 // smoothly is taken for a jump: O(dt²).
@@ -45,7 +45,8 @@ struct DrivenPast {
         const double square = dot(slope, slope);
         const double allowed = std::max(square, smooth < 2 ? 0.0 : 4 * dot(change, change));
         if (dot(turn, turn) <= allowed) return true;
-        constexpr double alike = 0.5, more = 16; // as t⁴ begins: 1, 14, 50, 110
+        constexpr double alike = 0.5; // as t⁴ begins: 1, 14, 50, 110
+        const double more = smooth < 2 ? 16 : 4;
         const double along = dot(next, slope), faster = dot(next, next);
         return along > alike * std::sqrt(square * faster) && faster <= more * more * square;
     }

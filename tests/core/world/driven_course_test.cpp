@@ -107,4 +107,7 @@ TEST_CASE("What is set into motion at once, or turned round at once, jumps") {
     CHECK(jumps(-3));
     CHECK(course.spin(0.01).z() == -3);
     CHECK_FALSE(jumps(-3));
+    CHECK(jumps(-3.1));
+    for (int i = 2; i <= 4; ++i) CHECK_FALSE(jumps(-3 - 0.1 * i));
+    CHECK(jumps(-5)); // the way that it went faster, but far more so
 }
