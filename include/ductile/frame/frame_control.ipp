@@ -171,8 +171,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             // what a contact pushed before it touched moved rows for as long
             if (spent()) judged.error += judged.power * early;
             // so does one whose way was not followed
-            if (motion.turned > detail::followed_turn) {
-                judged.error += judged.power * h * motion.turned / 2;
+            if (const double turn = detail::turn_of(motion); turn > detail::followed_turn) {
+                judged.error += judged.power * h * turn / 2;
             }
             stand(engine, motion, judged, h, at_event, jump);
             return h;
@@ -298,9 +298,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
         judged.most += row.strength * row.speed() * h;
     }
-    if (motion.turned > detail::followed_turn) {
-        judged.turned =
-            std::max(judged.turned, motion.turned / (detail::of_turns * detail::followed_turn));
+    if (const double turn = detail::turn_of(motion); turn > detail::followed_turn) {
+        judged.turned = std::max(judged.turned, turn / (detail::of_turns * detail::followed_turn));
     }
     judged.error += judged.given + judged.astray;
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
@@ -375,7 +374,7 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     next_ = says ? longer : 0;
     // unless flows stop in one after the other, at the cost of the budget
     start_ = starts_ && fresh_ && !jump && used() > detail::many_starts ? longer : 0;
-    spin_ = motion.turned / h;
+    spin_ = detail::turn_of(motion) / h;
     fitted_ = judged.fitted;
     engine.accept(h);
 }

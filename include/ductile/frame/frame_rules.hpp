@@ -47,6 +47,15 @@ template <class Judgement>
     return judged.of_rows > most ? judged.error - judged.of_rows + most : judged.error;
 }
 
+/// How far a part turned what a contact pushes, or what is driven and has a row that moves [rad].
+[[nodiscard]] inline double turn_of(const PartMotion& motion) noexcept {
+    double turn = motion.turned;
+    for (const PartRow& row : motion.rows) {
+        if (row.moves()) turn = std::max(turn, row.carried);
+    }
+    return turn;
+}
+
 /// Whether a row of a part was in the one before, at the same place.
 template <class Past>
 [[nodiscard]] bool was_there(const std::vector<Past>& before, const PartMotion& motion,

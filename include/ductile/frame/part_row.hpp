@@ -68,6 +68,7 @@ struct PartRow {
                            ///< [m/s | rad/s]
     double least = 0;      ///< travel that nobody misses [m | rad]
     double too_far = 0;    ///< turn of a body that its joint could not follow, else 0 [rad]
+    double carried = 0;    ///< turn of a body that is driven, with all that hangs on it [rad]
     double given = 0;      ///< that damping gave its joint in place of taking it, told once [J]
     double unfit = 0;     ///< that rigid rows of its joint took of velocities given from elsewhere,
                           ///< which they do not allow, told once [J]

@@ -239,6 +239,8 @@ class AnyLink {
     [[nodiscard]] S turned_too_far() const noexcept {
         return turning_.swept > allowed_.absolute_residual ? turning_.turn : S(0);
     }
+    /// Turn in it of a body that is driven [rad].
+    [[nodiscard]] S driven_turn() const noexcept { return turning_.driven; }
     /// Force at which an axis flowed or would have, in the last step [N | N m].
     [[nodiscard]] virtual S strength(JointAxis axis) const noexcept = 0;
     /// Plastic travel that nobody misses [m | rad].

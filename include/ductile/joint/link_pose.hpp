@@ -222,6 +222,8 @@ RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
             sum(across, scaled(sign * sine * sine / cosine * 2 * dt / turn, cross(spin, swept)));
         along = difference(along, scaled(sign * (sine - bounded / cosine) / half, swept));
     };
+    result.driven =
+        std::sqrt(std::max(a.inverse_mass > 0 ? S(0) : turn_a, b.inverse_mass > 0 ? S(0) : turn_b));
     add(a.spin, arm_a_, turn_a, 1);
     add(b.spin, sum(times(b.orientation, in_b_.origin), times(axes_, rest)), turn_b, -1);
     Vector3<S> turned = Vector3<S>::Zero();

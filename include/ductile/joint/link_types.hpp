@@ -62,8 +62,9 @@ template <std::floating_point S>
 struct RowTurning {
     Vector6<S> across = Vector6<S>::Zero(); ///< w: less before the solve, more after it
     Vector6<S> along = Vector6<S>::Zero();  ///< o: the same before and after
-    S turn = 0;  ///< of a body that turns further than this can tell, else 0 [rad]
-    S swept = 0; ///< then the speed of its arm [m/s]
+    S turn = 0;   ///< of a body that turns further than this can tell, else 0 [rad]
+    S swept = 0;  ///< then the speed of its arm [m/s]
+    S driven = 0; ///< turn of a body that nothing can move [rad]
 
     /// Where the row is at rest 0 before the step and `drift` after it; their sum is that of u, u'.
     [[nodiscard]] Vector6<S> before(const Vector6<S>& u) const noexcept {

@@ -7,13 +7,11 @@
 //   V      mean velocity over this frame, of length L                       [m/s | rad/s]
 //   a, a₋  its change since the last frame by the time between their middles, and that of the last
 //   v(0)   what the last frame ended with
-//   v(L) = V + a L/2 + (a - a₋) L/4
+//   v(L) = V + a L/2 + (a - a₋) L/3, as a parabola has it whose means are those of three frames
 //
-// linear between, where V goes on as it did (driven_velocity.hpp); else v = V, as of what is set
-// into motion at once. A joint counts the travel of v. That of a frame is off by (v(0) + v(L))/2 -
-// V = -(Δa - Δa₋) L/8, Δa = a - a₋: over many frames by what Δa has changed in all, however long
-// they are. Were v(L) without its last term it would be off by -Δa L/4 in each, a share of (ω L)²/4
-// of what goes to and fro as sin ωt. The body itself goes from end to end of its frames.
+// in between the parabola of mean V, where V goes on as it did (driven_velocity.hpp); else v = V,
+// as of what is set into motion at once. Before its first frame a body is taken to have been at
+// rest. So a joint counts the very way that the body goes.
 #pragma once
 
 #include "ductile/joint/link_types.hpp"
@@ -39,23 +37,30 @@ class DrivenCourse {
     [[nodiscard]] Vector3<double> spin(double time) const noexcept {
         return spin_.at(time / length_);
     }
-    /// The change of its place with time, whose mean over the frame is V.
-    [[nodiscard]] Vector3<double> going(double time) const noexcept {
-        return sum(velocity(time), velocity_.missing());
+    /// In the second half of a part of `h` [s] that began then, the first half of which it went
+    /// with the velocity that it had.
+    [[nodiscard]] Vector3<double> later_velocity(double time, double h) const noexcept {
+        return later(velocity(time), way(time), way(time + h), h);
     }
-    [[nodiscard]] Vector3<double> turning(double time) const noexcept {
-        return sum(spin(time), spin_.missing());
+    [[nodiscard]] Vector3<double> later_spin(double time, double h) const noexcept {
+        return later(spin(time), turn(time), turn(time + h), h);
     }
     /// From where the frame began [m].
     [[nodiscard]] Vector3<double> way(double time) const noexcept {
-        return scaled(time, going(time / 2));
+        return scaled(length_, velocity_.gone(time / length_));
     }
     /// The same, as a rotation vector [rad].
     [[nodiscard]] Vector3<double> turn(double time) const noexcept {
-        return scaled(time, turning(time / 2));
+        return scaled(length_, spin_.gone(time / length_));
     }
 
   private:
+    [[nodiscard]] static Vector3<double> later(const Vector3<double>& before,
+                                               const Vector3<double>& from,
+                                               const Vector3<double>& to, double h) noexcept {
+        return difference(scaled(2 / h, difference(to, from)), before);
+    }
+
     /// Linear or angular.
     class Velocity {
       public:
@@ -64,17 +69,26 @@ class DrivenCourse {
             start_ = past_.smooth > 0 ? end_ : mean;
             end_ = mean;
             if (past_.smooth > 0) end_ = sum(end_, scaled(length / 2, past_.slope));
-            if (past_.smooth > 1) end_ = sum(end_, scaled(length / 4, past_.change));
+            if (past_.smooth > 1) end_ = sum(end_, scaled(length / 3, past_.change));
         }
-        [[nodiscard]] Vector3<double> at(double share) const noexcept {
-            return sum(start_, scaled(share, difference(end_, start_)));
+        [[nodiscard]] Vector3<double> at(double s) const noexcept {
+            const Vector3<double> straight = sum(start_, scaled(s, difference(end_, start_)));
+            return sum(straight, scaled(6 * s * (1 - s), bent()));
         }
-        [[nodiscard]] Vector3<double> missing() const noexcept {
-            return difference(past_.value, at(0.5));
+        /// Integral of `at` [m/s | rad/s].
+        [[nodiscard]] Vector3<double> gone(double s) const noexcept {
+            const Vector3<double> change = difference(end_, start_);
+            const Vector3<double> straight = sum(scaled(s, start_), scaled(s * s / 2, change));
+            return sum(straight, scaled(s * s * (3 - 2 * s), bent()));
         }
 
       private:
-        DrivenPast past_;
+        /// What its mean is more than that of its ends.
+        [[nodiscard]] Vector3<double> bent() const noexcept {
+            return difference(past_.value, scaled(0.5, sum(start_, end_)));
+        }
+
+        DrivenPast past_{.steps = 1}; ///< at rest, until it is known
         Vector3<double> start_ = Vector3<double>::Zero(), end_ = Vector3<double>::Zero();
     };
 

@@ -89,6 +89,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         row.turning = link.turning_speed();
         row.least = link.least_travel();
         row.too_far = link.turned_too_far();
+        row.carried = link.driven_turn();
         row.broke = link.last().held;
         if (row.broke > 0) {
             row.freed = std::exchange(freed, 0);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // The ways of kinematic bodies over a frame that is done in parts (world/driven_course.hpp): from
-// where the last frame left them to where they were put since. Each part sees them in its middle,
-// as it sees all bodies, with the velocities of its end.
+// where the last frame left them to where they were put since. Each part sees them where they would
+// be in its middle with the velocities that it began with, as it sees all bodies, with the
+// velocities of its end.
 //
 // A step of Bullet's own reads such a body's whole way as that of its first tick, however short,
 // and the angle of a short turn off the cosine of its half.
@@ -52,27 +53,26 @@ class DrivenWays {
         }
         place(0, 0, 0);
     }
-    /// Puts the bodies where they are `time` [s] after the frame's begin, with the velocities that
-    /// they have at `then`; as those of the interpolation with the ones they had at `begun`.
-    void place(btScalar time, btScalar begun, btScalar then) {
+    /// Puts the bodies where they are `time` [s] after the frame's begin, and from there on by
+    /// `ahead` [s] with the velocities that they have then, which are those of the interpolation;
+    /// they have the ones at `end`.
+    void place(btScalar time, btScalar ahead, btScalar end) {
         for (const auto& [body, from, to, course] : ways_) {
+            const btVector3 velocity = to_bullet(course.velocity(double(time)));
+            const btVector3 spin = to_bullet(course.spin(double(time)));
             btTransform now = from;
             if (time >= length_ * (1 - SIMD_EPSILON)) {
                 now = to;
             } else if (time > 0) {
-                const btVector3 turn = to_bullet(course.turn(double(time)));
-                now.setOrigin(from.getOrigin() + to_bullet(course.way(double(time))));
-                if (turn.length2() > 0) {
-                    now.setRotation(btQuaternion(turn.normalized(), turn.length()) *
-                                    from.getRotation());
-                }
+                go(now, to_bullet(course.way(double(time))), to_bullet(course.turn(double(time))));
             }
+            if (ahead > 0) go(now, velocity * ahead, spin * ahead);
             body->setWorldTransform(now);
             body->setInterpolationWorldTransform(now);
-            body->setLinearVelocity(to_bullet(course.velocity(double(then))));
-            body->setAngularVelocity(to_bullet(course.spin(double(then))));
-            body->setInterpolationLinearVelocity(to_bullet(course.velocity(double(begun))));
-            body->setInterpolationAngularVelocity(to_bullet(course.spin(double(begun))));
+            body->setLinearVelocity(to_bullet(course.velocity(double(end))));
+            body->setAngularVelocity(to_bullet(course.spin(double(end))));
+            body->setInterpolationLinearVelocity(velocity);
+            body->setInterpolationAngularVelocity(spin);
         }
     }
     [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
@@ -83,6 +83,13 @@ class DrivenWays {
     }
 
   private:
+    static void go(btTransform& transform, const btVector3& way, const btVector3& turn) {
+        transform.setOrigin(transform.getOrigin() + way);
+        if (!(turn.length2() > 0)) return;
+        transform.setRotation(btQuaternion(turn.normalized(), turn.length()) *
+                              transform.getRotation());
+    }
+
     struct Way {
         btRigidBody* body;
         btTransform from, to;

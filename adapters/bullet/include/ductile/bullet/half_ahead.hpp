@@ -86,7 +86,7 @@ class HalfAhead final : public btActionInterface {
     /// Moves those of `bodies` that are awake half a step of `h` > 0 [s] ahead, for the coming
     /// tick, which begins `time` [s] after the frame that `ways` are of.
     void move(std::span<btRigidBody* const> bodies, btScalar h, DrivenWays& ways, btScalar time) {
-        ways.place(time + h / 2, time, time + h);
+        ways.place(time, h / 2, time + h);
         ways_ = &ways;
         end_ = time + h;
         middles_.assign(bodies.size(), {});
@@ -103,7 +103,7 @@ class HalfAhead final : public btActionInterface {
     /// The rest of the way, in the tick; the same bodies.
     void finish(std::span<btRigidBody* const> bodies, btScalar h) {
         if (!std::exchange(moved_, false)) return;
-        ways_->place(end_, end_, end_);
+        ways_->place(end_, 0, end_);
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             btRigidBody* body = detail::awake_body(*bodies[i]);
             if (body == nullptr) continue;

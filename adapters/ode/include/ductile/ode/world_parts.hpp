@@ -131,7 +131,7 @@ class WorldParts final : public PartEngine {
     void do_again();
     void begin_driven();
     void drive_as_at(double time) const;
-    void go_as_at(double time) const;
+    void drive_to_end(double time, double h) const;
     void drive(const Vector3<double>& velocity, const Vector3<double>& spin, dBodyID body) const;
     void tick(double h, bool blow);
     void go_ahead(double h, double half);

@@ -123,10 +123,11 @@ DUCTILE_INLINE void WorldParts::drive_as_at(double time) const {
     }
 }
 
-/// With those that take them, through a time with `time` as its middle, to where they should be.
-DUCTILE_INLINE void WorldParts::go_as_at(double time) const {
+/// The rest of the way of a part of `h` [s] that began at `time`.
+DUCTILE_INLINE void WorldParts::drive_to_end(double time, double h) const {
     for (const Driven& driven : driven_) {
-        drive(driven.course.going(time), driven.course.turning(time), driven.body);
+        drive(driven.course.later_velocity(time, h), driven.course.later_spin(time, h),
+              driven.body);
     }
 }
 
@@ -232,7 +233,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
                                  driven.course.spin(time_));
         }
     }
-    go_as_at(time_ + half / 2); // the mean of the first half
+    drive_as_at(time_);
     go_ahead(h, half);
     drive_as_at(end);
     if (!blow) closing_.see_motions(bodies());
@@ -249,7 +250,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
         closed_ = closing_.closed(half, 0, apart_);
         closing_.remember();
     }
-    go_as_at(end - half / 2);
+    if (!blow) drive_to_end(time_, h);
     half_ahead_.move_on(half);
     drive_as_at(end);
     time_ = end;
