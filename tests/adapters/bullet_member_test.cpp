@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ductile/material/named.hpp"
@@ -461,16 +462,18 @@ TEST_CASE("what is done to a member in a world that it cannot bear is said, and 
 }
 
 TEST_CASE("what is thrown and hangs on two elastic posts is borne by both", "[bullet][member]") {
-    // 100 J, 50 for each: what either bears is M_p² l/(6 EI) = 70 J
+    // 100 J, 50 for each: what either bears is M_p² l/(6 EI) = 70 J; of a body of no more mass than
+    // they have their waves may let some of that flow
     MemberParameters p;
     p.segments = lumped_segments(2, 24, 10, {1e-5, 1e-5, 2e-5});
     p.segments.insert(p.segments.begin(), {.length = 0, .mass = 0, .held = true});
     p.sections.assign(10, UsualAxisJoint(Perfect<double>({.strength = 500})));
     p.bending_stiffness = 500.0 * 500 * 2 / (6 * 70);
     const Member of(p);
-    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+    for (const auto& [frame, mass] : {std::pair{1.0 / 30, 1000.0}, std::pair{1.0 / 60, 1000.0},
+                                      std::pair{1.0 / 240, 1000.0}, std::pair{1.0 / 60, 50.0}}) {
         Scene scene({0, 0, 0}, 0.01, 0);
-        btRigidBody& body = scene.rig.body(50, {0.5f, 0.5f, 0.5f}, {0, 0, 2});
+        btRigidBody& body = scene.rig.body(mass, {0.5f, 0.5f, 0.5f}, {0, 0, 2});
         std::vector<std::unique_ptr<bullet::Member>> posts;
         for (const btScalar x : {btScalar(-0.5), btScalar(0.5)}) {
             const btVector3 none(0, 0, 0);
@@ -482,10 +485,10 @@ TEST_CASE("what is thrown and hangs on two elastic posts is borne by both", "[bu
             });
             scene.world.add(*posts.back());
         }
-        body.setLinearVelocity({0, 2, 0});
+        body.setLinearVelocity({0, btScalar(std::sqrt(200 / mass)), 0});
         scene.go(0.2, frame);
-        CAPTURE(frame);
+        CAPTURE(frame, mass);
         for (const auto& post : posts) CHECK(post->absorbed_energy() == 0);
-        CHECK(scene.world.run().believed());
+        CHECK(scene.world.run().believed() == (mass > 100));
     }
 }

@@ -180,8 +180,11 @@ class MemberCourse {
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             profile.add(member_, forces_);
-            const MemberBlow blow = member_blow(member_, state_, elastic_forces(steps, loads),
-                                                strike.energy, strike.speed, strike.segment);
+            const InternalForces& elastic = elastic_forces(steps, loads);
+            const auto supports = whole() ? std::span<const MemberSupport>(closed_supports_)
+                                          : std::span<const MemberSupport>();
+            const MemberBlow blow = member_blow(member_, state_, elastic, strike.energy,
+                                                strike.speed, strike.segment, supports);
             utilisation = std::max(utilisation, blow.in_all);
             if (first) rough_ = rough_ || blow.is_rough();
             yields_ = yields_ || blow.yields();

@@ -8,31 +8,19 @@
 #include <limits>
 
 #include "core/member/strips.hpp"
-#include "core/member/timoshenko_post.hpp"
 #include "ductile/material/named.hpp"
-#include "ductile/member/blow.hpp"
 #include "ductile/member/member_course.hpp"
 #include "ductile/section/rectangle.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
 using ductile::test::message_of;
+using ductile::test::of_whole;
 using ductile::test::strip;
 
 namespace {
 
 const Vector3<double> none = Vector3<double>::Zero();
-
-/// Of a cantilever, or a free bar, as one body: what its sections carry.
-InternalForces of_whole(const Member& member, const BodyMotion& change,
-                        const std::vector<MemberLoad>& loads) {
-    const MemberPiece piece = make_piece(member, straight(member), {0, member.segments() - 1});
-    const JointFrame<double> start = piece.section(member, 0, false);
-    InternalForces forces;
-    internal_forces(member, piece, {.pose = frame_around({}, start), .change = change}, loads,
-                    forces);
-    return forces;
-}
 
 } // namespace
 
@@ -149,118 +137,6 @@ TEST_CASE("a piece is straight from bend to bend", "[member]") {
         CHECK(norm(difference(difference(stretch.middle.origin, half),
                               end_of(stretch.run.first, false))) < 1e-12);
     }
-}
-
-/// U_y: strain energy of the blow's profile where the first section yields, without the wave [J].
-static double energy_at_yield(const Member& member, const MemberState& state,
-                              const InternalForces& forces) {
-    const MemberBlow blow = member_blow(member, state, forces, 1, 0, 0);
-    return blow.utilisation > 0 ? 1 / (blow.utilisation * blow.utilisation)
-                                : std::numeric_limits<double>::infinity();
-}
-
-TEST_CASE("a cantilever yields where a blow takes more than its strain energy at yield",
-          "[member]") {
-    const Rectangle<double> section({.width = 0.064, .height = 0.004});
-    const Material<double> steel(s355<double>());
-    const Member member = beam(section, steel, {.length = 1, .segments = 32, .clamped = true});
-    const MemberState state = straight(member);
-    const double mp = plastic_moment(section, steel), stiffness = member.bending_stiffness();
-    const auto forces =
-        of_whole(member, {}, {{.segment = 32, .point = {0, 0, 1}, .impulse = {0, 3, 0}}});
-    // M_p² L/(6 EI), whatever the impulse
-    CHECK(energy_at_yield(member, state, forces) == Approx(mp * mp / (6 * stiffness)));
-    const double at_yield = energy_at_yield(member, state, forces);
-    CHECK_FALSE(member_blow(member, state, forces, 0.999 * at_yield, 0, 32).yields());
-    const MemberBlow twice = member_blow(member, state, forces, 2 * at_yield, 0, 32);
-    CHECK(twice.yields());
-    CHECK(twice.in_all * twice.in_all == Approx(2));
-    // what weighs nothing, however fast
-    const double v = mp / std::sqrt(member.mass_per_length() * stiffness);
-    CHECK_FALSE(member_blow(member, state, forces, 1e-12, 10 * v, 32).yields());
-    // without elasticity every blow does
-    const Member rigid = strip(8);
-    const auto in_rigid =
-        of_whole(rigid, {}, {{.segment = 8, .point = {0, 0, 1}, .impulse = {0, 1e-6, 0}}});
-    CHECK(std::isinf(member_blow(rigid, straight(rigid), in_rigid, 1e-9, 0, 8).in_all));
-}
-
-TEST_CASE("of a light body's blow an elastic member takes what Timoshenko's beam does, or says so",
-          "[member]") {
-    using namespace ductile::test;
-    // clamped, or not held at all; struck at its end, in its middle
-    for (const bool clamped : {true, false}) {
-        const Member member = elastic_post(32, clamped);
-        const MemberPiece whole = make_piece(member, straight(member), {0, member.segments() - 1});
-        for (const bool end : {true, false}) {
-            const double place = end ? post_length : post_length / 2;
-            const int segment = end ? member.segments() - 1 : member.segments() / 2;
-            BodyMotion change{none, none};
-            double mobility = 0; // of the post there [1/kg]
-            if (!clamped) {
-                const double arm = place - post_length / 2;
-                change.velocity = {0, 1 / post_mass, 0};
-                change.spin = {-arm / whole.inertia[0], 0, 0};
-                mobility = 1 / post_mass + arm * arm / whole.inertia[0];
-            }
-            const auto forces =
-                of_whole(member, change,
-                         {{.segment = segment, .point = {0, 0, place}, .impulse = {0, 1, 0}}});
-            REQUIRE((clamped || forces.left_over() < 1e-9));
-            for (const double share : {0.05, 0.1, 0.2, 0.5}) {
-                const double striker = share * post_mass, reduced = 1 / (1 / striker + mobility);
-                for (const double speed : {3.0, 5.0, 8.0, 12.0, 20.0, 40.0}) {
-                    const double energy = reduced * speed * speed / 2;
-                    const MemberBlow blow =
-                        member_blow(member, straight(member), forces, energy, speed, segment);
-                    const double flows = blow.yields() ? 1 - 1 / (blow.in_all * blow.in_all) : 0.0;
-                    const TimoshenkoPost exact{.clamped = clamped,
-                                               .struck = end ? 80 : 40,
-                                               .striker = striker,
-                                               .speed = speed};
-                    const double seen =
-                        exact.work(0.1 + 4 * striker * speed / post_strength) / energy;
-                    const double off = std::abs(flows - seen / (1 - exact.lumped()));
-                    CAPTURE(clamped, end, share, speed, flows, seen, off);
-                    CHECK(off < 0.25);
-                    CHECK((off < 0.13 || blow.is_rough()));
-                    CHECK((speed > 3 || !blow.is_rough())); // nothing flows
-                }
-            }
-        }
-    }
-}
-
-TEST_CASE("a blow that follows leaves no more in vibration than a member can store", "[member]") {
-    const Rectangle<double> section({.width = 0.064, .height = 0.004});
-    const Material<double> steel(s355<double>());
-    MemberCourse course(beam(section, steel, {.length = 1, .segments = 8, .clamped = true}));
-    const std::vector<MemberLoad> loads{{.segment = 8, .point = {0, 0, 1}, .impulse = {0, 3, 0}}};
-    const double at_yield =
-        energy_at_yield(course.member(), course.state(), of_whole(course.member(), {}, loads));
-    const std::vector<PieceStep> steps(1);
-    const auto strike = [&](double energy) {
-        course.begin_blow();
-        return course.struck(steps, loads, {.energy = energy, .speed = 0, .segment = 8});
-    };
-    CHECK(strike(0.9 * at_yield) == no_section);
-    CHECK(course.vibration() == MemberVibration{});
-    CHECK(strike(4 * at_yield) == 7);
-    CHECK(course.vibration().share == Approx(0.25));
-    CHECK(course.vibration().ahead == Approx(at_yield));
-    CHECK(strike(100 * at_yield) == 7);
-    CHECK(course.vibration().share == Approx(0.25));
-    CHECK(course.vibration().ahead == Approx(at_yield));
-    // a quarter of what flows, no more than what is ahead
-    const std::vector<int> opened{7};
-    const std::vector<PlacedPiece> whole{{&course.pieces().front(), {}, {}}};
-    CHECK(course.open(opened, whole).size() == 2);
-    course.section(7).joint.plastic_work = at_yield;
-    CHECK(course.count_vibration() == Approx(0.25 * at_yield));
-    CHECK(course.count_vibration() == 0);
-    course.section(7).joint.plastic_work = 100 * at_yield;
-    CHECK(course.count_vibration() == Approx(0.75 * at_yield));
-    CHECK(course.vibration().lost == Approx(at_yield));
 }
 
 TEST_CASE("a beam is finer towards an end that is struck, and as heavy and long", "[member]") {

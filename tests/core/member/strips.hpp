@@ -3,7 +3,11 @@
 // Members that the tests strike: Parkes' cantilevers and free bars.
 #pragma once
 
-#include "ductile/member/member.hpp"
+#include <vector>
+
+#include "ductile/material/named.hpp"
+#include "ductile/member/internal_forces.hpp"
+#include "ductile/section/box.hpp"
 
 namespace ductile::test {
 
@@ -42,6 +46,26 @@ inline Member elastic_post(int segments, bool clamped = true) {
                       UsualAxisJoint(Perfect<double>({.strength = post_strength})));
     p.bending_stiffness = post_stiffness;
     return Member(p);
+}
+
+/// The same by its section, which says what it bears in all axes.
+inline Member steel_post(bool clamped, bool fixed_end) {
+    return beam(
+        Box<double>(
+            {.width = 0.1, .height = 0.1, .web_thickness = 0.004, .flange_thickness = 0.004}),
+        Material<double>(s355<double>()),
+        {.length = post_length, .segments = 32, .clamped = clamped, .fixed_end = fixed_end});
+}
+
+/// Of a cantilever, or a free bar, as one body: what its sections carry.
+inline InternalForces of_whole(const Member& member, const BodyMotion& change,
+                               const std::vector<MemberLoad>& loads) {
+    const MemberPiece piece = make_piece(member, straight(member), {0, member.segments() - 1});
+    const JointFrame<double> start = piece.section(member, 0, false);
+    InternalForces forces;
+    internal_forces(member, piece, {.pose = frame_around({}, start), .change = change}, loads,
+                    forces);
+    return forces;
 }
 
 /// 2 m, 24 kg, clamped.
