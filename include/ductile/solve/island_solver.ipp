@@ -70,16 +70,11 @@ DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
         return report;
     }
     const auto touches = [](const IslandBlock& block) { return block.kind == BlockKind::contact; };
-    const auto slides = [&touches](const IslandBlock& block) {
-        return touches(block) && block.state == BlockState::surface;
-    };
     const auto any = [&island](const auto& is) {
         return std::any_of(island.blocks.begin(), island.blocks.end(), is);
     };
     const bool touch = any(touches);
-    const bool solved = (touch && coulomb(report)) ||
-                        (any(slides) ? lagged(report, start_) || polished(report)
-                                     : polished(report) || (touch && lagged(report, start_)));
+    const bool solved = (touch && (coulomb(report) || lagged(report, start_))) || polished(report);
     if (solved) certify(report);
     if (!solved || !report.solved) {
         fall_back(report, touch);
