@@ -14,7 +14,7 @@
 // the sections let that pass. With p = |M̂|/(τ M_p), w = c V √(μ EI)/M_p:
 //
 //   n = max [ p, f (p + w) next to the contact ],   N² = max [ n^(4/3), (max p)² + w² ]
-//   f = l/(l + 2.3 ρ),   l = 2 E/(μ V²) by each side
+//   f = l/(l + 2.3 ρ),   l = 2 E/(μ V²) by each side; n^(7/4) where nothing holds the member
 //
 //   n <= 1   it stays whole: a blow that it bears
 //   n > 1    it yields, as a rigid-plastic member would, and of what this absorbs the share
@@ -33,11 +33,12 @@
 // strikes and however that is held: within 0.04 of E in the mean, 0.2 where it just yields.
 //
 // What it may be off by is told as `astray`. The second N² is the better one for heavy strikers
-// too; but a cantilever that is struck at its end is to bear E up to that of its profile (P39), and
-// contacts push where that beam's striker sticks. So it stands beside the first one as a band, as
-// wide as the share of E that does not go into the profile's shape (Rayleigh):
+// too (its power as in the first); but a cantilever that is struck at its end is to bear E up to
+// that of its profile (P39), and contacts push where that beam's striker sticks. So it stands
+// beside the first one as a band, as wide as the share of E that does not go into the profile's
+// shape (Rayleigh):
 //
-//   N² (1 - 0.7 R) to N² (1 + 0.3 R),   R = m_w/(m_w + 2 E/V²),   m_w = ∫ μ (w/w_c)² ds
+//   N² (1 - 0.75 R) to N² (1 + 0.3 R),   R = m_w/(m_w + 2 E/V²),   m_w = ∫ μ (w/w_c)² ds
 //
 // with w(s) the deflection under the profile, w_c where it is struck: an overhang that a striker
 // has to carry with it, or a span beside a support that it strikes, makes m_w many times the
@@ -115,7 +116,7 @@ struct Wave {
         mxw += mass * x * w;
         mww += mass * w * w;
     };
-    double x = 0, w = 0, slope = 0, before = 0, struck_at = 0, struck = 0;
+    double x = 0, w = 0, slope = 0, before = 0, from = 0, from_w = 0, till = 0, till_w = 0;
     for (int k = first; k <= last; ++k) {
         const MemberSegment& of = member.segment(k);
         const double s = of.length,
@@ -129,8 +130,10 @@ struct Wave {
             }
         }
         if (k == segment) {
-            struck_at = x + s / 2;
-            struck = (w + to) / 2;
+            from = x;
+            from_w = w;
+            till = x + s;
+            till_w = to;
         }
         slope += s * (before + behind) / 2;
         before = behind;
@@ -142,7 +145,7 @@ struct Wave {
         b = (m * mxw - mx * mw) / (m * mxx - mx * mx);
         a = (mw - b * mx) / m;
     }
-    const double there = struck - a - b * struck_at;
+    const double there = std::max(std::abs(from_w - a - b * from), std::abs(till_w - a - b * till));
     return (mww - a * mw - b * mxw) / (there * there);
 }
 
@@ -157,7 +160,7 @@ struct MemberBlow {
     double utilisation = 0;     ///< n
     double in_all = 0;          ///< N
     double astray = 0;          ///< of E, that may have flowed or not [J]
-    double taken = 0;           ///< of E, by the contact as the segment is rigid [J]
+    double taken = 0;           ///< of a light body's E, by the contact as the segment is rigid [J]
 
     [[nodiscard]] bool yields() const noexcept { return utilisation > 1; }
     /// Of E.
@@ -214,23 +217,25 @@ struct MemberBlow {
         all = std::max(all, used_by(sent_out.turned_back * wave));
         both = std::max(both, with_wave);
     }
-    const double f = sent_out.kept, n = f * both, // as if it were light
-        in_all = std::max(std::pow(n, 2.0 / 3), f * std::hypot(profile, all));
-    if (3 * all > 2 * sent_out.turned_back * profile) {
-        blow.utilisation = n;
+    const bool light = 3 * all > 2 * sent_out.turned_back * profile,
+               held = light || member.clamped() || !supports.empty();
+    const double f = sent_out.kept, power = held ? 2.0 / 3 : 7.0 / 8,
+                 in_all = std::max(std::pow(f * both, power), f * std::hypot(profile, all));
+    if (light) {
+        blow.utilisation = f * both;
         blow.in_all = in_all;
     } else {
         blow.utilisation = std::max(profile, f * near);
-        blow.in_all = std::max(std::pow(blow.utilisation, 2.0 / 3), std::hypot(profile, all));
+        blow.in_all = std::max(std::pow(blow.utilisation, power), std::hypot(profile, all));
     }
     const double shape = detail::mass_of_shape(member, forces, segment, supports);
     if (speed > 0 && shape > 0) {
-        constexpr double more = 0.3, less = 0.7;
+        constexpr double more = 0.3, less = 0.75;
         const double beside = 1 / (1 + 2 * energy / (speed * speed) / shape), // R
             most = detail::flow(in_all * std::sqrt(1 + more * beside)),
                      least = detail::flow(in_all * std::sqrt(1 - less * beside));
         blow.astray = energy * std::max(most - blow.flows(), blow.flows() - least);
-        blow.taken = energy * sent_out.taken;
+        if (light) blow.taken = energy * sent_out.taken;
     }
     return blow;
 }

@@ -24,8 +24,7 @@ namespace ductile {
             return "had to bear more than it can along its axis, about it or across the plane in "
                    "which it bends, of which it knows nothing";
         case Unmodelled::rough_blow:
-            return "took a blow by what is light against it, of which it is not known within 5 % "
-                   "of its energy how much flowed";
+            return "took a blow of which it is not known within 12 % of its energy how much flowed";
         case Unmodelled::driven:
             return "does not move, and a driven body passes through it: the engine solves no "
                    "contacts between them";
