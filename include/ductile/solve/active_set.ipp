@@ -130,7 +130,6 @@ DUCTILE_INLINE double ActiveSet::accepted() const noexcept {
 DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     constexpr int steps = 12;
     constexpr double slow = 0.1, stalled = 0.5;
-    constexpr double nearly = 1e-6; // of the largest velocity, before the last step
     const std::vector<IslandBlock>& blocks = system_->island().blocks;
     const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
         return block.state == BlockState::surface;
@@ -141,13 +140,7 @@ DUCTILE_INLINE bool ActiveSet::solve_free_rows(bool factored) {
     kept_.restart();
     least_given_ = last_given_ = before;
     slow_ = 0;
-    bool foreseen = detail::adds_up(system_->island()) > 1; // what rigid rows will give
     for (int step = 0;; ++step) {
-        if (step > 0 && hardens_ && !foreseen && worst <= nearly * system_->scale()) {
-            foreseen = true; // and next to nothing is left for `harden`
-            system_->read_rigid(keep_, impulses_);
-            system_->keep(impulses_);
-        }
         system_->update_velocities();
         system_->update_residuals();
         worst = set_right_sides(*system_);

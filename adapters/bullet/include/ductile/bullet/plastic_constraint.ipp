@@ -184,7 +184,8 @@ DUCTILE_INLINE BodyState<double> PlasticConstraint::at_start(int side, double ti
     std::unique_ptr<DrivenBody>& driven = driven_[std::size_t(side)];
     if (!body.isKinematicObject()) {
         driven.reset();
-        return with_mass ? body_state(body) : body_motion(body);
+        // a part asks for it as well, to know what is driven
+        return with_mass || ahead_ ? body_state(body) : body_motion(body);
     }
     if (driven == nullptr) driven = std::make_unique<DrivenBody>();
     if (ahead_) return driven->at_start_ahead(body);
