@@ -15,6 +15,7 @@
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
+#include <ductile/ode/own_joint.ipp>
 #include <ductile/ode/plastic_motor.ipp>
 #include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/structure.ipp>

@@ -41,10 +41,7 @@ DUCTILE_INLINE std::array<Vector3<double>, 2> friction_directions(const dContact
         const Vector3<double> first = to_core(contact.fdir1);
         return {first, cross(normal, first)};
     }
-    const dVector3 n{dReal(normal.x()), dReal(normal.y()), dReal(normal.z())};
-    dVector3 first, second;
-    dPlaneSpace(n, first, second);
-    return {to_core(first), to_core(second)};
+    return plane_across(normal);
 }
 
 } // namespace detail
@@ -150,23 +147,12 @@ DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island
 }
 
 DUCTILE_INLINE void ContactRows::close(const solve::Island& island, double dt) const {
-    const AttachedBodies bodies = attached_bodies(joint_);
     Vector3<double> force = Vector3<double>::Zero();
     for (int i = 0; i < count_; ++i) {
         const double impulse = island.rows[std::size_t(first_ + i)].impulse;
         force = sum(force, scaled(impulse / dt, along_[std::size_t(i)]));
     }
-    const Vector3<double> torque_a = cross(arm_a_, force), torque_b = cross(force, arm_b_);
-    add_force(bodies.a, force, torque_a);
-    if (bodies.b != nullptr) add_force(bodies.b, scaled(-1, force), torque_b);
-    dJointFeedback* feedback = dJointGetFeedback(joint_);
-    if (feedback == nullptr) return;
-    for (int i = 0; i < 3; ++i) {
-        feedback->f1[i] = dReal(force[i]);
-        feedback->t1[i] = dReal(torque_a[i]);
-        feedback->f2[i] = dReal(bodies.b != nullptr ? -force[i] : 0);
-        feedback->t2[i] = dReal(bodies.b != nullptr ? torque_b[i] : 0);
-    }
+    push(joint_, force, cross(arm_a_, force), cross(force, arm_b_));
 }
 
 } // namespace ductile::ode

@@ -5,6 +5,7 @@
 
 #include <ode/ode.h>
 
+#include <array>
 #include <functional>
 
 #include "ductile/joint/inverse_mass.hpp"
@@ -16,6 +17,14 @@ namespace ductile::ode {
 
 [[nodiscard]] inline Vector3<double> to_core(const dReal* v) noexcept {
     return {double(v[0]), double(v[1]), double(v[2])};
+}
+
+/// The two directions that ODE takes across a unit vector.
+[[nodiscard]] inline std::array<Vector3<double>, 2> plane_across(const Vector3<double>& normal) {
+    const dVector3 n{dReal(normal.x()), dReal(normal.y()), dReal(normal.z())};
+    dVector3 first, second;
+    dPlaneSpace(n, first, second);
+    return {to_core(first), to_core(second)};
 }
 
 /// What ODE tells of a joint by a call like dJointGetHingeAxis.
@@ -180,6 +189,22 @@ inline void wake(dJointID joint) noexcept {
 inline void add_force(dBodyID body, const Vector3<double>& force, const Vector3<double>& torque) {
     dBodyAddForce(body, dReal(force.x()), dReal(force.y()), dReal(force.z()));
     dBodyAddTorque(body, dReal(torque.x()), dReal(torque.y()), dReal(torque.z()));
+}
+
+/// The same of what a joint does to its bodies, which its feedback says.
+inline void push(dJointID joint, const Vector3<double>& force, const Vector3<double>& torque_a,
+                 const Vector3<double>& torque_b) {
+    const AttachedBodies bodies = attached_bodies(joint);
+    add_force(bodies.a, force, torque_a);
+    if (bodies.b != nullptr) add_force(bodies.b, scaled(-1, force), torque_b);
+    dJointFeedback* feedback = dJointGetFeedback(joint);
+    if (feedback == nullptr) return;
+    for (int i = 0; i < 3; ++i) {
+        feedback->f1[i] = dReal(force[i]);
+        feedback->t1[i] = dReal(torque_a[i]);
+        feedback->f2[i] = dReal(bodies.b != nullptr ? -force[i] : 0);
+        feedback->t2[i] = dReal(bodies.b != nullptr ? torque_b[i] : 0);
+    }
 }
 
 inline void apply(dBodyID body, const VelocityChange<double>& change) noexcept {

@@ -3,13 +3,14 @@
 // Stands before ODE's step: an island whose rows are all known is solved at once
 // (solve/island_solver.hpp), and ODE gets the answer as forces on the bodies. World calls it.
 //
-//   known      plastic joints, which state their rows themselves, and contacts that were named with
-//              what they were made of; sliding friction, no rolling
-//   not known  a joint of ODE's own, also a PlasticMotor's, and contacts that nobody named: the
-//              island is ODE's then, whichever solver steps it
+//   known      plastic joints, which state their rows themselves, contacts that were named with
+//              what they were made of, sliding friction, no rolling, and most of ODE's own joints,
+//              also a PlasticMotor's (own_joint.hpp)
+//   not known  the others, and contacts that nobody named: the island is ODE's then, whichever
+//              solver steps it
 //
-// In the step the plastic joints have no row in ODE and the contacts are disabled; bodies of the
-// island that sleep are woken, as ODE would.
+// In the step the plastic joints have no row in ODE, and contacts and ODE's own joints are
+// disabled; bodies of the island that sleep are woken, as ODE would.
 //
 // Friction. dContactApprox1 is Coulomb's cone here, where ODE has a pyramid; without it mu is a
 // force, as in ODE. A contact joint's feedback is what this solver found.
@@ -31,6 +32,7 @@
 
 #include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/own_joint.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/solve/island_solver.hpp"
 #include "ductile/vocabulary/address_book.hpp"
@@ -67,7 +69,15 @@ class IslandSolver {
         std::size_t used = 0; ///< number of the step
     };
 
+    struct Own {
+        OwnJoint joint;
+        std::size_t number;   ///< in the order in which they were seen first
+        std::size_t seen = 0; ///< number of the step
+    };
+
     void index_members();
+    /// Null: its rows are not known.
+    [[nodiscard]] Own* own_of(dJointID joint);
     [[nodiscard]] bool gather(dBodyID first);
     [[nodiscard]] bool falls_asleep(Kept& kept, double dt) const;
     void solve(solve::IslandSolver& solver, const std::vector<NamedContact>& contacts, double dt);
@@ -82,18 +92,21 @@ class IslandSolver {
     bool indexed_ = true;
     AddressMap<std::size_t> contact_of_; ///< by joint
     std::unordered_map<const PlasticConstraint*, Kept> kept_;
+    std::unordered_map<dJointID, Own> owns_; ///< ODE's own joints
+    std::size_t owns_seen_ = 0;              ///< ever
 
     // ---- of the island at hand
     std::vector<std::size_t> joints_, touches_; ///< among members and contacts
-    std::vector<dBodyID> bodies_;               ///< that can move
-    AddressMap<int> number_;                    ///< of bodies, of all islands of the step
-    std::vector<BodyState<double>> free_;       ///< by number: as the step leaves them without rows
+    std::vector<Own*> owned_;
+    std::vector<dBodyID> bodies_;         ///< that can move
+    AddressMap<int> number_;              ///< of bodies, of all islands of the step
+    std::vector<BodyState<double>> free_; ///< by number: as the step leaves them without rows
     solve::Island island_;
     std::vector<ContactRows> contact_rows_;
     bool awake_ = false;
 
     // ---- until the end of the step
-    std::vector<dJointID> disabled_; ///< contacts
+    std::vector<dJointID> disabled_; ///< contacts, ODE's own joints
     /// Bodies that would put themselves to sleep, and from how many samples they would tell.
     std::vector<std::pair<dBodyID, int>> kept_awake_;
 };

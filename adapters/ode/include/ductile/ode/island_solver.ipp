@@ -60,13 +60,25 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
         solve(alone, contacts, dt);
     }
     std::erase_if(kept_, [this](const auto& entry) { return entry.second.used != step_; });
+    std::erase_if(owns_, [this](const auto& entry) { return entry.second.seen != step_; });
 }
 
 DUCTILE_INLINE void IslandSolver::after_step() {
-    for (const dJointID contact : std::exchange(disabled_, {})) dJointEnable(contact);
+    for (const dJointID joint : std::exchange(disabled_, {})) dJointEnable(joint);
     for (const auto& [body, samples] : std::exchange(kept_awake_, {})) {
         dBodySetAutoDisableAverageSamplesCount(body, unsigned(samples));
     }
+}
+
+DUCTILE_INLINE IslandSolver::Own* IslandSolver::own_of(dJointID joint) {
+    const auto found = owns_.find(joint);
+    if (found != owns_.end() && found->second.joint.is_same()) return &found->second;
+    if (!OwnJoint::is_known(joint)) return nullptr;
+    if (found == owns_.end()) {
+        return &owns_.try_emplace(joint, Own{OwnJoint(joint), owns_seen_++}).first->second;
+    }
+    found->second.joint = OwnJoint(joint);
+    return &found->second;
 }
 
 /// All that hangs together with a body; false where not all of it is known.
@@ -75,6 +87,7 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
     bool known = true;
     joints_.clear();
     touches_.clear();
+    owned_.clear();
     bodies_.assign(1, first);
     number_[first] = no_seat;
     awake_ = false;
@@ -91,6 +104,9 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
                 }
             } else if (const std::size_t* touch = contact_of_.find(joint)) {
                 touches_.push_back(*touch);
+            } else if (Own* own = own_of(joint)) {
+                if (std::exchange(own->seen, step_) != step_) owned_.push_back(own);
+                known = known && own->joint.fits();
             } else {
                 known = false;
             }
@@ -110,6 +126,8 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
     std::sort(joints_.begin(), joints_.end());
     std::sort(touches_.begin(), touches_.end());
     touches_.erase(std::unique(touches_.begin(), touches_.end()), touches_.end());
+    std::sort(owned_.begin(), owned_.end(),
+              [](const Own* a, const Own* b) { return a->number < b->number; });
     return known;
 }
 
@@ -145,6 +163,9 @@ DUCTILE_INLINE void IslandSolver::solve(solve::IslandSolver& solver,
         take_seat(bodies.a, dt);
         take_seat(bodies.b, dt);
     }
+    for (const Own* own : owned_) {
+        for (const int side : {0, 1}) take_seat(dJointGetBody(own->joint.id(), side), dt);
+    }
     for (const std::size_t i : touches_) {
         for (const int side : {0, 1}) take_seat(dJointGetBody(contacts[i].joint, side), dt);
     }
@@ -152,22 +173,29 @@ DUCTILE_INLINE void IslandSolver::solve(solve::IslandSolver& solver,
         const AttachedBodies bodies = members_[i].joint->bodies();
         members_[i].rows->open_rows(island_, seat(bodies.a), seat(bodies.b), dt);
     }
+    for (Own* own : owned_) {
+        const AttachedBodies bodies = attached_bodies(own->joint.id());
+        own->joint.open_rows(island_, seat(bodies.a), seat(bodies.b), dt);
+    }
     for (const std::size_t i : touches_) {
         const AttachedBodies bodies = attached_bodies(contacts[i].joint);
         contact_rows_.emplace_back(contacts[i], island_, seat(bodies.a), seat(bodies.b), dt);
     }
     solver.solve(island_);
     for (const std::size_t i : joints_) members_[i].rows->close_rows(island_, dt);
+    for (const Own* own : owned_) own->joint.close_rows(island_, dt);
     for (const ContactRows& rows : contact_rows_) rows.close(island_, dt);
     set_aside(contacts);
 }
 
 /// For ODE's step.
 DUCTILE_INLINE void IslandSolver::set_aside(const std::vector<NamedContact>& contacts) {
-    for (const std::size_t i : touches_) {
-        dJointDisable(contacts[i].joint);
-        disabled_.push_back(contacts[i].joint);
-    }
+    const auto disable = [this](dJointID joint) {
+        dJointDisable(joint);
+        disabled_.push_back(joint);
+    };
+    for (const Own* own : owned_) disable(own->joint.id());
+    for (const std::size_t i : touches_) disable(contacts[i].joint);
     for (const dBodyID body : bodies_) {
         if (dBodyIsEnabled(body) == 0) dBodyEnable(body);
         const int samples = dBodyGetAutoDisableAverageSamplesCount(body);
