@@ -234,6 +234,7 @@ TEST_CASE("a motor says by how much its pin was left unsolved", "[ode][motor]") 
     Rig rig("quick", {3, -9.81, 5});
     const V3 at(0.7, 0.2, -0.4);
     auto body = rig.body(2, sphere(0.5), at, none, 3 * e1);
+    rig.leave_to_ode(body);
     auto& motor = rig.motor(hinge(rig.world(), body, nullptr).axis, joint(12));
     dWorldSetQuickStepNumIterations(rig.world(), 1);
     rig.step(dt);

@@ -60,6 +60,8 @@ class Divisibles {
     virtual void before_solve(std::span<const NamedContact> /*contacts*/) {}
     /// Bodies that can move of contacts with members, after before_solve().
     [[nodiscard]] virtual std::vector<dBodyID> touched() const { return {}; }
+    /// Joints of the user's that hold them, after before_solve().
+    [[nodiscard]] virtual std::span<const dJointID> held_by() const { return {}; }
     virtual void after_solve() const {}
     [[nodiscard]] virtual bool any_open() const { return false; }
     [[nodiscard]] virtual bool look(double /*dt*/) { return false; }

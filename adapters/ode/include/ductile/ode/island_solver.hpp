@@ -6,8 +6,8 @@
 //   known      plastic joints, which state their rows themselves, contacts that were named with
 //              what they were made of, sliding friction, no rolling, and most of ODE's own joints,
 //              also a PlasticMotor's (own_joint.hpp)
-//   not known  the others, and contacts that nobody named: the island is ODE's then, whichever
-//              solver steps it
+//   not known  the others, those that hold members, and contacts that nobody named: the island is
+//              ODE's then, whichever solver steps it
 //
 // In the step the plastic joints have no row in ODE, and contacts and ODE's own joints are
 // disabled; bodies of the island that sleep are woken, as ODE would.
@@ -46,16 +46,23 @@ class IslandSolver {
     void remove(PlasticConstraint& joint);
 
     /// Between the constraints' `prepare` and ODE's step of `dt` [s]. `may_sleep`: islands may fall
-    /// asleep in it. Islands of `others`, which can move, are solved here too, joints or none.
+    /// asleep in it. Islands of `others`, which can move, are solved here too, joints or none;
+    /// those of user's joints `of_members`, which change their bodies, are not.
     void before_step(const std::vector<NamedContact>& contacts, double dt, bool may_sleep = true,
-                     std::span<const dBodyID> others = {});
+                     std::span<const dBodyID> others = {},
+                     std::span<const dJointID> of_members = {});
     void after_step();
 
   private:
     struct Member {
         PlasticConstraint* joint;
-        IslandRows* rows;
+        IslandRows* rows;     ///< null: a motor of one of ODE's own joints
         std::size_t seen = 0; ///< number of the step
+        [[nodiscard]] bool acts() const {
+            return rows != nullptr
+                       ? rows->acts()
+                       : !joint->queries().broken() && dJointIsEnabled(joint->id()) != 0;
+        }
     };
     /// All its bodies at once.
     struct Idle {
@@ -98,6 +105,7 @@ class IslandSolver {
     // ---- of the island at hand
     std::vector<std::size_t> joints_, touches_; ///< among members and contacts
     std::vector<Own*> owned_;
+    std::span<const dJointID> of_members_;
     std::vector<dBodyID> bodies_;         ///< that can move
     AddressMap<int> number_;              ///< of bodies, of all islands of the step
     std::vector<BodyState<double>> free_; ///< by number: as the step leaves them without rows

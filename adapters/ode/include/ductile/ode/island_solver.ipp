@@ -10,9 +10,7 @@
 namespace ductile::ode {
 
 DUCTILE_INLINE void IslandSolver::add(PlasticConstraint& joint) {
-    IslandRows* rows = joint.island_rows();
-    if (rows == nullptr) return;
-    members_.push_back({&joint, rows});
+    members_.push_back({&joint, joint.island_rows()});
     indexed_ = false;
 }
 DUCTILE_INLINE void IslandSolver::remove(PlasticConstraint& joint) {
@@ -23,14 +21,18 @@ DUCTILE_INLINE void IslandSolver::remove(PlasticConstraint& joint) {
 
 DUCTILE_INLINE void IslandSolver::index_members() {
     member_of_.clear();
-    for (std::size_t i = 0; i < members_.size(); ++i) member_of_[members_[i].joint->id()] = i;
+    for (std::size_t i = 0; i < members_.size(); ++i) {
+        if (members_[i].rows != nullptr) member_of_[members_[i].joint->id()] = i;
+    }
     indexed_ = true;
 }
 
 // ---- a step
 
 DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& contacts, double dt,
-                                              bool may_sleep, std::span<const dBodyID> others) {
+                                              bool may_sleep, std::span<const dBodyID> others,
+                                              std::span<const dJointID> of_members) {
+    of_members_ = of_members;
     if (members_.empty() && others.empty()) return;
     if (!indexed_) index_members();
     ++step_;
@@ -39,13 +41,15 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (contacts[i].slides_only()) contact_of_[contacts[i].joint] = i;
     }
-    for (Member& member : members_) {
-        if (member.seen == step_ || !member.rows->acts()) continue;
+    for (const Member& member : members_) {
         const AttachedBodies bodies = member.joint->bodies();
-        const bool known = gather(can_move(bodies.a) ? bodies.a : bodies.b);
+        if (member.seen == step_ || !member.acts()) continue;
+        const dBodyID first = can_move(bodies.a) ? bodies.a : bodies.b;
+        if (!can_move(first) || number_.find(first) != nullptr) continue;
+        const bool known = gather(first);
         bool ours = known && awake_;
         if (ours) {
-            Kept& kept = kept_of(*members_[joints_.front()].joint);
+            Kept& kept = kept_of(*member.joint);
             ours = !may_sleep || !falls_asleep(kept, dt);
             if (ours) solve(kept.solver, contacts, dt);
         }
@@ -71,6 +75,9 @@ DUCTILE_INLINE void IslandSolver::after_step() {
 }
 
 DUCTILE_INLINE IslandSolver::Own* IslandSolver::own_of(dJointID joint) {
+    if (std::find(of_members_.begin(), of_members_.end(), joint) != of_members_.end()) {
+        return nullptr;
+    }
     const auto found = owns_.find(joint);
     if (found != owns_.end() && found->second.joint.is_same()) return &found->second;
     if (!OwnJoint::is_known(joint)) return nullptr;

@@ -55,6 +55,7 @@ class Members final : public Divisibles {
     DUCTILE_INLINE void drop_forces() const override;
     DUCTILE_INLINE void before_solve(std::span<const NamedContact> contacts) override;
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> touched() const override;
+    [[nodiscard]] std::span<const dJointID> held_by() const override { return held_by_; }
     DUCTILE_INLINE void after_solve() const override;
     [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
     [[nodiscard]] bool look(double dt) override { return look(dt, false); }

@@ -34,8 +34,8 @@
 //
 // A joint that lets go at its break is attached to nothing, so that dAreConnected, by which
 // programs decide whether two bodies collide, no longer finds it. ODE's world may be destroyed
-// before this. The joint's other rows are ODE's, and so is an island with such a joint
-// (island_solver.hpp).
+// before this. The joint's other rows are ODE's; where all of the island is known the World
+// solves them with it (island_solver.hpp).
 //
 // Traps of ODE 0.16 that this header deals with
 //   - A motor together with an active stop becomes an outside force: a stop on the axis is refused.

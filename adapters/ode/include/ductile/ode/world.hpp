@@ -11,9 +11,9 @@
 //   world.step(dt);
 //   for (const auto& event : world.events()) ...       // "lamp post" yielded, broke
 //
-// Islands of plastic joints and of contacts that were named by add_contact are solved at once,
-// before ODE's step and whichever solver does that (island_solver.hpp); all others are ODE's, also
-// those with a PlasticMotor.
+// Islands of plastic joints, of contacts that were named by add_contact and of ODE's own joints are
+// solved at once, before ODE's step and whichever solver does that (island_solver.hpp); all others
+// are ODE's.
 //
 // A step throws what a constraint's check() throws, and std::invalid_argument where a body that was
 // added, or has a plastic joint, is not finite in pose, velocity or force, or the gravity is not, a

@@ -281,7 +281,8 @@ DUCTILE_INLINE void World::solve(double dt) {
     // contacts of a member are often more than hold it, of which ODE's LCP loses some
     const bool frames = parts_ != nullptr;
     islands_->before_step(contacts_, dt, !frames,
-                          frames ? members_->touched() : std::vector<dBodyID>{});
+                          frames ? members_->touched() : std::vector<dBodyID>{},
+                          members_->held_by());
     step_engine(dt);
     islands_->after_step();
     members_->after_solve();
