@@ -40,10 +40,10 @@ DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
 
 DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
     const IslandReport report = answer(island);
-    const double off =
-        std::isnan(report.residual) ? std::numeric_limits<double>::infinity() : report.residual;
+    double off = std::max(report.solved ? 0 : report.residual, report.gives);
+    if (std::isnan(report.residual)) off = std::numeric_limits<double>::infinity();
     const bool little = off <= std::min(unsolved_share * report.scale, unsolved_speed);
-    island.unsolved = report.solved || little ? 0 : off;
+    island.unsolved = little ? 0 : off;
     return report;
 }
 
@@ -155,6 +155,7 @@ DUCTILE_INLINE void IslandSolver::certify(IslandReport& report) {
     system_.update_velocities();
     system_.update_residuals();
     report.residual = certificate(system_);
+    report.gives = system_.given() * detail::adds_up(system_.island());
     // where next to nothing is asked for, round-off is more than a share of it
     report.solved = report.residual <= std::max({solved_residual * report.scale,
                                                  system_.round_off(4), detail::nothing});
