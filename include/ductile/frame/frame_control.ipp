@@ -244,6 +244,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.least = judged.of_one = motion.closed_work;
     bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
     double held = h;      // until the first joint broke
+    double held_share = 0; // of its strength, by a rigid row
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         if (!breaks(i, motion)) continue;
         const PartRow& row = motion.rows[i];
@@ -274,7 +275,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         lets_go = lets_go || row.broke > 0;
         judged.error += row.misfit;
         judged.struck += row.unfit;
-        if (!row.moves()) continue;
+        if (!row.moves()) {
+            if (!row.elastic) held_share = std::max(held_share, row.share);
+            continue;
+        }
         const double later = flow_after(row, held, h);
         judged.astray += later;
         if (later > largest) {
@@ -320,6 +324,10 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     }
     const double share = tolerated_share();
     double scale = ahead + detail::unmissed * judged.least;
+    if (held_share * motion.swings.peak > detail::near_peak) {
+        judged.error += motion.swings.misplaced;
+        scale += detail::of_stored * motion.swings.energy;
+    }
     if (nearest > detail::near_strength) { // springs may come to flow, by no more than they hold
         scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
                                     detail::unmissed * (unmissed + of_springs));

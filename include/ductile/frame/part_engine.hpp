@@ -13,12 +13,42 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "ductile/frame/part_row.hpp"
 
 namespace ductile {
+
+/// How springs of the engine's own, beside plastic joints, swing in a part. It has the mean of their
+/// forces: what is rigid, and holds that, may flow at their peak.
+///
+///   V² = ((u + u')/2)² + (a/ω)²,  U = m V²/2,  misplaced U (ω h)³/4: F e at its peak, e = |a'| h³/8
+struct OwnSwings {
+    double energy = 0;    ///< Σ U [J]
+    double misplaced = 0; ///< [J]
+    double peak = 0;      ///< the largest force of one within a swing over the mean in the part [-]
+
+    /// @param force mean, of the part  @param mass of the row, > 0  @param start, end u, u'
+    void add(double stiffness, double mass, double force, double start, double end,
+             double h) noexcept {
+        constexpr double most = 10;
+        if (!(stiffness > 0)) return;
+        const double frequency = std::sqrt(stiffness / mass), mean = (start + end) / 2;
+        const double swing = std::hypot(mean, (end - start) / (h * frequency)); // V
+        const double held = mass * swing * swing / 2, more = mass * frequency * swing;
+        energy += held;
+        misplaced += held * std::pow(frequency * h, 3) / 4;
+        peak = std::max(peak, std::min(1 + more / std::abs(force), most));
+    }
+    /// Of another island.
+    void join(const OwnSwings& other) noexcept {
+        energy = std::max(energy, other.energy);
+        misplaced = std::max(misplaced, other.misplaced);
+        peak = std::max(peak, other.peak);
+    }
+};
 
 /// What a part did. Energies are those of the part.
 struct PartMotion {
@@ -31,6 +61,7 @@ struct PartMotion {
     double others_work = 0;    ///< that rigid rows of the engine's joints took there, or gave where
                                ///< that is no drift that they pull back [J]
     double stored = 0;         ///< that elastic ones hold [J]
+    OwnSwings swings;          ///< of the engine's springs
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing

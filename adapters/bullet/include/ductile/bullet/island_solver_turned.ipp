@@ -4,10 +4,13 @@
 // island_solver.ipp.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 #include "ductile/bullet/moving_bodies.hpp"
 
@@ -61,6 +64,44 @@ class PinsInWorld {
     std::vector<btHingeConstraint*> hinges_;
 };
 
+[[nodiscard]] DUCTILE_INLINE Vector6<double> twist(const btVector3& linear,
+                                                   const btVector3& angular) {
+    return twist_of(to_core(linear), to_core(angular));
+}
+[[nodiscard]] DUCTILE_INLINE Vector6<double> on_a(const btSolverConstraint& row) {
+    return twist(row.m_contactNormal1, row.m_relpos1CrossNormal);
+}
+[[nodiscard]] DUCTILE_INLINE Vector6<double> on_b(const btSolverConstraint& row) {
+    return twist(row.m_contactNormal2, row.m_relpos2CrossNormal);
+}
+
+/// In the order of its rows, as it last looked at its bodies.
+DUCTILE_INLINE void list_springs(btGeneric6DofSpring2Constraint& constraint,
+                                 std::vector<OwnSpring>& springs) {
+    springs.clear();
+    int row = 0;
+    const auto add = [&](int limit, bool motor, bool spring, const OwnSpring& law) {
+        constexpr int both_stops = 4;
+        row += (limit == both_stops ? 2 : limit != 0 ? 1 : 0) + (motor ? 1 : 0);
+        if (!spring) return;
+        springs.push_back(law);
+        springs.back().row = row++;
+    };
+    constexpr int orders[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    for (const int i : orders[constraint.getRotationOrder()]) {
+        const btRotationalLimitMotor2& axis = *constraint.getRotationalLimitMotor(i);
+        add(axis.m_currentLimit, axis.m_enableMotor, axis.m_enableSpring,
+            {0, double(axis.m_springStiffness), double(axis.m_springDamping),
+             double(axis.m_currentPosition - axis.m_equilibriumPoint)});
+    }
+    const btTranslationalLimitMotor2& axes = *constraint.getTranslationalLimitMotor();
+    for (int i = 0; i < 3; ++i) {
+        add(axes.m_currentLimit[i], axes.m_enableMotor[i], axes.m_enableSpring[i],
+            {0, double(axes.m_springStiffness[i]), double(axes.m_springDamping[i]),
+             double(axes.m_equilibriumPoint[i] - axes.m_currentLinearDiff[i])});
+    }
+}
+
 } // namespace detail
 
 /// The others' rows as the part will end.
@@ -98,19 +139,59 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
     }
 }
 
+/// Of a body of this solve, as the part began.
+DUCTILE_INLINE Vector6<double> IslandSolver::began(int body) const {
+    const btSolverBody& moved = m_tmpSolverBodyPool[body];
+    return detail::twist(moved.m_linearVelocity, moved.m_angularVelocity);
+}
+/// The same, by outside forces in all of it.
+DUCTILE_INLINE Vector6<double> IslandSolver::pushed(int body) const {
+    const btSolverBody& moved = m_tmpSolverBodyPool[body];
+    return detail::twist(moved.m_externalForceImpulse, moved.m_externalTorqueImpulse);
+}
+
+/// Springs have the mean of their forces over the part, whatever they are limited to.
+DUCTILE_INLINE void IslandSolver::load_springs() {
+    spring_rows_.clear();
+    if (!ahead_) return;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        const std::size_t of_this = first;
+        const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
+        first += std::size_t(count);
+        if (count == 0 || others_[i]->getConstraintType() != D6_SPRING_2_CONSTRAINT_TYPE) continue;
+        detail::list_springs(static_cast<btGeneric6DofSpring2Constraint&>(*others_[i]), springs_);
+        for (const auto& [place, stiffness, damping, strain] : springs_) {
+            const btSolverConstraint& row =
+                m_tmpSolverNonContactConstraintPool[int(of_this) + place];
+            if (!(row.m_jacDiagABInv > 0) || !(stiffness > 0 || damping > 0)) continue;
+            const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
+            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
+            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
+            const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+            const LawRow law = law_row(stiffness, damping, double(row.m_jacDiagABInv), strain,
+                                       comes, 2 * half_);
+            solve::IslandRow& held = island_.rows[first_read_ + of_this + std::size_t(place)];
+            held.target = law.target - comes - push;
+            held.compliance = law.compliance;
+            held.lower = -std::numeric_limits<double>::infinity();
+            held.upper = std::numeric_limits<double>::infinity();
+            spring_rows_.push_back({first_read_ + of_this + std::size_t(place), stiffness,
+                                    double(row.m_jacDiagABInv), comes, law});
+        }
+    }
+}
+
+DUCTILE_INLINE void IslandSolver::read_springs() {
+    for (const detail::SpringRow& spring : spring_rows_) {
+        const double impulse = island_.rows[spring.row].impulse, h = 2 * half_;
+        const double end = spring.law.target - spring.law.compliance * impulse;
+        swings_.add(spring.stiffness, spring.mass, impulse / h, spring.start, end, h);
+    }
+}
+
 /// Has those of them that hold both ways be right at the end of the part.
 DUCTILE_INLINE void IslandSolver::turn_rows() {
-    const auto twist = [](const btVector3& linear, const btVector3& angular) {
-        return twist_of(to_core(linear), to_core(angular));
-    };
-    const auto came = [this, &twist](int body) { // as the part began
-        const btSolverBody& moved = m_tmpSolverBodyPool[body];
-        return twist(moved.m_linearVelocity, moved.m_angularVelocity);
-    };
-    const auto pushed = [this, &twist](int body) { // by outside forces, in all of it
-        const btSolverBody& moved = m_tmpSolverBodyPool[body];
-        return twist(moved.m_externalForceImpulse, moved.m_externalTorqueImpulse);
-    };
     std::size_t then = 0, now = 0;
     for (std::size_t i = 0; i < count_at_end_.size(); ++i) {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
@@ -121,12 +202,11 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
             solve::IslandRow& turned = island_.rows[first_read_ + now + std::size_t(k)];
             if (!std::isinf(turned.lower) || !std::isinf(turned.upper)) continue;
             const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
-            const Vector6<double> on_a = twist(row.m_contactNormal1, row.m_relpos1CrossNormal),
-                                  on_b = twist(row.m_contactNormal2, row.m_relpos2CrossNormal);
-            const double comes = on_a.dot(came(a)) + on_b.dot(came(b));
+            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
+            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
             const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
-            const double leaves = twist(end.move_a, end.turn_a).dot(came(a)) +
-                                  twist(end.move_b, end.turn_b).dot(came(b));
+            const double leaves = detail::twist(end.move_a, end.turn_a).dot(began(a)) +
+                                  detail::twist(end.move_b, end.turn_b).dot(began(b));
             const double asked = turned.target + comes + push; // in the middle
             turned.target = (4 * asked - double(end.error)) / 3 - push - leaves;
         }
