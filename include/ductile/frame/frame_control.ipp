@@ -242,8 +242,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     double ahead = 0, of_flows = 0, largest = 0;
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
-    bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
-    double held = h;      // until the first joint broke
+    bool lets_go = false;  // a joint breaks: what its spring sets free is no misfit
+    double held = h;       // until the first joint broke
     double held_share = 0; // of its strength, by a rigid row
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         if (!breaks(i, motion)) continue;
@@ -324,9 +324,14 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     }
     const double share = tolerated_share();
     double scale = ahead + detail::unmissed * judged.least;
-    if (held_share * motion.swings.peak > detail::near_peak) {
-        judged.error += motion.swings.misplaced;
-        scale += detail::of_stored * motion.swings.energy;
+    const bool near = held_share * motion.own.peak > detail::near_peak;
+    if (near) {
+        judged.error += motion.own.swings;
+        scale += detail::of_stored * motion.own.energy;
+    }
+    if (near || judged.moves) {
+        judged.error += motion.own.stops;
+        if (motion.own.stops > largest) judged.stop = motion.own.stop;
     }
     if (nearest > detail::near_strength) { // springs may come to flow, by no more than they hold
         scale = std::min(scale, of_flows + detail::of_stored * motion.stored +

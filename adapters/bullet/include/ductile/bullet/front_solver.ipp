@@ -194,7 +194,7 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                             island.constraints.data(), int(island.constraints.size()), with_joints,
                             drawer, dispatcher);
     const std::lock_guard lock(mutex_);
-    swings_.join(kept->solver.swings());
+    own_.join(kept->solver.own());
 }
 
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(

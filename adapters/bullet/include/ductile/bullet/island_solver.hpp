@@ -79,8 +79,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void set_pushes_apart(bool pushes) noexcept { pushes_apart_ = pushes; }
 
     [[nodiscard]] const solve::IslandReport& last() const noexcept { return report_; }
-    /// Of Bullet's springs in the last solve, if it was of a part.
-    [[nodiscard]] const OwnSwings& swings() const noexcept { return swings_; }
+    /// Bullet's springs and motors in the last solve, if it was of a part.
+    [[nodiscard]] const OwnForces& own() const noexcept { return own_; }
 
   protected:
     DUCTILE_INLINE void convertJoints(btTypedConstraint** constraints, int count,
@@ -105,7 +105,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_rows();
     void turn_rows();
     void load_springs();
-    void read_springs();
+    void read_own();
     [[nodiscard]] Vector6<double> began(int body) const;
     [[nodiscard]] Vector6<double> pushed(int body) const;
     void load_contacts();
@@ -131,11 +131,11 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     bool ahead_ = false;
     double half_ = 0; ///< of the tick [s]
     bool pushes_apart_ = true;
-    std::vector<EndRow> at_end_;    ///< of the others' rows, constraint by constraint
-    std::vector<int> count_at_end_; ///< rows of each
+    std::vector<EndRow> at_end_;                 ///< of the others' rows, constraint by constraint
+    std::vector<int> count_at_end_;              ///< rows of each
     std::vector<detail::OwnSpring> springs_;     ///< of one of them
     std::vector<detail::SpringRow> spring_rows_; ///< of all
-    OwnSwings swings_;
+    OwnForces own_;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };
 

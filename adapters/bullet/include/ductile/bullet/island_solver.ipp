@@ -30,7 +30,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroup(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
     int manifold_count, btTypedConstraint** constraints, int constraint_count,
     const btContactSolverInfo& info, btIDebugDraw* drawer, btDispatcher* dispatcher) {
-    swings_ = {};
+    own_ = {};
     if (has_only_joints(bodies, body_count, manifolds, manifold_count, constraints,
                         constraint_count)) {
         solve_joints(bodies, body_count, constraints, constraint_count, info);
@@ -136,7 +136,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     find_turned(manifolds, manifold_count, double(info.m_timeStep));
     load_contacts();
     report_ = solver_.solve(island_);
-    read_springs();
+    read_own();
     store();
     if (info.m_splitImpulse && pushes_apart_) {
         solveGroupCacheFriendlySplitImpulseIterations(bodies, body_count, manifolds, manifold_count,

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpringConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 
 #include <cmath>
@@ -75,10 +76,31 @@ class PinsInWorld {
     return twist(row.m_contactNormal2, row.m_relpos2CrossNormal);
 }
 
-/// In the order of its rows, as it last looked at its bodies.
+/// In the order of its rows, as it last looked at its bodies. One with Bullet's damping is no
+/// spring and damper: that bounds its speed, by what a tick's length says.
+DUCTILE_INLINE void list_springs(btGeneric6DofSpringConstraint& constraint,
+                                 std::vector<OwnSpring>& springs) {
+    int row = 0;
+    const int first = constraint.getUseFrameOffset() ? 3 : 0; // turns come first
+    for (int k = 0; k < 6; ++k) {
+        const int i = (first + k) % 6;
+        const bool moves = i < 3;
+        const auto& axes = *constraint.getTranslationalLimitMotor();
+        const auto& turn = *constraint.getRotationalLimitMotor(i % 3);
+        if (!(moves ? axes.needApplyForce(i) : turn.needApplyTorques())) continue;
+        const bool stopped = (moves ? axes.m_currentLimit[i] : turn.m_currentLimit) != 0;
+        if (constraint.isSpringEnabled(i) && !stopped && constraint.getDamping(i) == 1) {
+            const btScalar at = moves ? constraint.getRelativePivotPosition(i)
+                                      : constraint.getAngle(i - 3),
+                           strain = at - constraint.getEquilibriumPoint(i);
+            springs.push_back(
+                {row, double(constraint.getStiffness(i)), 0, double(moves ? -strain : strain)});
+        }
+        ++row;
+    }
+}
 DUCTILE_INLINE void list_springs(btGeneric6DofSpring2Constraint& constraint,
                                  std::vector<OwnSpring>& springs) {
-    springs.clear();
     int row = 0;
     const auto add = [&](int limit, bool motor, bool spring, const OwnSpring& law) {
         constexpr int both_stops = 4;
@@ -153,14 +175,23 @@ DUCTILE_INLINE Vector6<double> IslandSolver::pushed(int body) const {
 /// Springs have the mean of their forces over the part, whatever they are limited to.
 DUCTILE_INLINE void IslandSolver::load_springs() {
     spring_rows_.clear();
-    if (!ahead_) return;
+    const bool blow = 2 * half_ <= blow_length; // in which they give nothing
+    if (!ahead_ && !blow) return;
     std::size_t first = 0;
     for (std::size_t i = 0; i < others_.size(); ++i) {
         const std::size_t of_this = first;
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
         first += std::size_t(count);
-        if (count == 0 || others_[i]->getConstraintType() != D6_SPRING_2_CONSTRAINT_TYPE) continue;
-        detail::list_springs(static_cast<btGeneric6DofSpring2Constraint&>(*others_[i]), springs_);
+        const btTypedConstraintType type = others_[i]->getConstraintType();
+        springs_.clear();
+        if (count == 0) continue;
+        if (type == D6_SPRING_2_CONSTRAINT_TYPE) {
+            detail::list_springs(static_cast<btGeneric6DofSpring2Constraint&>(*others_[i]),
+                                 springs_);
+        } else if (type == D6_SPRING_CONSTRAINT_TYPE) {
+            detail::list_springs(static_cast<btGeneric6DofSpringConstraint&>(*others_[i]),
+                                 springs_);
+        }
         for (const auto& [place, stiffness, damping, strain] : springs_) {
             const btSolverConstraint& row =
                 m_tmpSolverNonContactConstraintPool[int(of_this) + place];
@@ -169,9 +200,13 @@ DUCTILE_INLINE void IslandSolver::load_springs() {
             const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
             const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
             const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
-            const LawRow law = law_row(stiffness, damping, double(row.m_jacDiagABInv), strain,
-                                       comes, 2 * half_);
+            const LawRow law =
+                law_row(stiffness, damping, double(row.m_jacDiagABInv), strain, comes, 2 * half_);
             solve::IslandRow& held = island_.rows[first_read_ + of_this + std::size_t(place)];
+            if (blow) {
+                held.target = held.lower = held.upper = 0;
+                continue;
+            }
             held.target = law.target - comes - push;
             held.compliance = law.compliance;
             held.lower = -std::numeric_limits<double>::infinity();
@@ -182,11 +217,23 @@ DUCTILE_INLINE void IslandSolver::load_springs() {
     }
 }
 
-DUCTILE_INLINE void IslandSolver::read_springs() {
+DUCTILE_INLINE void IslandSolver::read_own() {
+    if (!ahead_) return;
+    const double h = 2 * half_;
     for (const detail::SpringRow& spring : spring_rows_) {
-        const double impulse = island_.rows[spring.row].impulse, h = 2 * half_;
+        const double impulse = island_.rows[spring.row].impulse;
         const double end = spring.law.target - spring.law.compliance * impulse;
-        swings_.add(spring.stiffness, spring.mass, impulse / h, spring.start, end, h);
+        own_.add_spring(spring.stiffness, spring.mass, impulse / h, spring.start, end, h);
+    }
+    for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
+        const solve::IslandRow& motor = island_.rows[first_read_ + std::size_t(i)];
+        const double strength = motor.upper / h;
+        if (std::isinf(strength) || !(strength > 0) || motor.lower != -motor.upper) continue;
+        const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[i];
+        const double push = detail::on_a(row).dot(pushed(row.m_solverBodyIdA)) +
+                            detail::on_b(row).dot(pushed(row.m_solverBodyIdB));
+        own_.add_motor(strength, double(row.m_jacDiagABInv), motor.impulse / h, motor.target + push,
+                       h);
     }
 }
 
