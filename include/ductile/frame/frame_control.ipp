@@ -41,6 +41,8 @@ DUCTILE_INLINE double FrameControl::tolerated_share() const noexcept {
 DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double length) {
     check::positive("FrameControl.frame.length", length, "s");
     report_ = {};
+    if (engine.was_misread()) report_.left.energy += last_work_;
+    const double before = work_;
     length_ = length;
     solves_ = 0;
     stop_failed_ = false;
@@ -50,6 +52,7 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
         const double gap = strike(engine, first_length(left));
         left -= attempt(engine, first_length(left), gap, left);
     }
+    last_work_ = work_ - before;
     run_.add(report_, work_);
     return report_;
 }

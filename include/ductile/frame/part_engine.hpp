@@ -142,6 +142,8 @@ class PartEngine {
     /// A part in which contacts took such a share of the speed too early is put back whatever else
     /// it tells; infinite: it stands.
     void set_early_share(double share) noexcept { early_share_ = share; }
+    /// A driven body's motion began in the last frame, which took it for a jump, and goes on.
+    [[nodiscard]] virtual bool was_misread() const { return false; }
     /// Length below which a part is not cut any more [s], > 0.
     [[nodiscard]] virtual double shortest_part() const noexcept { return 1e-7; }
 
