@@ -85,7 +85,7 @@ struct PartMotion {
     double others_work = 0;    ///< that rigid rows of the engine's joints took there, or gave where
                                ///< that is no drift that they pull back [J]
     double stored = 0;         ///< that elastic ones hold [J]
-    OwnForces own;             ///< of the engine's springs and motors
+    OwnForces own = {};        ///< of the engine's springs and motors
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing

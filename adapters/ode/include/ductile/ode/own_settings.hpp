@@ -105,7 +105,8 @@ class OwnSettings {
     void rule(dJointID joint, const Part& part) {
         const dJointType type = dJointGetType(joint);
         const JointCalls calls = joint_calls(type);
-        const auto [h, frame, blow] = part;
+        const double h = part.length, frame = part.frame;
+        const bool blow = part.blow;
         const auto usual = [&](int erp, int cfm) {
             return Softness{double(calls.get(joint, erp)), double(calls.get(joint, cfm))};
         };
