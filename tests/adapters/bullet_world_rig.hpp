@@ -168,6 +168,12 @@ class WorldRig {
                  ? std::make_unique<btHingeConstraint>(*a, *b, local(a, frame), local(b, frame))
                  : std::make_unique<btHingeConstraint>(*a, local(a, frame)));
     }
+    /// The same, made plastic.
+    auto& motor(Body a, Body b, const V3& anchor, Joint joint) {
+        pin(a, b, anchor);
+        return own(std::make_unique<bullet::PlasticMotor<Joint>>(
+            static_cast<btHingeConstraint&>(*own_.back()), joint));
+    }
     /// The engine's own slider: `a` may only move along `axis`.
     void guide(Body a, const V3& axis) {
         btTransform frame = a->getCenterOfMassTransform();

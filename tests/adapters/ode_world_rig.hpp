@@ -138,11 +138,17 @@ class WorldRig {
             id_, a, b, JointFrame<double>{at, columns}, std::move(joint), axes));
     }
     /// The engine's own hinge about z, which takes no moment.
-    void pin(Body a, Body b, const V3& anchor) {
+    dJointID pin(Body a, Body b, const V3& anchor) {
         dJointID hinge = dJointCreateHinge(id_, nullptr);
         dJointAttach(hinge, a, b);
         dJointSetHingeAnchor(hinge, dReal(anchor.x()), dReal(anchor.y()), dReal(anchor.z()));
         dJointSetHingeAxis(hinge, 0, 0, 1);
+        return hinge;
+    }
+    /// The same, made plastic.
+    auto& motor(Body a, Body b, const V3& anchor, Joint joint) {
+        return own(
+            std::make_unique<ode::PlasticMotor<Joint>>(ode::hinge_axis(pin(a, b, anchor)), joint));
     }
     /// The engine's own slider: `a` may only move along `axis`.
     void guide(Body a, const V3& axis) {

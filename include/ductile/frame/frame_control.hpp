@@ -166,6 +166,7 @@ class FrameControl {
     double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
     double allowed_ = 0;       ///< of the last part [J]
     double work_ = 0;          ///< plastic, of all joints [J]
+    double last_work_ = 0;     ///< of the last frame [J]
     double taken_ = 0;         ///< by them beside their flow [J]
     double length_ = 0;        ///< of this frame [s]
     int solves_ = 0;           ///< the same

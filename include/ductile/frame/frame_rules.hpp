@@ -17,8 +17,11 @@ inline constexpr double contact_share = 0.3; ///< of the work of contacts that c
 inline constexpr double unmissed = 0.05;     ///< of PartRow::least: added to the scale
 inline constexpr double of_stored = 10;      ///< of what springs hold: the same
 inline constexpr double near_strength = 0.3; ///< share of it from which a spring may come to flow
-inline constexpr double start_share = 1e-3;  ///< of a part, where nothing is known of its forces
-inline constexpr double many_starts = 0.1;   ///< of the budget: they are not first ones any more
+/// Share of its strength that a row may have at the peak of the engine's springs and motors, from
+/// which on they are followed.
+inline constexpr double near_peak = 0.5;
+inline constexpr double start_share = 1e-3; ///< of a part, where nothing is known of its forces
+inline constexpr double many_starts = 0.1;  ///< of the budget: they are not first ones any more
 inline constexpr double of_swings = 0.5; ///< of the budget: what then still swings alone is let be
 inline constexpr double coarse_from = 0.75;   ///< used of the budget: what is allowed grows
 inline constexpr int most_tries = 12;         ///< of one part

@@ -13,12 +13,66 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "ductile/frame/part_row.hpp"
 
 namespace ductile {
+
+/// What springs and motors of the engine's own did in a part, beside plastic joints. It has the
+/// mean of their forces: what is rigid, and holds that, may flow at their peak.
+///
+///   spring  V² = ((u + u')/2)² + (a/ω)²,  U = m V²/2,  misplaced U (ω h)³/4: F e at its peak, e =
+///           |a'| h³/8
+///   motor   F acted until it had its speed, for s = h |f|/F:  v = u less that,  U = m v²/2,
+///           misplaced F |v| (h - s)/2
+struct OwnForces {
+    double energy = 0;          ///< Σ U [J]
+    double swings = 0;          ///< misplaced by springs [J]
+    double stops = 0, stop = 0; ///< by the motor that misplaces most [J], s [s]
+    double peak = 0;            ///< the largest force of one over its mean [-]
+
+    /// @param force mean, of the part  @param mass of the row, > 0  @param start, end u, u'
+    void add_spring(double stiffness, double mass, double force, double start, double end,
+                    double h) noexcept {
+        if (!(stiffness > 0)) return;
+        const double frequency = std::sqrt(stiffness / mass), mean = (start + end) / 2;
+        const double swing = std::hypot(mean, (end - start) / (h * frequency)); // V
+        const double held = mass * swing * swing / 2;
+        energy += held;
+        swings += held * std::pow(frequency * h, 3) / 4;
+        reach(std::abs(force) + mass * frequency * swing, std::abs(force));
+    }
+    /// @param speed v  @param strength F [N | N m]
+    void add_motor(double strength, double mass, double force, double speed, double h) noexcept {
+        constexpr double whole = 1 - 1e-6;
+        const double share = std::abs(force) / strength;
+        if (!(share < whole) || speed == 0) return;
+        energy += mass * speed * speed / 2;
+        reach(strength, std::abs(force));
+        const double off = strength * std::abs(speed) * h * (1 - share) / 2;
+        if (!(off > stops)) return;
+        stops = off;
+        stop = share * h;
+    }
+    /// Of another island.
+    void join(const OwnForces& other) noexcept {
+        energy = std::max(energy, other.energy);
+        swings = std::max(swings, other.swings);
+        peak = std::max(peak, other.peak);
+        if (!(other.stops > stops)) return;
+        stops = other.stops;
+        stop = other.stop;
+    }
+
+  private:
+    void reach(double largest, double mean) noexcept {
+        constexpr double most = 10;
+        peak = std::max(peak, std::min(largest / mean, most));
+    }
+};
 
 /// What a part did. Energies are those of the part.
 struct PartMotion {
@@ -31,6 +85,7 @@ struct PartMotion {
     double others_work = 0;    ///< that rigid rows of the engine's joints took there, or gave where
                                ///< that is no drift that they pull back [J]
     double stored = 0;         ///< that elastic ones hold [J]
+    OwnForces own = {};        ///< of the engine's springs and motors
     double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing
@@ -87,6 +142,8 @@ class PartEngine {
     /// A part in which contacts took such a share of the speed too early is put back whatever else
     /// it tells; infinite: it stands.
     void set_early_share(double share) noexcept { early_share_ = share; }
+    /// A driven body's motion began in the last frame, which took it for a jump, and goes on.
+    [[nodiscard]] virtual bool was_misread() const { return false; }
     /// Length below which a part is not cut any more [s], > 0.
     [[nodiscard]] virtual double shortest_part() const noexcept { return 1e-7; }
 

@@ -11,6 +11,10 @@
 //               they parted took 183 and 238 kJ at 1/500 and 1/1000 s, where it takes 154.
 //   springs     stops and suspensions that an engine has ERP and compliance of: those of a step of
 //               the frame, so that stiffness and damping are the same in a part of any length
+//   laws        a spring and a damper of which stiffness and damping are known are a row with the
+//               mean of their forces at both ends of the part, which keeps what a spring holds at
+//               any length; a force of the part's middle is that of a softer or harder spring in a
+//               part of another length, which gave energy: 3 to 10^10 times what there was
 //   compliance  of contacts and softened rows, which engines divide by the step: in a blow that of
 //               a step of 0.1 ms, else 1 ns would meet a contact softer by 10⁵
 #pragma once
@@ -45,6 +49,28 @@ struct Softness {
     const double share = usual.erp * h / frame, whole = 1 - usual.erp + share;
     if (!(whole > 0)) return {part_erp(usual.erp, h), usual.compliance};
     return {part_erp(share / whole, h), usual.compliance / whole};
+}
+
+/// u' + C λ = b of a row whose bodies are half a step ahead: C = `compliance` [1/kg | 1/(kg m²)], b
+/// = `target` [m/s | rad/s].
+struct LawRow {
+    double target, compliance;
+};
+
+/// Of a spring k and a damper d beside it, whose strain x grows with the row's velocity u,
+///
+///   λ = -k h (x + h (u' - u)/4) - d h (θ u' + (1 - θ) u)
+///
+/// x in the middle of a part of `h` [s], u as it begins; θ = 1/2, more where the damper takes u
+/// within the part and would turn it round. k -> ∞: u' = u - 4 x/h. Not both are 0.
+/// @param mass that the row feels [kg | kg m²]
+[[nodiscard]] inline LawRow law_row(double stiffness, double damping, double mass, double strain,
+                                    double velocity, double h) noexcept {
+    const double damps = damping * h, springs = stiffness * h * h / 4;
+    const double later = damps > 2 * mass ? 1 - mass / damps : 0.5; // θ
+    const double own = springs + later * damps;
+    const double before = (springs - (1 - later) * damps) * velocity;
+    return {(before - stiffness * h * strain) / own, 1 / own};
 }
 
 /// Of a world's compliance in a blow of `h` [s], by which it has to be multiplied [-].

@@ -11,7 +11,8 @@
 //
 // in between the parabola of mean V, where V goes on as it did (driven_velocity.hpp); else v = V,
 // as of what is set into motion at once. Before its first frame a body is taken to have been at
-// rest. So a joint counts the very way that the body goes.
+// rest. So a joint counts the very way that the body goes. Where a motion begins its first change
+// is a jump, until the next frame shows that it goes on: then it was misread, as is told.
 #pragma once
 
 #include "ductile/joint/link_types.hpp"
@@ -28,6 +29,11 @@ class DrivenCourse {
         velocity_.begin(mean.velocity, length);
         spin_.begin(mean.spin, length);
         length_ = length;
+    }
+
+    /// The change of the last frame was taken for a jump, and goes on in this one.
+    [[nodiscard]] bool was_misread() const noexcept {
+        return velocity_.was_misread() || spin_.was_misread();
     }
 
     /// `time` [s] after the frame's begin, as all that follows.
@@ -65,12 +71,19 @@ class DrivenCourse {
     class Velocity {
       public:
         void begin(const Vector3<double>& mean, double length) noexcept {
+            constexpr double noticed = 0.25, rest = 1e-6; // of that change; of its speed
+            const Vector3<double> jump = past_.slope;
+            const bool rested = dot(past_.value, past_.value) <= rest * rest * dot(mean, mean);
             past_.book(mean, length);
+            misread_ =
+                began_ && past_.smooth > 0 && dot(past_.slope, jump) > noticed * dot(jump, jump);
+            began_ = rested && dot(mean, mean) > 0;
             start_ = past_.smooth > 0 ? end_ : mean;
             end_ = mean;
             if (past_.smooth > 0) end_ = sum(end_, scaled(length / 2, past_.slope));
             if (past_.smooth > 1) end_ = sum(end_, scaled(length / 3, past_.change));
         }
+        [[nodiscard]] bool was_misread() const noexcept { return misread_; }
         [[nodiscard]] Vector3<double> at(double s) const noexcept {
             const Vector3<double> straight = sum(start_, scaled(s, difference(end_, start_)));
             return sum(straight, scaled(6 * s * (1 - s), bent()));
@@ -89,6 +102,7 @@ class DrivenCourse {
         }
 
         DrivenPast past_{.steps = 1}; ///< at rest, until it is known
+        bool began_ = false, misread_ = false;
         Vector3<double> start_ = Vector3<double>::Zero(), end_ = Vector3<double>::Zero();
     };
 

@@ -129,11 +129,13 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     }
 }
 
-/// Adds the row; `force`: that of the part [N | N m].
-inline void add_part_row(const AxisJoint& axis, double force, std::size_t joint, bool acts,
-                         std::vector<PartRow>& rows) {
+/// Adds the row; `force`: that of the part [N | N m]; `carried`: turn in it of a driven one of its
+/// bodies [rad].
+inline void add_part_row(const AxisJoint& axis, double force, double carried, std::size_t joint,
+                         bool acts, std::vector<PartRow>& rows) {
     PartRow& row = rows.emplace_back();
     row.joint = joint;
+    row.carried = carried;
     row.noise = resting_share * axis.allowed_residual(0);
     row.least = axis.least_travel();
     row.elastic = !axis.rigid();

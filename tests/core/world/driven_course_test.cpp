@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "ductile/world/driven_course.hpp"
 
@@ -110,4 +111,25 @@ TEST_CASE("What is set into motion at once, or turned round at once, jumps") {
     CHECK(jumps(-3.1));
     for (int i = 2; i <= 4; ++i) CHECK_FALSE(jumps(-3 - 0.1 * i));
     CHECK(jumps(-5)); // the way that it went faster, but far more so
+}
+
+TEST_CASE("A motion that begins was misread where its first change goes on, as is told once") {
+    constexpr double length = 1.0 / 30;
+    const auto told = [](auto angle) { // in which frames
+        DrivenCourse course;
+        std::vector<int> frames;
+        for (int i = 0; i < 12; ++i) {
+            const double t = i * length;
+            course.begin(turning((angle(t + length) - angle(t)) / length), length);
+            if (course.was_misread()) frames.push_back(i);
+        }
+        return frames;
+    };
+    CHECK(told([](double t) { return 3 * t * t; }) == std::vector<int>{1});
+    CHECK(told([](double t) { return 3 * t * t * t; }) == std::vector<int>{1});
+    CHECK(told([](double t) { return 1 - std::cos(4 * t); }) == std::vector<int>{1});
+    CHECK(told([](double t) { return 7 * t; }).empty());
+    CHECK(told([](double t) { return 7 * t + t * t; }).empty());
+    CHECK(told([](double t) { return t < 5.5 * length ? 0 : 7 * (t - 5.5 * length); }).size() <= 1);
+    CHECK(told([](double) { return 0.0; }).empty());
 }

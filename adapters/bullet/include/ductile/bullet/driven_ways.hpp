@@ -75,6 +75,10 @@ class DrivenWays {
             body->setInterpolationAngularVelocity(spin);
         }
     }
+    [[nodiscard]] bool was_misread() const {
+        return std::any_of(ways_.begin(), ways_.end(),
+                           [](const Way& way) { return way.course.was_misread(); });
+    }
     [[nodiscard]] bool empty() const noexcept { return ways_.empty(); }
     /// Calls `see(body)` for each.
     template <class See>

@@ -56,7 +56,10 @@ class FrontSolver final : public btConstraintSolver {
     void set_kind(TickKind kind, const HeldContacts* held = nullptr) noexcept {
         kind_ = kind;
         held_ = kind == TickKind::part ? held : nullptr;
+        if (kind != TickKind::step) own_ = {};
     }
+    /// Bullet's springs and motors in the last part.
+    [[nodiscard]] const OwnForces& own() const noexcept { return own_; }
 
     /// Islands of these are solved at once, too; null: there are none. Not while it solves.
     void set_direct(const DirectBodies* direct) noexcept { direct_ = direct; }
@@ -107,6 +110,7 @@ class FrontSolver final : public btConstraintSolver {
     const DirectBodies* direct_ = nullptr;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
     std::mutex mutex_; ///< of what follows
+    OwnForces own_;
     std::vector<std::unique_ptr<Room>> idle_;
     std::unordered_map<const void*, std::shared_ptr<Kept>> kept_;
 };
@@ -128,6 +132,7 @@ class FrontHold {
     void set_kind(TickKind kind, const HeldContacts* held = nullptr) const {
         (**front_.lock()).set_kind(kind, held);
     }
+    [[nodiscard]] const OwnForces& own() const { return (**front_.lock()).own(); }
     void set_direct(const DirectBodies* direct) const { (**front_.lock()).set_direct(direct); }
 
   private:

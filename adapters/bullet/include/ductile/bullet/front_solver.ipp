@@ -193,6 +193,8 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                             island.manifolds.data(), int(island.manifolds.size()),
                             island.constraints.data(), int(island.constraints.size()), with_joints,
                             drawer, dispatcher);
+    const std::lock_guard lock(mutex_);
+    own_.join(kept->solver.own());
 }
 
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(

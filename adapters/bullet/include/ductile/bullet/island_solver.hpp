@@ -35,6 +35,8 @@
 
 #include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/frame/part_engine.hpp"
+#include "ductile/frame/part_settings.hpp"
 #include "ductile/solve/island_solver.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -45,6 +47,21 @@ struct EndRow {
     btVector3 move_a{0, 0, 0}, turn_a{0, 0, 0}, move_b{0, 0, 0}, turn_b{0, 0, 0};
     btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;
 };
+
+namespace detail {
+/// A spring of Bullet's, by its constraint's row.
+struct OwnSpring {
+    int row;
+    double stiffness, damping; ///< [N/m | N m/rad], [N s/m | N m s/rad]
+    double strain;             ///< that grows with the row's velocity [m | rad]
+};
+/// Its row in an island.
+struct SpringRow {
+    std::size_t row;
+    double stiffness, mass, start; ///< of the row; its velocity as the part began
+    LawRow law;
+};
+} // namespace detail
 
 class IslandSolver final : public btSequentialImpulseConstraintSolver {
   public:
@@ -62,6 +79,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void set_pushes_apart(bool pushes) noexcept { pushes_apart_ = pushes; }
 
     [[nodiscard]] const solve::IslandReport& last() const noexcept { return report_; }
+    /// Bullet's springs and motors in the last solve, if it was of a part.
+    [[nodiscard]] const OwnForces& own() const noexcept { return own_; }
 
   protected:
     DUCTILE_INLINE void convertJoints(btTypedConstraint** constraints, int count,
@@ -85,6 +104,10 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void look_ahead(const btContactSolverInfo& info);
     void load_rows();
     void turn_rows();
+    void load_springs();
+    void read_own();
+    [[nodiscard]] Vector6<double> began(int body) const;
+    [[nodiscard]] Vector6<double> pushed(int body) const;
     void load_contacts();
     void find_turned(btPersistentManifold** manifolds, int count, double tick);
     [[nodiscard]] double turned(const void* point) const;
@@ -108,8 +131,11 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     bool ahead_ = false;
     double half_ = 0; ///< of the tick [s]
     bool pushes_apart_ = true;
-    std::vector<EndRow> at_end_;    ///< of the others' rows, constraint by constraint
-    std::vector<int> count_at_end_; ///< rows of each
+    std::vector<EndRow> at_end_;                 ///< of the others' rows, constraint by constraint
+    std::vector<int> count_at_end_;              ///< rows of each
+    std::vector<detail::OwnSpring> springs_;     ///< of one of them
+    std::vector<detail::SpringRow> spring_rows_; ///< of all
+    OwnForces own_;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };
 

@@ -30,6 +30,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroup(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
     int manifold_count, btTypedConstraint** constraints, int constraint_count,
     const btContactSolverInfo& info, btIDebugDraw* drawer, btDispatcher* dispatcher) {
+    own_ = {};
     if (has_only_joints(bodies, body_count, manifolds, manifold_count, constraints,
                         constraint_count)) {
         solve_joints(bodies, body_count, constraints, constraint_count, info);
@@ -130,11 +131,12 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     load_bodies();
     load_plastic_joints(info);
     first_read_ = island_.rows.size();
+    half_ = double(info.m_timeStep) / 2;
     load_rows();
     find_turned(manifolds, manifold_count, double(info.m_timeStep));
-    half_ = double(info.m_timeStep) / 2;
     load_contacts();
     report_ = solver_.solve(island_);
+    read_own();
     store();
     if (info.m_splitImpulse && pushes_apart_) {
         solveGroupCacheFriendlySplitImpulseIterations(bodies, body_count, manifolds, manifold_count,
@@ -216,6 +218,7 @@ DUCTILE_INLINE void IslandSolver::load_rows() {
         row.upper = detail::limit(pool[i].m_upperLimit);
     }
     turn_rows();
+    load_springs();
 }
 
 DUCTILE_INLINE void IslandSolver::find_turned(btPersistentManifold** manifolds, int count,

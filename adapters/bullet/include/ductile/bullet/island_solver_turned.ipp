@@ -4,10 +4,14 @@
 // island_solver.ipp.
 #pragma once
 
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
+#include <BulletDynamics/ConstraintSolver/btGeneric6DofSpringConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 #include "ductile/bullet/moving_bodies.hpp"
 
@@ -61,6 +65,65 @@ class PinsInWorld {
     std::vector<btHingeConstraint*> hinges_;
 };
 
+[[nodiscard]] DUCTILE_INLINE Vector6<double> twist(const btVector3& linear,
+                                                   const btVector3& angular) {
+    return twist_of(to_core(linear), to_core(angular));
+}
+[[nodiscard]] DUCTILE_INLINE Vector6<double> on_a(const btSolverConstraint& row) {
+    return twist(row.m_contactNormal1, row.m_relpos1CrossNormal);
+}
+[[nodiscard]] DUCTILE_INLINE Vector6<double> on_b(const btSolverConstraint& row) {
+    return twist(row.m_contactNormal2, row.m_relpos2CrossNormal);
+}
+
+/// In the order of its rows, as it last looked at its bodies. One with Bullet's damping is no
+/// spring and damper: that bounds its speed, by what a tick's length says.
+DUCTILE_INLINE void list_springs(btGeneric6DofSpringConstraint& constraint,
+                                 std::vector<OwnSpring>& springs) {
+    int row = 0;
+    const int first = constraint.getUseFrameOffset() ? 3 : 0; // turns come first
+    for (int k = 0; k < 6; ++k) {
+        const int i = (first + k) % 6;
+        const bool moves = i < 3;
+        const auto& axes = *constraint.getTranslationalLimitMotor();
+        const auto& turn = *constraint.getRotationalLimitMotor(i % 3);
+        if (!(moves ? axes.needApplyForce(i) : turn.needApplyTorques())) continue;
+        const bool stopped = (moves ? axes.m_currentLimit[i] : turn.m_currentLimit) != 0;
+        if (constraint.isSpringEnabled(i) && !stopped && constraint.getDamping(i) == 1) {
+            const btScalar at = moves ? constraint.getRelativePivotPosition(i)
+                                      : constraint.getAngle(i - 3),
+                           strain = at - constraint.getEquilibriumPoint(i);
+            springs.push_back(
+                {row, double(constraint.getStiffness(i)), 0, double(moves ? -strain : strain)});
+        }
+        ++row;
+    }
+}
+DUCTILE_INLINE void list_springs(btGeneric6DofSpring2Constraint& constraint,
+                                 std::vector<OwnSpring>& springs) {
+    int row = 0;
+    const auto add = [&](int limit, bool motor, bool spring, const OwnSpring& law) {
+        constexpr int both_stops = 4;
+        row += (limit == both_stops ? 2 : limit != 0 ? 1 : 0) + (motor ? 1 : 0);
+        if (!spring) return;
+        springs.push_back(law);
+        springs.back().row = row++;
+    };
+    constexpr int orders[][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+    for (const int i : orders[constraint.getRotationOrder()]) {
+        const btRotationalLimitMotor2& axis = *constraint.getRotationalLimitMotor(i);
+        add(axis.m_currentLimit, axis.m_enableMotor, axis.m_enableSpring,
+            {0, double(axis.m_springStiffness), double(axis.m_springDamping),
+             double(axis.m_currentPosition - axis.m_equilibriumPoint)});
+    }
+    const btTranslationalLimitMotor2& axes = *constraint.getTranslationalLimitMotor();
+    for (int i = 0; i < 3; ++i) {
+        add(axes.m_currentLimit[i], axes.m_enableMotor[i], axes.m_enableSpring[i],
+            {0, double(axes.m_springStiffness[i]), double(axes.m_springDamping[i]),
+             double(axes.m_equilibriumPoint[i] - axes.m_currentLinearDiff[i])});
+    }
+}
+
 } // namespace detail
 
 /// The others' rows as the part will end.
@@ -98,19 +161,84 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
     }
 }
 
+/// Of a body of this solve, as the part began.
+DUCTILE_INLINE Vector6<double> IslandSolver::began(int body) const {
+    const btSolverBody& moved = m_tmpSolverBodyPool[body];
+    return detail::twist(moved.m_linearVelocity, moved.m_angularVelocity);
+}
+/// The same, by outside forces in all of it.
+DUCTILE_INLINE Vector6<double> IslandSolver::pushed(int body) const {
+    const btSolverBody& moved = m_tmpSolverBodyPool[body];
+    return detail::twist(moved.m_externalForceImpulse, moved.m_externalTorqueImpulse);
+}
+
+/// Springs have the mean of their forces over the part, whatever they are limited to.
+DUCTILE_INLINE void IslandSolver::load_springs() {
+    spring_rows_.clear();
+    const bool blow = 2 * half_ <= blow_length; // in which they give nothing
+    if (!ahead_ && !blow) return;
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < others_.size(); ++i) {
+        const std::size_t of_this = first;
+        const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
+        first += std::size_t(count);
+        const btTypedConstraintType type = others_[i]->getConstraintType();
+        springs_.clear();
+        if (count == 0) continue;
+        if (type == D6_SPRING_2_CONSTRAINT_TYPE) {
+            detail::list_springs(static_cast<btGeneric6DofSpring2Constraint&>(*others_[i]),
+                                 springs_);
+        } else if (type == D6_SPRING_CONSTRAINT_TYPE) {
+            detail::list_springs(static_cast<btGeneric6DofSpringConstraint&>(*others_[i]),
+                                 springs_);
+        }
+        for (const auto& [place, stiffness, damping, strain] : springs_) {
+            const btSolverConstraint& row =
+                m_tmpSolverNonContactConstraintPool[int(of_this) + place];
+            if (!(row.m_jacDiagABInv > 0) || !(stiffness > 0 || damping > 0)) continue;
+            const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
+            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
+            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
+            const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+            const LawRow law =
+                law_row(stiffness, damping, double(row.m_jacDiagABInv), strain, comes, 2 * half_);
+            solve::IslandRow& held = island_.rows[first_read_ + of_this + std::size_t(place)];
+            if (blow) {
+                held.target = held.lower = held.upper = 0;
+                continue;
+            }
+            held.target = law.target - comes - push;
+            held.compliance = law.compliance;
+            held.lower = -std::numeric_limits<double>::infinity();
+            held.upper = std::numeric_limits<double>::infinity();
+            spring_rows_.push_back({first_read_ + of_this + std::size_t(place), stiffness,
+                                    double(row.m_jacDiagABInv), comes, law});
+        }
+    }
+}
+
+DUCTILE_INLINE void IslandSolver::read_own() {
+    if (!ahead_) return;
+    const double h = 2 * half_;
+    for (const detail::SpringRow& spring : spring_rows_) {
+        const double impulse = island_.rows[spring.row].impulse;
+        const double end = spring.law.target - spring.law.compliance * impulse;
+        own_.add_spring(spring.stiffness, spring.mass, impulse / h, spring.start, end, h);
+    }
+    for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
+        const solve::IslandRow& motor = island_.rows[first_read_ + std::size_t(i)];
+        const double strength = motor.upper / h;
+        if (std::isinf(strength) || !(strength > 0) || motor.lower != -motor.upper) continue;
+        const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[i];
+        const double push = detail::on_a(row).dot(pushed(row.m_solverBodyIdA)) +
+                            detail::on_b(row).dot(pushed(row.m_solverBodyIdB));
+        own_.add_motor(strength, double(row.m_jacDiagABInv), motor.impulse / h, motor.target + push,
+                       h);
+    }
+}
+
 /// Has those of them that hold both ways be right at the end of the part.
 DUCTILE_INLINE void IslandSolver::turn_rows() {
-    const auto twist = [](const btVector3& linear, const btVector3& angular) {
-        return twist_of(to_core(linear), to_core(angular));
-    };
-    const auto came = [this, &twist](int body) { // as the part began
-        const btSolverBody& moved = m_tmpSolverBodyPool[body];
-        return twist(moved.m_linearVelocity, moved.m_angularVelocity);
-    };
-    const auto pushed = [this, &twist](int body) { // by outside forces, in all of it
-        const btSolverBody& moved = m_tmpSolverBodyPool[body];
-        return twist(moved.m_externalForceImpulse, moved.m_externalTorqueImpulse);
-    };
     std::size_t then = 0, now = 0;
     for (std::size_t i = 0; i < count_at_end_.size(); ++i) {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
@@ -121,12 +249,11 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
             solve::IslandRow& turned = island_.rows[first_read_ + now + std::size_t(k)];
             if (!std::isinf(turned.lower) || !std::isinf(turned.upper)) continue;
             const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
-            const Vector6<double> on_a = twist(row.m_contactNormal1, row.m_relpos1CrossNormal),
-                                  on_b = twist(row.m_contactNormal2, row.m_relpos2CrossNormal);
-            const double comes = on_a.dot(came(a)) + on_b.dot(came(b));
+            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
+            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
             const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
-            const double leaves = twist(end.move_a, end.turn_a).dot(came(a)) +
-                                  twist(end.move_b, end.turn_b).dot(came(b));
+            const double leaves = detail::twist(end.move_a, end.turn_a).dot(began(a)) +
+                                  detail::twist(end.move_b, end.turn_b).dot(began(b));
             const double asked = turned.target + comes + push; // in the middle
             turned.target = (4 * asked - double(end.error)) / 3 - push - leaves;
         }

@@ -184,7 +184,12 @@ DUCTILE_INLINE void MotorConstraint::put_all_back() {
 DUCTILE_INLINE void MotorConstraint::list_part_rows(std::size_t joint,
                                                     std::vector<PartRow>& rows) const {
     settle();
-    add_part_row(joint_, force_, joint, acts(), rows);
+    double carried = 0;
+    for (const btRigidBody* body : {&m_rbA, &m_rbB}) {
+        if (!body->isKinematicObject()) continue;
+        carried = std::max(carried, double(body->getAngularVelocity().length()) * dt_);
+    }
+    add_part_row(joint_, force_, carried, joint, acts(), rows);
 }
 
 DUCTILE_INLINE void MotorConstraint::settle() const {

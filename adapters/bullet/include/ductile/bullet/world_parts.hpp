@@ -102,6 +102,7 @@ class WorldParts final : public PartEngine {
                                                          double apart) override;
     [[nodiscard]] DUCTILE_INLINE double kinetic_energy() const override;
     [[nodiscard]] DUCTILE_INLINE double rounding(double h) const override;
+    [[nodiscard]] bool was_misread() const override { return ways_.was_misread(); }
 
   private:
     class HingeMotors;

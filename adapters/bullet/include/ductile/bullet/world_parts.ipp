@@ -234,6 +234,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
         motion_.contact_lost = false;
         motion_.turned = 0;
+        motion_.own = {};
         return motion_;
     }
     // so short a part closes what is left of a gap: its impulses are a blow's
@@ -257,6 +258,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     // they are right at the end of the part: what they give is no drift that is pulled back
     motion_.others_work = metered ? std::abs(meter_.step_of_other_joints()) : 0;
     motion_.stored = metered ? meter_.stored() : 0;
+    motion_.own = front_.own();
     motion_.contact_work = 0;
     if (metered && motion_.flows()) {
         motion_.contact_work = meter_.step_of_contacts([this](const void* body) {

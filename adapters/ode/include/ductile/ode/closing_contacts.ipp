@@ -225,6 +225,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
             const dJointID joint = dBodyGetJoint(body, i);
             if (dJointIsEnabled(joint) == 0) continue;
             for (const StoppedAxis& axis : stopped_axes(joint)) {
+                if (!axis.stops()) continue;
                 any_stops_ = true;
                 const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
                 if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // Stops of ODE's own joints: how far from them an axis is, and how fast it comes. Of hinges,
-// sliders, universals, pistons and the steering of a hinge-2; those of others are not told.
+// sliders, universals, pistons and the steering of a hinge-2; those of others are not told. Two
+// stops at one place are none: they hold the axis, as a spring where they are soft
+// (own_settings.hpp).
 //
 // Not thread-safe.
 #pragma once
@@ -17,12 +19,16 @@
 
 namespace ductile::ode {
 
-/// An axis of a joint that has a stop, as its bodies are.
+/// An axis of a joint that may have stops, as its bodies are.
 struct StoppedAxis {
+    int group;          ///< of its parameters
     double least, most; ///< stops; infinite: none [m | rad]
-    double at, rate;    ///< [m | rad] [m/s | rad/s]
+    double at, rate;    ///< as its stops count [m | rad] [m/s | rad/s]
     double yields;      ///< velocity that a unit impulse along it gives, both bodies free
 
+    [[nodiscard]] bool stops() const noexcept {
+        return (std::isfinite(least) || std::isfinite(most)) && least < most;
+    }
     /// Distance to the stop that it goes towards, < 0 beyond it [m | rad].
     [[nodiscard]] double gap() const noexcept { return rate > 0 ? most - at : at - least; }
 };
@@ -59,11 +65,16 @@ struct AxisCalls {
 }
 
 inline void add_axis(dJointID joint, const AxisCalls& calls, StoppedAxes& axes) {
-    const auto parameter = joint_calls(dJointGetType(joint)).get;
-    const auto least = double(parameter(joint, dParamLoStop + calls.group));
-    const auto most = double(parameter(joint, dParamHiStop + calls.group));
-    if (!std::isfinite(least) && !std::isfinite(most)) return;
-    axes.axes[axes.count++] = {least, most, double(calls.at(joint)), double(calls.rate(joint)),
+    const dJointType type = dJointGetType(joint);
+    const auto parameter = joint_calls(type).get;
+    // of a hinge that was attached as (null, body) ODE tells the angle the other way round
+    const bool other_way = type == dJointTypeHinge && attached_bodies(joint).reversed;
+    const double way = other_way ? -1 : 1;
+    axes.axes[axes.count++] = {calls.group,
+                               double(parameter(joint, dParamLoStop + calls.group)),
+                               double(parameter(joint, dParamHiStop + calls.group)),
+                               way * double(calls.at(joint)),
+                               way * double(calls.rate(joint)),
                                yields_along(joint, told(joint, calls.axis), calls.turns)};
 }
 

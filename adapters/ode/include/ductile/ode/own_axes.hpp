@@ -18,6 +18,12 @@ namespace ductile::ode {
 
 namespace detail {
 
+/// A motor of the axis, or a spring: two stops at one place.
+[[nodiscard]] inline bool is_powered(dJointID joint, dReal (*get)(dJointID, int), int group = 0) {
+    const dReal least = get(joint, dParamLoStop + group);
+    return get(joint, dParamFMax + group) > 0 || least == get(joint, dParamHiStop + group);
+}
+
 [[nodiscard]] inline Vector3<double> centre_of(dBodyID body, const Vector3<double>& otherwise) {
     return body != nullptr ? to_core(dBodyGetPosition(body)) : otherwise;
 }
@@ -43,17 +49,17 @@ struct OwnAxes {
             case dJointTypeFixed:
                 return axes;
             case dJointTypeHinge:
-                axes.powered = dJointGetHingeParam(joint, dParamFMax) > 0;
+                axes.powered = detail::is_powered(joint, dJointGetHingeParam);
                 axes.turns = told(joint, dJointGetHingeAxis);
                 pin = pin_b = told(joint, dJointGetHingeAnchor);
                 break;
             case dJointTypeSlider:
-                axes.powered = dJointGetSliderParam(joint, dParamFMax) > 0;
+                axes.powered = detail::is_powered(joint, dJointGetSliderParam);
                 axes.slides = told(joint, dJointGetSliderAxis);
                 break;
             case dJointTypeUniversal:
-                axes.powered = dJointGetUniversalParam(joint, dParamFMax) > 0 ||
-                               dJointGetUniversalParam(joint, dParamFMax2) > 0;
+                axes.powered = detail::is_powered(joint, dJointGetUniversalParam) ||
+                               detail::is_powered(joint, dJointGetUniversalParam, dParamGroup);
                 axes.turns = told(joint, dJointGetUniversalAxis1);
                 axes.turns_too = told(joint, dJointGetUniversalAxis2);
                 pin = pin_b = told(joint, dJointGetUniversalAnchor);

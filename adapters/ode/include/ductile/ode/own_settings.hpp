@@ -6,6 +6,10 @@
 // Left as they are, a stop that is overrun within a frame is pushed back in parts of microseconds,
 // at any speed.
 //
+// Two stops at one place that are soft are a spring and a damper, k = erp/(frame cfm), d = (1 -
+// erp)/cfm. Set anew for each part they ask for the mean of its forces (law_row): ODE's row is u' +
+// cfm f = -erp (at - stop)/h.
+//
 // Not thread-safe.
 #pragma once
 
@@ -15,8 +19,11 @@
 #include <span>
 #include <vector>
 
+#include "ductile/frame/part_engine.hpp"
 #include "ductile/frame/part_settings.hpp"
 #include "ductile/ode/joint_calls.hpp"
+#include "ductile/ode/joint_stops.hpp"
+#include "ductile/ode/own_axes.hpp"
 #include "ductile/vocabulary/address_book.hpp"
 
 namespace ductile::ode {
@@ -24,65 +31,149 @@ namespace ductile::ode {
 class OwnSettings {
   public:
     /// Rules the joints of these bodies for a part of `h` [s] in a frame of `frame` [s], or a blow,
-    /// but for `ours`, which plastic joints made for themselves.
+    /// but for `ours`, which plastic joints made for themselves. Bodies are where they are solved,
+    /// with the velocities that they begin with.
     void rule(std::span<const dBodyID> bodies, const AddressBook& ours, double h, double frame,
               bool blow) {
-        own_.clear();
+        put_back();
+        springs_.clear();
+        motors_.clear();
+        const Part part{h, frame, blow};
         for (dBodyID body : bodies) {
             for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
                 const dJointID joint = dBodyGetJoint(body, i);
                 const dBodyID first = dJointGetBody(joint, 0);
-                if ((first == body || first == nullptr) && !ours.has(joint)) find(joint);
+                if ((first == body || first == nullptr) && !ours.has(joint)) rule(joint, part);
             }
-        }
-        for (const Own& own : own_) {
-            Softness rule = own.usual;
-            if (blow) {
-                rule = {0, rule.compliance * blow_compliance(h)};
-            } else if (own.spring) {
-                rule = part_spring(rule, h, frame);
-            } else {
-                rule.erp = part_erp(rule.erp, h);
-            }
-            own.set(own.joint, own.erp_name, dReal(rule.erp));
-            own.set(own.joint, own.cfm_name, dReal(rule.compliance));
         }
     }
     /// They are as they were.
     void put_back() {
-        for (const Own& own : own_) {
-            own.set(own.joint, own.erp_name, dReal(own.usual.erp));
-            own.set(own.joint, own.cfm_name, dReal(own.usual.compliance));
+        for (const Usual& usual : usual_) usual.set(usual.joint, usual.name, usual.value);
+        usual_.clear();
+    }
+    /// What the springs, and the motors of hinges and sliders whose feedback tells, did in a part
+    /// of `h` [s], as bodies leave it.
+    [[nodiscard]] OwnForces forces(double h) const {
+        OwnForces forces;
+        for (const auto& [joint, strength, mass, speed] : motors_) {
+            const dJointFeedback* feedback = dJointGetFeedback(joint);
+            if (feedback == nullptr) continue;
+            const AttachedBodies bodies = attached_bodies(joint);
+            const OwnAxes axes = OwnAxes::of(joint, bodies);
+            const Vector3<double> all = to_core(feedback->f1), own = axes.force(all),
+                                  moment = axes.moment(all, to_core(feedback->t1));
+            forces.add_motor(strength, mass, std::sqrt(dot(own, own) + dot(moment, moment)), speed,
+                             h);
         }
-        own_.clear();
+        for (const Spring& spring : springs_) {
+            const double end = stopped_axes(spring.joint).axes[spring.axis].rate;
+            const double force = (spring.law.target - end) / (spring.law.compliance * h);
+            forces.add_spring(spring.stiffness, spring.mass, force, spring.start, end, h);
+        }
+        return forces;
     }
 
   private:
-    struct Own {
+    struct Part {
+        double length, frame; ///< [s]
+        bool blow;
+    };
+    struct Usual {
         dJointID joint;
         void (*set)(dJointID, int, dReal);
-        int erp_name, cfm_name;
-        Softness usual;
-        bool spring; ///< a share of what the frame removes, not of each part
+        int name;
+        dReal value;
     };
-    void find(dJointID joint) {
+    struct Spring {
+        dJointID joint;
+        std::size_t axis;
+        double stiffness, mass, start; ///< of the row; its velocity as the part began
+        LawRow law;
+    };
+
+    struct Motor {
+        dJointID joint;
+        double strength, mass, speed; ///< the last as the part began, less the motor's
+    };
+
+    void set(dJointID joint, int name, double value) {
         const JointCalls calls = joint_calls(dJointGetType(joint));
-        const auto add = [&](int erp_name, int cfm_name, bool spring) {
-            const Softness usual{double(calls.get(joint, erp_name)),
-                                 double(calls.get(joint, cfm_name))};
-            own_.push_back({joint, calls.set, erp_name, cfm_name, usual, spring});
+        usual_.push_back({joint, calls.set, name, calls.get(joint, name)});
+        calls.set(joint, name, dReal(value));
+    }
+    void rule(dJointID joint, const Part& part) {
+        const dJointType type = dJointGetType(joint);
+        const JointCalls calls = joint_calls(type);
+        const double h = part.length, frame = part.frame;
+        const bool blow = part.blow;
+        const auto usual = [&](int erp, int cfm) {
+            return Softness{double(calls.get(joint, erp)), double(calls.get(joint, cfm))};
         };
-        if (calls.rows) add(dParamERP, dParamCFM, false);
-        if (calls.suspension) add(dParamSuspensionERP, dParamSuspensionCFM, true);
+        const auto lend = [&](int erp, int cfm, const Softness& as, bool in_blow) {
+            set(joint, erp, in_blow ? 0 : as.erp);
+            set(joint, cfm, in_blow ? as.compliance * blow_compliance(h) : as.compliance);
+        };
+        const auto soften = [&](int erp, int cfm) { // a share of what the frame removes
+            const Softness own = usual(erp, cfm);
+            lend(erp, cfm, blow ? own : part_spring(own, h, frame), blow);
+        };
+        if (calls.rows) {
+            const Softness own = usual(dParamERP, dParamCFM);
+            lend(dParamERP, dParamCFM, {part_erp(own.erp, h), own.compliance}, blow);
+        }
+        if (calls.suspension) soften(dParamSuspensionERP, dParamSuspensionCFM);
+        const bool alone = type == dJointTypeHinge || type == dJointTypeSlider;
+        if (alone && !blow && calls.get(joint, dParamFMax) > 0) {
+            const StoppedAxis axis = stopped_axes(joint).axes[0];
+            if (axis.yields > 0) {
+                motors_.push_back({joint, double(calls.get(joint, dParamFMax)), 1 / axis.yields,
+                                   axis.rate - double(calls.get(joint, dParamVel))});
+            }
+        }
         for (int axis = 0; axis < calls.stops; ++axis) {
             const int group = dParamGroup * axis;
             const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
                                std::isfinite(calls.get(joint, dParamHiStop + group));
-            if (stops) add(dParamStopERP + group, dParamStopCFM + group, true);
+            if (!stops || is_spring(joint, group, part)) continue;
+            soften(dParamStopERP + group, dParamStopCFM + group);
         }
     }
+    /// One that a frame could follow, which it is now.
+    bool is_spring(dJointID joint, int group, const Part& part) {
+        constexpr double stiff = 1e4; // (ω frame)²
+        const auto [h, frame, blow] = part;
+        const StoppedAxes axes = stopped_axes(joint);
+        for (std::size_t i = 0; i < axes.count; ++i) {
+            const StoppedAxis& axis = axes.axes[i];
+            if (axis.group != group || axis.least != axis.most || !(axis.yields > 0)) continue;
+            const JointCalls calls = joint_calls(dJointGetType(joint));
+            const auto erp = double(calls.get(joint, dParamStopERP + group));
+            const auto cfm = double(calls.get(joint, dParamStopCFM + group));
+            if (!(erp > 0 && erp <= 1 && cfm > 0)) continue;
+            const double stiffness = erp / (frame * cfm), damping = (1 - erp) / cfm;
+            if (stiffness * frame * frame * axis.yields > stiff) continue;
+            if (blow) { // in which it gives nothing
+                set(joint, dParamLoStop + group, -dInfinity);
+                set(joint, dParamHiStop + group, dInfinity);
+                return true;
+            }
+            const double mass = 1 / axis.yields;
+            const LawRow law =
+                law_row(stiffness, damping, mass, axis.at - axis.least, axis.rate, h);
+            set(joint, dParamStopERP + group, 1);
+            set(joint, dParamStopCFM + group, law.compliance * h);
+            set(joint, dParamLoStop + group, axis.at + h * law.target);
+            set(joint, dParamHiStop + group, axis.at + h * law.target);
+            springs_.push_back({joint, i, stiffness, mass, axis.rate, law});
+            return true;
+        }
+        return false;
+    }
 
-    std::vector<Own> own_;
+    std::vector<Usual> usual_;
+    std::vector<Spring> springs_;
+    std::vector<Motor> motors_;
 };
 
 } // namespace ductile::ode

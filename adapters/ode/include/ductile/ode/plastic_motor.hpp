@@ -103,6 +103,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     DUCTILE_INLINE void stand() override;
 
     DUCTILE_INLINE void left_world() override { give_motor_back(); }
+    DUCTILE_INLINE void driven_begins(dBodyID body, const Vector3<double>& velocity,
+                                      const Vector3<double>& spin) override;
     DUCTILE_INLINE bool begin_frame() override;
     DUCTILE_INLINE void keep_all() override;
     DUCTILE_INLINE void put_all_back() override;
@@ -177,6 +179,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     bool rigid_unsolved_ = false;
     OutsideForce outside_;
     DrivenPair driven_;
+    double length_ = 0;   ///< of the step [s]
     double centre_ = 0;   ///< c [N | N m]
     double strength_ = 0; ///< h [N | N m]
     bool booked_ = false; ///< and not finished

@@ -124,12 +124,12 @@ DUCTILE_INLINE void MotorConstraint::prepare(double dt) {
         return;
     }
     acting_ = true;
+    length_ = dt;
     Motion<double> motion{.ahead = ahead_};
     if (ahead_) {
-        driven_.forget();
         const MotorPose last = pose_;
         pose_.look(row_);
-        motion.velocity = pose_.velocity(row_);
+        motion.velocity = start_velocity(dt);
         motion.position = moved_from(last, motion.velocity * dt / 2);
         keep(motion.position, force_);
         motion.before = motion.position - motion.velocity * dt / 2;
@@ -182,6 +182,14 @@ DUCTILE_INLINE void MotorConstraint::stand() {
 
 // ---- a part of a frame
 
+DUCTILE_INLINE void MotorConstraint::driven_begins(dBodyID body, const Vector3<double>& velocity,
+                                                   const Vector3<double>& spin) {
+    for (const int side : {0, 1}) {
+        const dBodyID of_side = side == 0 ? row_.bodies().a : row_.bodies().b;
+        if (of_side == body) driven_.begins_part(side, velocity, spin);
+    }
+}
+
 DUCTILE_INLINE bool MotorConstraint::begin_frame() {
     if (joint_.broken() || !row_.attached()) return false;
     pose_.look(row_);
@@ -213,7 +221,13 @@ DUCTILE_INLINE void MotorConstraint::put_all_back() {
 
 DUCTILE_INLINE void MotorConstraint::list_part_rows(std::size_t joint,
                                                     std::vector<PartRow>& rows) const {
-    add_part_row(joint_, force_, joint, acting_, rows);
+    double carried = 0;
+    for (const dBodyID body : {row_.bodies().a, row_.bodies().b}) {
+        if (DrivenPair::is_driven(body)) {
+            carried = std::max(carried, norm(angular_velocity(body)) * length_);
+        }
+    }
+    add_part_row(joint_, force_, carried, joint, acting_, rows);
 }
 
 // ---- the row

@@ -96,6 +96,10 @@ class WorldParts final : public PartEngine {
     [[nodiscard]] DUCTILE_INLINE ClosingContacts closing(double h, double touching,
                                                          double apart) override;
     [[nodiscard]] DUCTILE_INLINE double kinetic_energy() const override;
+    [[nodiscard]] bool was_misread() const override {
+        return std::any_of(driven_.begin(), driven_.end(),
+                           [](const Driven& driven) { return driven.course.was_misread(); });
+    }
 
   private:
     class Settings;

@@ -222,6 +222,7 @@ DUCTILE_INLINE void WorldParts::solve(double h, bool blow,
     const Settings settings(*this, h, blow);
     const StoodAside waiting(aside());
     step(h);
+    motion_.own = blow ? OwnForces() : own_settings_.forces(h);
 }
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+//
+// Bodies of frame_control.hpp: what a part is found to have misplaced. A part of frame_control.ipp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "ductile/frame/frame_rules.hpp"
+#include "ductile/vocabulary/angle.hpp"
+#include "ductile/vocabulary/linkage.hpp"
+
+namespace ductile {
+
+DUCTILE_INLINE PartBefore FrameControl::before(std::size_t row,
+                                               const PartMotion& motion) const noexcept {
+    if (!detail::was_there(past_, motion, row)) return {};
+    const Past& past = past_[row];
+    return {.acceleration = past.acceleration,
+            .length = before_,
+            .end = past.row.end,
+            .force = past.row.force,
+            .mass = past.mass,
+            .swings = past.row.swings && past.row.moves(),
+            .driven = past.driven,
+            .fast = past.fast || used() > detail::of_swings};
+}
+
+/// Rigid rows take more of what the engine rounds than all that flows could, in any part.
+DUCTILE_INLINE bool FrameControl::is_noise(const PartEngine& engine,
+                                           const Judgement& judged) const {
+    return tolerated_share() * engine.rounding(length_) > judged.tolerated;
+}
+
+/// In the part before, at or near its strength.
+DUCTILE_INLINE bool FrameControl::flowed(std::size_t row, const PartMotion& motion) const noexcept {
+    constexpr double near = 0.5;
+    return detail::was_there(past_, motion, row) && before_ > 0 && past_[row].row.moves() &&
+           past_[row].row.share > near;
+}
+
+/// In this part, not in one before.
+DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& motion) const noexcept {
+    const bool broke_before = detail::was_there(past_, motion, row) && past_[row].row.broke > 0;
+    return motion.rows[row].broke > 0 && !broke_before;
+}
+
+/// In a part below the `shortest` contacts are struck, which misplaces nothing.
+DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
+                                                           double shortest) const {
+    Judgement judged;
+    double ahead = 0, of_flows = 0, largest = 0;
+    double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
+    judged.least = judged.of_one = motion.closed_work;
+    bool lets_go = false;  // a joint breaks: what its spring sets free is no misfit
+    double held = h;       // until the first joint broke
+    double held_share = 0; // of its strength, by a rigid row
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        if (!breaks(i, motion)) continue;
+        const PartRow& row = motion.rows[i];
+        const PartBefore known = before(i, motion);
+        const BrokeAlone broke = row.alone ? broke_alone(row, known, flowed(i, motion))
+                                           : broke_with_others(row, h, known);
+        judged.astray += broke.astray;
+        freed += row.freed;
+        held = std::min(held, broke.stop);
+        if (broke.astray > largest) {
+            largest = broke.astray;
+            judged.stop = broke.stop;
+        }
+    }
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        const double least = row.strength * row.least;
+        judged.least += least;
+        judged.of_one = std::max(judged.of_one, least);
+        if (row.elastic) { // the first one that yields
+            of_springs = std::max(of_springs, least);
+        } else {
+            unmissed += least;
+        }
+        judged.turned =
+            std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
+        judged.given += row.given;
+        lets_go = lets_go || row.broke > 0;
+        judged.error += row.misfit;
+        judged.struck += row.unfit;
+        if (!row.moves()) {
+            if (!row.elastic) held_share = std::max(held_share, row.share);
+            continue;
+        }
+        const double later = flow_after(row, held, h);
+        judged.astray += later;
+        if (later > largest) {
+            largest = later;
+            judged.stop = held;
+        }
+        const Misplaced off = misplaced(row, h, before(i, motion));
+        const double error = misplaced_energy(row, off, motion.plastic_work);
+        judged.error += error;
+        judged.ended = judged.ended || off.ended;
+        if (off.stop > 0 && error > largest) {
+            largest = error;
+            judged.stop = off.stop;
+        }
+        judged.moves = true;
+        const double work = work_ahead(row, h);
+        ahead += work;
+        if (!row.elastic || row.flows()) of_flows += work;
+        if (row.elastic) nearest = std::max(nearest, row.share);
+        judged.of_rows = judged.error;
+        judged.power += row.strength * std::abs(row.start + row.end) / 2;
+        judged.most += row.strength * row.speed() * h;
+    }
+    if (const double turn = detail::turn_of(motion); turn > detail::followed_turn) {
+        judged.turned = std::max(judged.turned, turn / (detail::of_turns * detail::followed_turn));
+    }
+    judged.error += judged.given + judged.astray;
+    // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
+    judged.struck = std::max(judged.struck, motion.rigid_work);
+    const bool rested = judged.struck + std::min(taken_, 0.0) > judged.least;
+    judged.moves = judged.moves || (rested && unmissed > 0 && !lets_go);
+    if (judged.moves) {
+        // velocities that did not fit are struck too, once; what rows give is never a blow
+        judged.fitted = h <= shortest && judged.struck > 0 && !fitted_;
+        if (!judged.fitted) {
+            judged.error += std::max(judged.struck, -motion.rigid_work);
+            judged.error += std::max(motion.others_work, 0.0);
+        }
+        if (!(h <= shortest)) {
+            judged.error += detail::contact_share * std::abs(motion.contact_work);
+        }
+        if (motion.contact_lost) judged.error += judged.power * h / 2;
+    }
+    const double share = tolerated_share();
+    double scale = ahead + detail::unmissed * judged.least;
+    const bool near = held_share * motion.own.peak > detail::near_peak;
+    if (near) {
+        judged.error += motion.own.swings;
+        scale += detail::of_stored * motion.own.energy;
+    }
+    if (near || judged.moves) {
+        judged.error += motion.own.stops;
+        if (motion.own.stops > largest) judged.stop = motion.own.stop;
+    }
+    if (nearest > detail::near_strength) { // springs may come to flow, by no more than they hold
+        scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
+                                    detail::unmissed * (unmissed + of_springs));
+    }
+    judged.tolerated = share * (motion.plastic_work + scale + freed);
+    judged.allowed = judged.tolerated;
+    // a push that came too early took this share of the speed
+    if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
+    if (used() > detail::coarse_from) {
+        judged.allowed *= std::pow(10.0, 8 * (used() - detail::coarse_from));
+    }
+    return judged;
+}
+
+} // namespace ductile
