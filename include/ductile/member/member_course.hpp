@@ -141,13 +141,17 @@ class MemberCourse {
         found_.clear();
         left_over_ = 0;
         find_locked(loads);
+        bool beside = false;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             left_over_ = std::max(left_over_, forces_.left_over());
-            find_unmodelled(pieces_[i].mass * steps[i].blur, dt);
+            beside = find_unmodelled(pieces_[i].mass * steps[i].blur, dt) || beside;
             const int worst = worst_section(member_, state_, forces_, dt, rule_);
             if (worst != no_section) found_.push_back(worst);
         }
+        beside_for_ = beside ? beside_for_ + dt : 0;
+        if (beside && (!has_blows_ || beside_for_ >= wave_time()))
+            unmodelled_ = Unmodelled::off_plane;
         if (whole()) {
             is_opened_ = !found_.empty() && !is_borne(steps, loads, dt);
             if (!is_opened_) found_.clear();
@@ -162,12 +166,16 @@ class MemberCourse {
     /// do not count: their bodies came with what a part left of their velocities.
     void begin_blow(double noticed = 0) noexcept {
         struck_ = rough_ = yields_ = is_opened_ = false;
+        has_blows_ = true;
         noticed_ = noticed;
     }
     /// The section that a blow opens now, the nearest to where it struck; no_section: it bears it.
     /// `strike`: of contacts, `by_joints`: of joints of the engine's.
     [[nodiscard]] int struck(std::span<const PieceStep> steps, std::span<const MemberLoad> loads,
                              MemberStrike strike, const MemberStrike& by_joints = {}) {
+        const Striker striker = by_joints.energy > strike.energy           ? Striker::sticks
+                                : is_touched_beside(loads, strike.segment) ? Striker::pushes
+                                                                           : Striker::pushes_alone;
         if (by_joints.energy > noticed_) {
             strike.add(by_joints.energy, by_joints.speed, by_joints.segment);
         }
@@ -184,7 +192,7 @@ class MemberCourse {
             const auto supports = whole() ? std::span<const MemberSupport>(closed_supports_)
                                           : std::span<const MemberSupport>();
             const MemberBlow blow = member_blow(member_, state_, elastic, strike.energy,
-                                                strike.speed, strike.segment, supports);
+                                                strike.speed, strike.segment, supports, striker);
             utilisation = std::max(utilisation, blow.in_all);
             if (first) rough_ = rough_ || blow.is_rough();
             yields_ = yields_ || blow.yields();
@@ -233,6 +241,7 @@ class MemberCourse {
     void restore(const MemberState& state) {
         state_ = state;
         is_opened_ = false;
+        beside_for_ = 0;
         make_pieces();
     }
     /// Closes sections, `bend` of their states being what they are bent by now.
@@ -245,8 +254,20 @@ class MemberCourse {
     }
 
   private:
-    /// Of a piece, whose forces in a step of `dt` [s] were just found, but for `blur` [N s].
-    void find_unmodelled(double blur, double dt) noexcept {
+    [[nodiscard]] static bool is_touched_beside(std::span<const MemberLoad> loads, int segment) {
+        return std::any_of(loads.begin(), loads.end(), [segment](const MemberLoad& load) {
+            return std::abs(load.segment - segment) > 1 && norm(load.impulse) > 0;
+        });
+    }
+    /// That a wave takes along it: what pushes for less is no load of all of a section [s]. Steps
+    /// that have no blows are these too.
+    [[nodiscard]] double wave_time() const noexcept {
+        return member_.length() *
+               std::sqrt(member_.mass_per_length() / member_.all_axes()->stiffness[2]);
+    }
+    /// Of a piece, whose forces in a step of `dt` [s] were just found, but for `blur` [N s];
+    /// whether it bears more than it can beside bending about its x.
+    [[nodiscard]] bool find_unmodelled(double blur, double dt) noexcept {
         constexpr double noticed = 1e-3, loads = 0.01; // of what acted, of the strength
         const double strength = least_strength_ * dt;
         const double left = std::max(norm(forces_.left_over_force) * member_.length(),
@@ -254,9 +275,9 @@ class MemberCourse {
         if (forces_.left_over() > noticed && left > loads * strength + blur * member_.length()) {
             unmodelled_ = Unmodelled::forces;
         }
-        for (const SectionForce& carried : forces_.sections) {
-            if (utilisation_beside(member_, carried) > dt) unmodelled_ = Unmodelled::off_plane;
-        }
+        return std::any_of(
+            forces_.sections.begin(), forces_.sections.end(),
+            [&](const SectionForce& carried) { return utilisation_beside(member_, carried) > dt; });
     }
     void find_locked(std::span<const MemberLoad> loads) noexcept {
         locked_ = {member_.clamped() ? 0 : member_.segments(), no_section};
@@ -355,10 +376,12 @@ class MemberCourse {
     std::vector<MemberSupport> closed_supports_, supports_; ///< then, and as it stands
     double closed_dt_ = 0;
     double noticed_ = 0;
+    double beside_for_ = 0; ///< steps in a row in which it bore more than it can beside bending [s]
     Unmodelled unmodelled_ = Unmodelled::nothing;
-    bool struck_ = false; ///< this blow was looked at
-    bool rough_ = false;  ///< what flows of it is known roughly
-    bool yields_ = false; ///< it does, as a rigid-plastic member then
+    bool has_blows_ = false; ///< beside steps: these are parts of frames
+    bool struck_ = false;    ///< this blow was looked at
+    bool rough_ = false;     ///< what flows of it is known roughly
+    bool yields_ = false;    ///< it does, as a rigid-plastic member then
 };
 
 } // namespace ductile

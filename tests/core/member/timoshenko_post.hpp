@@ -5,7 +5,9 @@
 // with a rotation each, deflections between them; explicit steps.
 // Unlike an undamped chain without shear and rotary inertia (elastic_plastic_chain.hpp) it
 // converges: 40 to 160 cells differ by 0.04 of the blow's energy where it just yields, else by
-// 0.02. Knows nothing of the library but the numbers of the post (strips.hpp).
+// 0.02. Of 648 blows by heavy strikers (blow_test.cpp) 40 and 80 cells differ by more than 0.06 in
+// 28, 20 of them pushed and met again and again, by up to 0.22. Knows nothing of the library but
+// the numbers of the post (strips.hpp).
 //
 //   γ_j = (w_{j+1} - w_j)/s - ψ_j,  Q_j = κ GA γ_j,  M_i = EI (ψ_i - ψ_{i-1})/s within ±M_p
 //   ρI s ψ'' = M_{j+1} - M_j + Q_j s,   μ s w'' = Q_i - Q_{i-1}

@@ -154,6 +154,8 @@ class WorldParts final : public PartEngine {
     /// No contact can close in a part of `h` [s] with more than `least` [J].
     [[nodiscard]] bool is_still(double h, double least) const;
     [[nodiscard]] const Stir& stir() const;
+    /// The frame does not go on: forces are as they were.
+    void break_off();
     /// Contacts where the bodies are, and which of them close. Bodies that were `moved` are put
     /// back where that throws. `still`: none closes.
     void look(const WorldSnapshot* moved = nullptr, bool still = false);

@@ -261,7 +261,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {
     moved();
 }
 
-DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
+DUCTILE_INLINE const PartMotion& WorldParts::part(double h) try {
     // so short a part closes what is left of a gap: its impulses are a blow's
     const bool instant = h < shortest_part();
     if (h < length_ && go_local()) save();
@@ -301,28 +301,11 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     }
     motion_.closed = closed_ < h ? closed_ : 0;
     return motion_;
-}
-
-/// Members are as whole as they are without it.
-DUCTILE_INLINE void WorldParts::begin_blow() {
-    if (of_.members->empty()) return;
-    if (of_.members->any_open()) close_held(Closing::before_blow);
-    save();
-    of_.members->begin_blow(touching_);
-    see_coming();
-}
-
-/// As bodies go that hang on members, were these not there.
-DUCTILE_INLINE void WorldParts::see_coming() {
-    const struct Cut {
-        const Divisibles& of;
-        bool any;
-        explicit Cut(const Divisibles& members) : of(members), any(of.switch_holds(false)) {}
-        ~Cut() { (void)of.switch_holds(true); }
-    } cut(*of_.members);
-    if (cut.any) tick(blow_length, true);
-    of_.members->see_coming();
-    if (cut.any) put_back();
+} catch (...) { // who makes contacts, or one of a member that was not named
+    snapshot_.put_back();
+    of_.meter.put_back();
+    break_off();
+    throw;
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {

@@ -23,10 +23,13 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved, bool still) try
     if (of_.maker) of_.maker->clear();
     if (moved != nullptr) moved->put_poses_back();
     if (moved == &snapshot_) of_.meter.put_back();
+    break_off();
+    throw;
+}
+DUCTILE_INLINE void WorldParts::break_off() {
     drop_forces();
     forces_.apply(); // as they were
     leave();
-    throw;
 }
 
 DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
@@ -202,6 +205,28 @@ DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
     }
     looked_ = false;
     return lengths > most ? std::min(next, most / lengths * h) : next;
+}
+
+/// Members are as whole as they are without it.
+DUCTILE_INLINE void WorldParts::begin_blow() {
+    if (of_.members->empty()) return;
+    if (of_.members->any_open()) close_held(Closing::before_blow);
+    save();
+    of_.members->begin_blow(touching_);
+    see_coming();
+}
+
+/// As bodies go that hang on members, were these not there.
+DUCTILE_INLINE void WorldParts::see_coming() {
+    const struct Cut {
+        const Divisibles& of;
+        bool any;
+        explicit Cut(const Divisibles& members) : of(members), any(of.switch_holds(false)) {}
+        ~Cut() { (void)of.switch_holds(true); }
+    } cut(*of_.members);
+    if (cut.any) tick(blow_length, true);
+    of_.members->see_coming();
+    if (cut.any) put_back();
 }
 
 /// Members reckon with ODE's own rule.
