@@ -59,7 +59,6 @@ class LaggedFriction {
     std::vector<IslandRow> rows_;         ///< what a way starts from, should it fail
     std::vector<IslandBlock> blocks_;
     int factorisations_ = 0;
-    double softness_ = 0; ///< at which the safe way begins
 };
 
 } // namespace ductile::solve

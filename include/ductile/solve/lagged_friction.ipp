@@ -63,14 +63,12 @@ DUCTILE_INLINE bool LaggedFriction::solve(IslandSystem& system) {
 }
 
 /// What the safe way found counts where the active set, which makes it exact, goes in circles.
-/// After its first answer it begins near the next one.
 DUCTILE_INLINE bool LaggedFriction::solve_round() {
-    constexpr double warm = 1e-4;
+    constexpr double cold = 0.1;
     take_from_flat();
     if (active_set_.solve(system_)) return true;
     give_to_flat();
-    proximal_newton_.solve(system_, softness_, false);
-    softness_ = warm;
+    proximal_newton_.solve(system_, cold, false);
     const bool well = certificate(system_) <= solved_well * system_.scale();
     take_from_flat();
     if (active_set_.solve(system_, true)) return true;
@@ -91,14 +89,12 @@ DUCTILE_INLINE void LaggedFriction::give_to_flat() {
 }
 
 DUCTILE_INLINE void LaggedFriction::begin(IslandSystem& system) {
-    constexpr double cold = 0.1;
     const Island& island = system.island();
     flat_ = island;
     contacts_.clear();
     radii_.clear();
     ahead_.restart();
     factorisations_ = 0;
-    softness_ = cold;
     for (std::size_t k = 0; k < flat_.blocks.size(); ++k) {
         IslandBlock& block = flat_.blocks[k];
         if (block.kind != BlockKind::contact) continue;
