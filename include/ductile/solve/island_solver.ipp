@@ -40,10 +40,12 @@ DUCTILE_INLINE void project_impulses(IslandSystem& system) noexcept {
 
 DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
     const IslandReport report = answer(island);
-    double off = std::max(report.solved ? 0 : report.residual, report.gives);
+    const double share = unsolved_share * report.scale;
+    double off = report.solved ? 0 : report.residual;
     if (std::isnan(report.residual)) off = std::numeric_limits<double>::infinity();
-    const bool little = off <= std::min(unsolved_share * report.scale, unsolved_speed);
-    island.unsolved = little ? 0 : off;
+    if (off <= std::min(share, unsolved_speed)) off = 0;
+    if (report.gives > std::max(share, unsolved_speed)) off = std::max(off, report.gives);
+    island.unsolved = off;
     return report;
 }
 
@@ -155,7 +157,8 @@ DUCTILE_INLINE void IslandSolver::certify(IslandReport& report) {
     system_.update_velocities();
     system_.update_residuals();
     report.residual = certificate(system_);
-    report.gives = system_.given() * detail::adds_up(system_.island());
+    const double along = detail::adds_up(system_.island()); // what turns moves by as much again
+    report.gives = system_.given() * along * along;
     // where next to nothing is asked for, round-off is more than a share of it
     report.solved = report.residual <= std::max({solved_residual * report.scale,
                                                  system_.round_off(4), detail::nothing});
