@@ -13,6 +13,7 @@
 
 #include "adapters/bullet_engine.hpp"
 #include "adapters/crushed_head.hpp"
+#include "adapters/soft_head.hpp"
 #include "adapters/thrown_arm.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/front_solver.hpp"
@@ -694,6 +695,42 @@ TEST_CASE("Frames: an arm that sinks onto a floor rests there, and is believed",
             CHECK(hinge.absorbed_energy() == Approx(strength * turn).epsilon(rough ? 0.01 : 2e-3));
             CHECK(rig.world->run().believed());
             rig.world->remove(hinge);
+        }
+    }
+}
+
+TEST_CASE("Frames: a contact with a stiffness is a spring and a damper at any frame", "[frame]") {
+    for (const test::SoftHead& scene : test::soft_heads) {
+        constexpr double duration = 0.5, others_damping = 0.1; // as Bullet's bodies come
+        const double absorbed = scene.absorbed(duration);
+        for (const double frame : all_frames) {
+            for (const bool of_both : {false, true}) {
+                CAPTURE(scene.mass, scene.head, scene.stiffness, scene.damping, frame, of_both);
+                Rig rig;
+                rig.engine.setGravity({0, btScalar(-scene.gravity), 0});
+                const auto inertia = [](double mass) {
+                    return btVector3(btScalar(mass), btScalar(mass), btScalar(mass));
+                };
+                btRigidBody& head =
+                    rig.body(scene.head, inertia(scene.head), {0, 0, 0}, box(2, 1, 2), 1, 2);
+                btRigidBody& mass = rig.body(scene.mass, inertia(scene.mass), {0, btScalar(1.5), 0},
+                                             std::make_unique<btSphereShape>(btScalar(0.5)), 2, 1);
+                mass.setLinearVelocity({0, btScalar(-scene.speed), 0});
+                const auto soften = [](btRigidBody& body, double stiffness, double damping) {
+                    body.setContactStiffnessAndDamping(btScalar(stiffness), btScalar(damping));
+                };
+                if (of_both) { // one after the other, side by side
+                    soften(head, 2 * scene.stiffness, scene.damping / 2);
+                    soften(mass, 2 * scene.stiffness, scene.damping / 2);
+                } else {
+                    soften(mass, scene.stiffness, scene.damping - others_damping);
+                }
+                Slider slider(head, along({0, 1, 0}), law(scene.strength));
+                rig.world->add(slider);
+                rig.run(duration, frame);
+                CHECK(slider.absorbed_energy() == Approx(absorbed).epsilon(0.01));
+                CHECK(rig.world->run().believed());
+            }
         }
     }
 }

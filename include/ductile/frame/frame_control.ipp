@@ -105,7 +105,6 @@ DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
         const ClosingContacts seen =
             engine.closing(h, std::max(0.1 * allowed_, least), std::max(allowed_, least));
         if (!seen.strikes || i == most_in_an_instant) return seen.time;
-        report_.left.energy += seen.yielding;
         remember(engine.blow(), 0);
         engine.accept(0);
         ++solves_;

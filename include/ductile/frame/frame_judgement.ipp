@@ -86,10 +86,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         lets_go = lets_go || row.broke > 0;
         judged.error += row.misfit;
         judged.struck += row.unfit;
-        if (!row.moves()) {
-            if (!row.elastic) held_share = std::max(held_share, row.share);
-            continue;
-        }
+        if (!row.elastic && (row.starts() || !row.moves()))
+            held_share = std::max(held_share, row.share);
+        if (!row.moves()) continue;
         const double later = flow_after(row, held, h);
         judged.astray += later;
         if (later > largest) {
@@ -129,7 +128,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.error += std::max(motion.others_work, 0.0);
         }
         if (!(h <= shortest)) {
-            judged.error += detail::contact_share * std::abs(motion.contact_work);
+            judged.error +=
+                detail::contact_share * std::abs(motion.contact_work - motion.own.contact_work);
         }
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
@@ -140,6 +140,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.error += motion.own.swings;
         scale += detail::of_stored * motion.own.energy;
     }
+    judged.error += std::min(motion.own.late, 1.0) * judged.most;
     if (near || judged.moves) {
         judged.error += motion.own.stops;
         if (motion.own.stops > largest) judged.stop = motion.own.stop;

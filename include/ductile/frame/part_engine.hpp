@@ -33,15 +33,19 @@ struct OwnForces {
     double swings = 0;          ///< misplaced by springs [J]
     double stops = 0, stop = 0; ///< by the motor that misplaces most [J], s [s]
     double peak = 0;            ///< the largest force of one over its mean [-]
+    double late = 0;            ///< of a force, that was a damper's later than it should be [-]
+    double contact_work = 0;    ///< that contacts took that give way, or hold by now [J]
 
     /// @param force mean, of the part  @param mass of the row, > 0  @param start, end u, u'
-    void add_spring(double stiffness, double mass, double force, double start, double end,
-                    double h) noexcept {
+    /// @param counts of U
+    void add_spring(double stiffness, double mass, double force, double start, double end, double h,
+                    double counts = 1) noexcept {
         if (!(stiffness > 0)) return;
         const double frequency = std::sqrt(stiffness / mass), mean = (start + end) / 2;
-        const double swing = std::hypot(mean, (end - start) / (h * frequency)); // V
+        const double swing = std::max({std::hypot(mean, (end - start) / (h * frequency)),
+                                       std::abs(start), std::abs(end)}); // V
         const double held = mass * swing * swing / 2;
-        energy += held;
+        energy += counts * held;
         swings += held * std::pow(frequency * h, 3) / 4;
         reach(std::abs(force) + mass * frequency * swing, std::abs(force));
     }
@@ -62,6 +66,8 @@ struct OwnForces {
         energy = std::max(energy, other.energy);
         swings = std::max(swings, other.swings);
         peak = std::max(peak, other.peak);
+        late = std::max(late, other.late);
+        contact_work += other.contact_work;
         if (!(other.stops > stops)) return;
         stops = other.stops;
         stop = other.stop;
@@ -107,7 +113,6 @@ struct ClosingContacts {
     /// plastic: a blow has to come first.
     bool strikes = false;
     double time = std::numeric_limits<double>::infinity(); ///< until the next gap closes [s]
-    double yielding = 0; ///< energy of those that strike, give way, and are taken for hard ones [J]
 };
 
 /// Whether a contact that touched at `closed` [s], 0: none did, pushed for so much longer in a part

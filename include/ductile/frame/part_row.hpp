@@ -103,6 +103,8 @@ struct PartRow {
         constexpr double nearly = 0.999;
         return std::min(share, own_share) >= nearly && start * end < 0;
     }
+    /// It was at rest when the part began.
+    [[nodiscard]] bool starts() const noexcept { return std::abs(start) <= noise; }
     /// Negated so that a speed that is no number moves.
     [[nodiscard]] bool moves() const noexcept {
         const double rest = flows() ? noise : std::max(noise, turning);

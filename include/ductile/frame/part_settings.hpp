@@ -57,6 +57,11 @@ struct LawRow {
     double target, compliance;
 };
 
+/// θ of the coming row.
+[[nodiscard]] inline double damper_share(double damps, double mass) noexcept {
+    return damps > 2 * mass ? 1 - mass / damps : 0.5;
+}
+
 /// Of a spring k and a damper d beside it, whose strain x grows with the row's velocity u,
 ///
 ///   λ = -k h (x + h (u' - u)/4) - d h (θ u' + (1 - θ) u)
@@ -67,7 +72,7 @@ struct LawRow {
 [[nodiscard]] inline LawRow law_row(double stiffness, double damping, double mass, double strain,
                                     double velocity, double h) noexcept {
     const double damps = damping * h, springs = stiffness * h * h / 4;
-    const double later = damps > 2 * mass ? 1 - mass / damps : 0.5; // θ
+    const double later = damper_share(damps, mass);
     const double own = springs + later * damps;
     const double before = (springs - (1 - later) * damps) * velocity;
     return {(before - stiffness * h * strain) / own, 1 / own};

@@ -82,6 +82,8 @@ class ClosingContactsFinder {
     ClosingContactsFinder(const std::unique_ptr<Divisibles>& members, const DrivenWays& driven)
         : members_(members), driven_(driven) {}
 
+    /// Of the frame that begins [s].
+    void set_frame(double length) noexcept { frame_ = length; }
     /// From now on it looks at these alone, and at what is static beside them; null: at all again.
     void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
     /// Bodies of pairs that the last `find` or `closed_early` found.
@@ -105,6 +107,8 @@ class ClosingContactsFinder {
     /// Has Bullet know what the last `find` saw of points that strike, where its algorithms know
     /// one a tick: all shapes but boxes on boxes.
     void show_struck(std::span<btPersistentManifold* const> manifolds) const;
+    /// Some contact of bodies that the last `find` saw may give way, and swing.
+    [[nodiscard]] bool any_soft() const noexcept { return any_soft_; }
     /// Bodies that the last `find` saw may have ended.
     void forget_open() noexcept {
         open_.clear();
@@ -151,9 +155,12 @@ class ClosingContactsFinder {
     /// One that is apart, or may come apart, and is not aimed at.
     struct OpenPair {
         Pair pair;
-        bool touched;      ///< it is not apart, but turns
+        double stiffness;  ///< of a contact that gives way [N/m]
+        bool touched;      ///< it is not apart, but turns, or leaves
         double way, speed; ///< until their nearest points are closed [m], closing [m/s]
     };
+    /// A contact of the two did in the last tick.
+    [[nodiscard]] bool pushes(btDiscreteDynamicsWorld& world, const Pair& pair) const;
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
     [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);
     const std::unique_ptr<Divisibles>& members_;
@@ -165,6 +172,10 @@ class ClosingContactsFinder {
     std::vector<OpenPair> open_;              ///< of the last `find`
     std::vector<detail::StruckPoint> struck_; ///< the same
     const LocalScope* scope_ = nullptr;
+    double frame_ = 0;
+    /// Some contact may give way: what meets it late, by its weight, would be pushed by all that it
+    /// overlaps by then.
+    mutable bool any_soft_ = false;
     std::vector<const btRigidBody*> found_bodies_;
     std::vector<btRigidBody*> foreign_;
     bool found_islands_ = false; ///< of the last `find`, which may need none

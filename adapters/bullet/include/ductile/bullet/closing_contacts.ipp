@@ -15,6 +15,7 @@
 #include "ductile/bullet/divisibles.hpp"
 #include "ductile/bullet/falling_groups.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/bullet/soft_contacts.hpp"
 
 namespace ductile::bullet {
 
@@ -66,7 +67,16 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         detail::ClosestPoints points(of_pair, touching, apart, pair.reach, h, pair.a, pair.b,
                                      falls(*pair.a) - falls(*pair.b));
         world.contactPairTest(pair.a, pair.b, points);
+        const std::optional<SoftContact> soft =
+            soft_contact(*pair.a, *pair.b, points.nearest.at, points.nearest.normal, frame_);
+        const double stiffness = soft ? soft->stiffness : 0;
+        if (soft && !(points.nearest.away > closed_gap)) { // it is no blow, but swings
+            note_found(*pair.a, *pair.b);
+            open_.push_back({pair, stiffness, true, points.nearest.away, points.nearest.speed});
+            continue;
+        }
         if (pair.turns && !of_pair.strikes) look_ahead(world, pair, h, touching, apart, of_pair);
+        if (soft) of_pair.strikes = false;
         if (of_pair.strikes) {
             detail::PointsElsewhere(of_pair, struck_, touching, apart, *pair.a, *pair.b)
                 .look_around(world, points.nearest.at, points.nearest.normal);
@@ -75,8 +85,8 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         found.time = std::min(found.time, of_pair.time);
         if (of_pair.strikes || of_pair.time <= h) note_found(*pair.a, *pair.b);
         if (points.nearest.away > 0 || pair.turns) {
-            open_.push_back(
-                {pair, !(points.nearest.away > 0), points.nearest.way, points.nearest.speed});
+            open_.push_back({pair, stiffness, !(points.nearest.away > 0), points.nearest.way,
+                             points.nearest.speed});
         }
     }
     return found;
@@ -168,7 +178,9 @@ DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamics
                                                         btScalar h) const -> Fastest {
     btScalar speed = 0, inverse_mass = SIMD_INFINITY;
     detail::ShapeReach reach;
+    any_soft_ = false;
     const auto see = [&](const btRigidBody& body) {
+        any_soft_ = any_soft_ || may_give_way(body);
         speed =
             std::max(speed, body.getLinearVelocity().length() + detail::turning_speed(body, reach));
     };
@@ -180,6 +192,7 @@ DUCTILE_INLINE auto ClosingContactsFinder::find_fastest(const btDiscreteDynamics
     for (const btRigidBody* body : falling_) {
         speed = std::max(speed, 2 * h * body->getGravity().length());
     }
+    if (any_soft_) speed += h * world.getGravity().length();
     return {double(speed), double(inverse_mass)};
 }
 
@@ -223,20 +236,37 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
     return first < h ? first : 0;
 }
 
+DUCTILE_INLINE bool ClosingContactsFinder::pushes(btDiscreteDynamicsWorld& world,
+                                                  const Pair& pair) const {
+    const auto manifolds = manifolds_of(*world.getDispatcher(), scope_);
+    return std::any_of(manifolds.begin(), manifolds.end(), [&](const auto* manifold) {
+        const btCollisionObject *one = manifold->getBody0(), *two = manifold->getBody1();
+        const bool theirs = (one == pair.a && two == pair.b) || (one == pair.b && two == pair.a);
+        bool any = false;
+        for (int k = 0; theirs && k < manifold->getNumContacts(); ++k) {
+            any = any || manifold->getContactPoint(k).getAppliedImpulse() > 0;
+        }
+        return any;
+    });
+}
+
 DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,
                                                     double apart) {
     double first = h;
-    for (const auto& [pair, touched, way, speed] : open_) {
+    for (const auto& [pair, stiffness, touched, way, speed] : open_) {
+        if (stiffness > 0 && touched && pushes(world, pair)) continue;
         ClosingContacts none;
         detail::ClosestPoints now(none, apart, apart, 0, h, pair.a, pair.b, btVector3(0, 0, 0));
         world.contactPairTest(pair.a, pair.b, now);
-        if (!(now.nearest.away < -closed_gap) || !(now.nearest.energy > apart)) continue;
+        const double overlap = now.nearest.away,
+                     energy = std::max(now.nearest.energy, stiffness * overlap * overlap / 2);
+        if (!(overlap < -closed_gap) || !(energy > apart)) continue;
         const double gain = (now.nearest.speed - speed) / h;
         if (!(gain > 0)) continue;
         note_found(*pair.a, *pair.b);
-        const double closed = speed > 0
-                                  ? time_to_close(way, speed, gain)
-                                  : (std::sqrt(speed * speed + 2 * gain * way) - speed) / gain;
+        const double square = std::max(0.0, speed * speed + 2 * gain * way);
+        const double closed =
+            speed > 0 ? time_to_close(way, speed, gain) : (std::sqrt(square) - speed) / gain;
         first = std::min(first, touched ? std::max(closed, h / 2) : closed);
     }
     return first;

@@ -95,7 +95,8 @@ DUCTILE_INLINE btScalar ClosingContactsFinder::reach(const btRigidBody& body, bt
                                                      detail::ShapeReach& shapes) const {
     const btScalar speed = body.getLinearVelocity().length() + detail::turning_speed(body, shapes) +
                            h * falls(body).length();
-    return speed * h + detail::near_margin;
+    const btScalar gain = any_soft_ ? body.getGravity().length() * h * h : btScalar(0);
+    return speed * h + gain + detail::near_margin;
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::is_struck_on(const btRigidBody& body) const {
@@ -186,7 +187,8 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
                            (mate != nullptr ? mate->getLinearVelocity() : btVector3(0, 0, 0));
     const btScalar turning = detail::turning_speed(*body, shapes) +
                              (mate != nullptr ? detail::turning_speed(*mate, shapes) : btScalar(0));
-    const btScalar closing = away.length() + turning + h * (falls(*body) - falls(*other)).length();
+    btScalar closing = away.length() + turning + h * (falls(*body) - falls(*other)).length();
+    if (may_give_way(*body) || may_give_way(*other)) closing += h * world.getGravity().length();
     const double yields = double(body->getInvMass()) +
                           (detail::pushed(*other) != nullptr ? double(mate->getInvMass()) : 0.0);
     if (!(double(closing * closing) > 2 * yields * least)) return;

@@ -53,8 +53,9 @@ class FrontSolver final : public btConstraintSolver {
     [[nodiscard]] btConstraintSolver& usual() const noexcept { return usual_; }
 
     /// Of the coming ticks; `held`: how contacts turned before a part, null: nobody knows.
-    void set_kind(TickKind kind, const HeldContacts* held = nullptr) noexcept {
+    void set_kind(TickKind kind, double frame, const HeldContacts* held = nullptr) noexcept {
         kind_ = kind;
+        frame_ = frame;
         held_ = kind == TickKind::part ? held : nullptr;
         if (kind != TickKind::step) own_ = {};
     }
@@ -106,6 +107,7 @@ class FrontSolver final : public btConstraintSolver {
     std::optional<IslandBatches> batches_;
     bool handed_over_ = false; ///< what comes was solved
     TickKind kind_ = TickKind::step;
+    double frame_ = 0; ///< [s]
     const HeldContacts* held_ = nullptr;
     const DirectBodies* direct_ = nullptr;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
@@ -129,8 +131,9 @@ class FrontHold {
     [[nodiscard]] btConstraintSolver& usual() const { return (**front_.lock()).usual(); }
     /// False once Bullet's world has ended.
     [[nodiscard]] bool is_alive() const noexcept { return !front_.expired(); }
-    void set_kind(TickKind kind, const HeldContacts* held = nullptr) const {
-        (**front_.lock()).set_kind(kind, held);
+    /// In a frame of `frame` [s].
+    void set_kind(TickKind kind, double frame = 0, const HeldContacts* held = nullptr) const {
+        (**front_.lock()).set_kind(kind, frame, held);
     }
     [[nodiscard]] const OwnForces& own() const { return (**front_.lock()).own(); }
     void set_direct(const DirectBodies* direct) const { (**front_.lock()).set_direct(direct); }

@@ -183,7 +183,7 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btCont
                           : static_cast<const void*>(island.bodies.front());
     const std::shared_ptr<Kept> kept = solver_of(key);
     kept->solver.set_held(held_);
-    kept->solver.set_ahead(kind_ == TickKind::part);
+    kept->solver.set_ahead(kind_ == TickKind::part, kind_ == TickKind::blow, frame_);
     // else what overlaps deeply is pushed apart without the joints, which that would strain
     btContactSolverInfo with_joints = info;
     const bool by_depth = info.m_splitImpulsePenetrationThreshold < 0;

@@ -37,6 +37,7 @@
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/frame/part_settings.hpp"
+#include "ductile/frame/soft_contact.hpp"
 #include "ductile/solve/island_solver.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -61,6 +62,12 @@ struct SpringRow {
     double stiffness, mass, start; ///< of the row; its velocity as the part began
     LawRow law;
 };
+/// A contact's that gives way.
+struct SoftRow {
+    std::size_t row;
+    SoftContact law;
+    double start, added; ///< speed at which it opens as the part begins, less that of its row [m/s]
+};
 } // namespace detail
 
 class IslandSolver final : public btSequentialImpulseConstraintSolver {
@@ -73,8 +80,13 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
 
     /// How contacts turned before the coming solve; null: nobody knows.
     void set_held(const HeldContacts* held) noexcept { held_ = held; }
-    /// Whether bodies are half a step ahead (half_ahead.hpp).
-    void set_ahead(bool ahead) noexcept { ahead_ = ahead; }
+    /// Whether bodies are half a step ahead (half_ahead.hpp), or it is a blow, in a frame of
+    /// `frame` [s].
+    void set_ahead(bool ahead, bool blow, double frame) noexcept {
+        ahead_ = ahead;
+        blow_ = blow;
+        frame_ = frame;
+    }
     /// Whether what overlaps is pushed apart in a solve of its own.
     void set_pushes_apart(bool pushes) noexcept { pushes_apart_ = pushes; }
 
@@ -109,6 +121,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     [[nodiscard]] Vector6<double> began(int body) const;
     [[nodiscard]] Vector6<double> pushed(int body) const;
     void load_contacts();
+    void soften(const SoftContact& soft, const btSolverConstraint& row,
+                const btManifoldPoint& point, solve::IslandRow& normal);
     void find_turned(btPersistentManifold** manifolds, int count, double tick);
     [[nodiscard]] double turned(const void* point) const;
     [[nodiscard]] double torque_left_out(const btSolverConstraint& friction) const;
@@ -128,13 +142,15 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::vector<btSolverConstraint*> read_; ///< Bullet's rows, in the order of the island's
     std::size_t first_read_ = 0;
     const HeldContacts* held_ = nullptr;
-    bool ahead_ = false;
-    double half_ = 0; ///< of the tick [s]
+    bool ahead_ = false, blow_ = false;
+    double frame_ = 0; ///< [s]
+    double half_ = 0;  ///< of the tick [s]
     bool pushes_apart_ = true;
     std::vector<EndRow> at_end_;                 ///< of the others' rows, constraint by constraint
     std::vector<int> count_at_end_;              ///< rows of each
     std::vector<detail::OwnSpring> springs_;     ///< of one of them
     std::vector<detail::SpringRow> spring_rows_; ///< of all
+    std::vector<detail::SoftRow> soft_rows_;
     OwnForces own_;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };

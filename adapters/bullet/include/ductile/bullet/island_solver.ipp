@@ -7,10 +7,12 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/island_solver_turned.ipp" // IWYU pragma: keep
+#include "ductile/bullet/soft_contacts.hpp"
 
 namespace ductile::bullet {
 
@@ -271,22 +273,35 @@ DUCTILE_INLINE double IslandSolver::turns_away(const btSolverConstraint& row,
 DUCTILE_INLINE void IslandSolver::load_contacts() {
     btConstraintArray& contacts = m_tmpSolverContactConstraintPool;
     int slides = 0, rolls = 0; // in the order of the contacts
+    soft_rows_.clear();
     for (int i = 0; i < contacts.size(); ++i) {
+        const auto& point = *static_cast<btManifoldPoint*>(contacts[i].m_originalContactPoint);
+        std::optional<SoftContact> soft;
+        if (ahead_ || blow_) {
+            soft = soft_contact(
+                point, m_tmpSolverBodyPool[contacts[i].m_solverBodyIdA].m_originalBody,
+                m_tmpSolverBodyPool[contacts[i].m_solverBodyIdB].m_originalBody, frame_);
+        }
+        // in a blow it gives nothing, nor where it is apart
+        if (soft && (blow_ || point.getDistance() > 0)) contacts[i].m_jacDiagABInv = 0;
         const bool dead = !(contacts[i].m_jacDiagABInv > 0);
         solve::IslandBlock block{.kind = solve::BlockKind::contact,
                                  .first = int(island_.rows.size())};
         const auto take = [&](btSolverConstraint& row) -> solve::IslandRow& {
             solve::IslandRow& added = add_row(row);
             added.impulse = double(row.m_appliedImpulse);
-            added.softness = solve::contact_softness / double(row.m_jacDiagABInv);
+            if (row.m_jacDiagABInv > 0) {
+                added.softness = solve::contact_softness / double(row.m_jacDiagABInv);
+            }
             ++block.count;
             return added;
         };
         solve::IslandRow& normal = take(contacts[i]);
         normal.target += turned(contacts[i].m_originalContactPoint);
+        if (soft && !dead) soften(*soft, contacts[i], point, normal);
+        if (!soft && (ahead_ || blow_) && gives_way(point)) normal.compliance = 0; // a hard one
         // Bullet begins with 85 % of the last normal and no friction: all of both is as a rule the
         // answer of what stands, and what slid would be looked for anew in every tick
-        const auto& point = *static_cast<btManifoldPoint*>(contacts[i].m_originalContactPoint);
         const double begins = normal.impulse > 0 ? 1 : 0; // as the user has it
         normal.impulse = begins * double(point.m_appliedImpulse);
         const std::array before{begins * double(point.m_appliedImpulseLateral1),
@@ -310,6 +325,20 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
         take_friction(m_tmpSolverContactRollingFrictionConstraintPool, rolls);
         begin_contact(island_, block); // as the last tick left it
     }
+}
+
+/// The normal row of one that gives way, with the mean of its forces.
+DUCTILE_INLINE void IslandSolver::soften(const SoftContact& soft, const btSolverConstraint& row,
+                                         const btManifoldPoint& point, solve::IslandRow& normal) {
+    const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
+    const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
+    const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
+    const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+    const double turns = turned(&point), start = comes + turns;
+    const LawRow law = soft.row(-double(point.getDistance()), start, 2 * half_);
+    normal.target = law.target + turns - comes - push;
+    normal.compliance = law.compliance;
+    soft_rows_.push_back({island_.rows.size() - 1, soft, start, comes + push - turns});
 }
 
 DUCTILE_INLINE void IslandSolver::store() {

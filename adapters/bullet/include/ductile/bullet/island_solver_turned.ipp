@@ -225,6 +225,11 @@ DUCTILE_INLINE void IslandSolver::read_own() {
         const double end = spring.law.target - spring.law.compliance * impulse;
         own_.add_spring(spring.stiffness, spring.mass, impulse / h, spring.start, end, h);
     }
+    for (const detail::SoftRow& soft : soft_rows_) {
+        const solve::IslandRow& row = island_.rows[soft.row];
+        const double end = row.target - row.compliance * row.impulse + soft.added;
+        soft.law.tell(own_, row.impulse / h, soft.start, end, h);
+    }
     for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
         const solve::IslandRow& motor = island_.rows[first_read_ + std::size_t(i)];
         const double strength = motor.upper / h;

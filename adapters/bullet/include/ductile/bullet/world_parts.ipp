@@ -106,6 +106,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     detail::tell_broadphase(world_, btScalar(length));
     time_ = 0;
     length_ = length;
+    closing_.set_frame(length);
     looked_ = decided_ = local_ = closes_ = at_risk_ = false;
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
@@ -210,7 +211,7 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
     rule(world_.getSolverInfo(), btScalar(h), length_, !ahead, lent, modes);
     const HingeMotors motors(world_, btScalar(h / length_), lent);
     if (calls_others_) share_brakes(btScalar(h / length_), lent);
-    front_.set_kind(ahead ? TickKind::part : TickKind::blow, at_risk_ ? &held_ : nullptr);
+    front_.set_kind(ahead ? TickKind::part : TickKind::blow, length_, at_risk_ ? &held_ : nullptr);
     if (local_) {
         local_tick_.go(world_, scope_, btScalar(h),
                        [this, h] { half_ahead_.finish(scope_.bodies(), btScalar(h)); });
@@ -344,7 +345,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     }
     see_stops(ahead, found);
     found.strikes = found.strikes || !thrown_.bodies().empty();
-    closes_ = found.strikes || found.time <= ahead;
+    closes_ = found.strikes || found.time <= ahead || closing_.any_soft();
     if (closes_) decide();
     return found;
 }

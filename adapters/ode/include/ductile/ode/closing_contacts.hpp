@@ -9,7 +9,8 @@
 // 0 where it is a gap,
 //
 //   a contact that is closed and goes on at v strikes, with the energy v²/(2 K),
-//     K = 1/effective mass of the point, both bodies free
+//     K = 1/effective mass of the point, both bodies free; not one that gives way
+//     (frame/soft_contact.hpp)
 //   a gap that is known closes in  -d/v
 //   one that was not closed at  t - 2 d/(v + √(v² - 2 a d)),  where the bodies overlap at t
 //
@@ -33,11 +34,13 @@
 
 #include <ode/ode.h>
 
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "ductile/frame/part_engine.hpp"
+#include "ductile/frame/soft_contact.hpp"
 #include "ductile/ode/contact_maker.hpp"
 #include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/local_scope.hpp"
@@ -74,15 +77,20 @@ struct ContactClosing {
     /// It leaves at least as fast as it would rebound, so that it is open although it overlaps:
     /// where another blow sends it back it is struck anew.
     [[nodiscard]] bool rebounds(const NamedContact& named) const;
+    /// What it gives way by in frames of `frame` [s]; nothing: it is hard. Where it bounces and
+    /// the spring pushes less, a damper alone does, 1 + e times as much.
+    [[nodiscard]] std::optional<SoftContact> softness(const NamedContact& named,
+                                                      double frame) const;
 };
 
 class ClosingContactsFinder {
   public:
     /// The contacts of the bodies as they are, of islands of these joints and of bodies of
-    /// `members`, which are struck like them. `still`: none closes so that it counts.
+    /// `members`, which are struck like them, in a frame of `frame` [s]. `still`: none closes so
+    /// that it counts.
     /// @throws std::logic_error where one has a contact that was not named.
     void look(std::span<const NamedContact> contacts, std::span<PlasticConstraint* const> joints,
-              std::span<const dBodyID> members, bool still);
+              std::span<const dBodyID> members, double frame, bool still);
     /// Which bodies have contacts now, so that others are new.
     void remember() { before_ = pairs_; }
     /// Before the solve of a part: as fast as the bodies come to it.
@@ -113,14 +121,6 @@ class ClosingContactsFinder {
     }
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
-    /// `see(contact, yields, energy)` of each contact that strikes: K [1/kg], [J].
-    template <class See>
-    void each_strike(double touching, const See& see) const {
-        for (const Touch& touch : touches_) {
-            if (touch.contact == nullptr || !touch.strikes(touching)) continue;
-            see(*touch.contact, touch.speed * touch.speed / (2 * touch.energy), touch.energy);
-        }
-    }
     /// When the first gap among those looked at closes with more energy than `apart` [J] [s].
     [[nodiscard]] double next_gap(double apart) const;
     /// When the first gap closed, of those that close with more energy than `apart` [J], in a time
@@ -141,17 +141,17 @@ class ClosingContactsFinder {
   private:
     /// A point that touches.
     struct Touch {
-        double gap;                  ///< until it is closed, < 0 beyond that [m]
-        double depth;                ///< at which it is closed [m]
-        double speed;                ///< v [m/s]
-        double before;               ///< v before the solve [m/s]
-        double energy;               ///< v²/(2 K), whichever way where it does not close [J]
-        bool is_new;                 ///< the bodies had no contact when last remembered
-        bool closes;                 ///< else it leaves already, and closed since
-        const NamedContact* contact; ///< null: a stop
+        double gap;    ///< until it is closed, < 0 beyond that [m]
+        double depth;  ///< at which it is closed [m]
+        double speed;  ///< v [m/s]
+        double before; ///< v before the solve [m/s]
+        double energy; ///< v²/(2 K), whichever way where it does not close [J]
+        bool is_new;   ///< the bodies had no contact when last remembered
+        bool closes;   ///< else it leaves already, and closed since
+        bool is_hard;
 
         [[nodiscard]] bool strikes(double touching) const {
-            return closes && gap < depth / 2 && energy > touching;
+            return closes && is_hard && gap < depth / 2 && energy > touching;
         }
     };
     using Pair = std::pair<dBodyID, dBodyID>;

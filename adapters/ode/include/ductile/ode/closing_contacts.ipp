@@ -151,6 +151,29 @@ DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
     return -speed > hardly_less * slowest;
 }
 
+DUCTILE_INLINE std::optional<SoftContact> ContactClosing::softness(const NamedContact& named,
+                                                                   double frame) const {
+    const dSurfaceParameters& surface = named.contact.surface;
+    const dWorldID world = dBodyGetWorld(bodies.a);
+    const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
+    const auto erp = double(has(dContactSoftERP) ? surface.soft_erp : dWorldGetERP(world));
+    const double cfm = named.cfm(world), of_a = detail::yield_at(bodies.a, seen.arm_a, seen.normal),
+                 of_b = detail::yield_at(bodies.b, seen.arm_b, seen.normal);
+    if (!(cfm > 0 && of_a + of_b > 0)) return {};
+    SoftContact soft = SoftContact::of({erp, cfm}, of_a, of_b, frame);
+    if (soft.is_hard(frame)) return {};
+    const double bounce =
+        has(dContactBounce) && surface.bounce_vel >= 0 && speed > double(surface.bounce_vel)
+            ? double(surface.bounce)
+            : 0;
+    const double pushes = soft.stiffness * double(named.contact.geom.depth);
+    if (bounce * soft.damping * speed > pushes) {
+        soft.stiffness = 0;
+        soft.damping *= 1 + bounce;
+    }
+    return soft;
+}
+
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
                                                         std::span<PlasticConstraint* const> joints,
                                                         std::span<const dBodyID> members) {
@@ -189,7 +212,8 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
 
 DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> contacts,
                                                 std::span<PlasticConstraint* const> joints,
-                                                std::span<const dBodyID> members, bool still) {
+                                                std::span<const dBodyID> members, double frame,
+                                                bool still) {
     find_islands(contacts, joints, members);
     touches_.clear();
     pairs_.clear();
@@ -208,9 +232,10 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         if (!closes && !came_other_way) continue;
         const double before = it.speed_of(motion_before(a), motion_before(b));
         const double struck_at = closes ? it.speed : it.comes; // past an edge
-        touches_.push_back({it.depth() - double(named.contact.geom.depth), it.depth(), it.speed,
-                            before, struck_at * struck_at / (2 * it.yields()), is_new, closes,
-                            &named});
+        const std::optional<SoftContact> soft = it.softness(named, frame);
+        const double depth = soft ? soft->beginning(it.speed) : it.depth();
+        touches_.push_back({depth - double(named.contact.geom.depth), depth, it.speed, before,
+                            struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
@@ -230,7 +255,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
                 const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
                 if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;
                 touches_.push_back({axis.gap() + depth, depth, speed, speed,
-                                    speed * speed / (2 * axis.yields), false, true, nullptr});
+                                    speed * speed / (2 * axis.yields), false, true, true});
             }
         }
     }

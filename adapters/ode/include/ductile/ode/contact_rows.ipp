@@ -19,9 +19,11 @@ namespace ductile::ode {
 namespace detail {
 
 /// Velocity along the normal that the contact asks for [m/s]; `closing`: of the bodies now [m/s].
-DUCTILE_INLINE double wanted_velocity(dWorldID world, const dContact& contact, double closing,
+DUCTILE_INLINE double wanted_velocity(dWorldID world, const NamedContact& named, double closing,
                                       double dt) {
+    const dContact& contact = named.contact;
     const dSurfaceParameters& surface = contact.surface;
+    if (named.by_law) return double(surface.motionN);
     const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
     const dReal erp = has(dContactSoftERP) ? surface.soft_erp : dWorldGetERP(world);
     const double depth =
@@ -113,7 +115,7 @@ DUCTILE_INLINE ContactRows::ContactRows(const NamedContact& named, solve::Island
     const bool rubs = surface.mu > 0 || (has(dContactMu2) && surface.mu2 > 0);
     softness_ = rubs ? solve::contact_softness : 0;
     add_row(island, a, b, normal,
-            detail::wanted_velocity(world, contact, -dot(normal, closing), dt), named.cfm(world),
+            detail::wanted_velocity(world, named, -dot(normal, closing), dt), named.cfm(world),
             dt);
     solve::IslandBlock block{.kind = solve::BlockKind::contact, .first = first_, .count = 1};
 

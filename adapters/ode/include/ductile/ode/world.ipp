@@ -62,7 +62,6 @@ DUCTILE_INLINE void World::start_frames(const WorldParameters& parameters) {
                 tell_of_members(); // what opened did so as the part began
                 part_stands(h);
             },
-        .say = [this](const std::string& line) { supervisor().say(line); },
     });
 }
 DUCTILE_INLINE World::World(dWorldID world, Solver solver)

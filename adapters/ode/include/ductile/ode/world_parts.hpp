@@ -26,7 +26,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -67,7 +66,6 @@ class WorldParts final : public PartEngine {
         std::function<void(double)> book;  ///< it is what the joints did [s]
         std::function<std::size_t(const PlasticConstraint&)> number;
         std::function<void(double)> accept; ///< a part of this length stands [s]
-        std::function<void(const std::string&)> say = [](const std::string&) {};
     };
 
     explicit WorldParts(Parts parts) : of_(std::move(parts)) {}
@@ -113,6 +111,14 @@ class WorldParts final : public PartEngine {
         dBodyID body;
         BodyState<double> mean;
         DrivenCourse course;
+    };
+
+    struct Soft {
+        SoftContact law;
+        dJointID joint;
+        ContactClosing it;
+        double start;  ///< speed at which it opens as the part begins [m/s]
+        double turned; ///< that it has more as it ends, as it turns [m/s]
     };
 
     struct Push {
@@ -161,9 +167,11 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
-    /// Energy of contacts that strike and give way by their CFM, which are taken for hard ones: it
-    /// is left unresolved, and said once [J].
-    [[nodiscard]] double yielding(double touching);
+    /// Its joint is made once more, as its surface says now.
+    void make_anew(NamedContact& named);
+    /// A contact that gives way, for a part of `h` [s].
+    void soften(NamedContact& named, const ContactClosing& it, const SoftContact& soft, double h);
+    void tell_of_soft(double h);
     /// How fast one that is `depth` [m] deep may come nearer, in the middle of a part of `h` [s]
     /// [m/s]. What slides and is not `plastic` is closed too, or loses its contacts by a micrometre
     /// and falls for the part.
@@ -230,7 +238,7 @@ class WorldParts final : public PartEngine {
     double apart_ = std::numeric_limits<double>::infinity(); ///< energy of a gap that counts [J]
     double touching_ = 0;                                    ///< of what touches [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
-    bool told_of_soft_ = false;
+    std::vector<Soft> soft_;                                 ///< of the part
     PartMotion motion_;
 };
 

@@ -223,6 +223,7 @@ DUCTILE_INLINE void WorldParts::solve(double h, bool blow,
     const StoodAside waiting(aside());
     step(h);
     motion_.own = blow ? OwnForces() : own_settings_.forces(h);
+    tell_of_soft(h);
 }
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool blow) {

@@ -6,7 +6,6 @@
 
 #include "ductile/frame/frame_rules.hpp"
 #include "ductile/joint/gyroscopic.hpp"
-#include "ductile/vocabulary/number_text.hpp"
 
 namespace ductile::ode {
 
@@ -17,7 +16,7 @@ DUCTILE_INLINE void WorldParts::look(const WorldSnapshot* moved, bool still) try
         if (of_.maker) of_.maker->make(bodies());
     }
     leave_aside();
-    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies(), still);
+    if (!out_) closing_.look(of_.contacts, of_.joints, of_.members->bodies(), length_, still);
 } catch (...) {
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
@@ -33,16 +32,30 @@ DUCTILE_INLINE void WorldParts::break_off() {
 }
 
 DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
+    soft_.clear();
     for (NamedContact& named : of_.contacts) {
         dSurfaceParameters& surface = named.contact.surface;
         const ContactClosing it(named);
         const bool plastic = closing_.is_plastic(it.bodies.a) || closing_.is_plastic(it.bodies.b);
+        const std::optional<SoftContact> soft = it.softness(named, length_);
+        if (soft && plastic && !blow) {
+            soften(named, it, *soft, h);
+            continue;
+        }
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
         const double closing = blow ? 0 : closes(it, double(named.contact.geom.depth), h, plastic);
-        if (!plastic && !own && !(closing > 0)) continue;
+        if (!plastic && !own && !soft && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
-        surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
+        if (soft && !blow) {
+            const Softness spring =
+                part_spring({double(surface.soft_erp), named.cfm(of_.world)}, h, length_);
+            surface.mode |= dContactSoftCFM;
+            surface.soft_erp = dReal(spring.erp);
+            surface.soft_cfm = dReal(spring.compliance);
+        } else {
+            surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
+        }
         if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
         if (!blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
@@ -50,29 +63,47 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             surface.motionN += dReal((plastic ? turned(it, h) : 0) - closing);
             if (plastic) hold_turning(named, it, h);
         }
-        const dJointID old = named.joint;
-        named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
-        dJointAttach(named.joint, dJointGetBody(old, 0), dJointGetBody(old, 1));
-        dJointSetFeedback(named.joint, dJointGetFeedback(old));
-        dJointDisable(old);
+        make_anew(named);
     }
 }
+DUCTILE_INLINE void WorldParts::make_anew(NamedContact& named) {
+    const dJointID old = named.joint;
+    named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
+    dJointAttach(named.joint, dJointGetBody(old, 0), dJointGetBody(old, 1));
+    dJointSetFeedback(named.joint, dJointGetFeedback(old));
+    dJointDisable(old);
+}
 
-DUCTILE_INLINE double WorldParts::yielding(double touching) {
-    constexpr double hard = 1e-3; // of what yields in the frame: it sinks in as what is closed may
-    double sum = 0;
-    closing_.each_strike(touching, [&](const NamedContact& named, double yields, double energy) {
-        const double cfm = named.cfm(of_.world);
-        const double most = hard * length_ * yields;
-        if (!(cfm > most)) return;
-        sum += energy;
-        if (std::exchange(told_of_soft_, true)) return;
-        of_.say("ductile: a contact of a CFM of " + number_text(cfm, 3) +
-                " s/kg gives way, and is taken for a hard one: what it strikes may take far too "
-                "much or too little; hard is one of at most " +
-                number_text(most, 3));
-    });
-    return sum;
+/// No more of it pushes than what ODE would correct in a frame.
+DUCTILE_INLINE void WorldParts::soften(NamedContact& named, const ContactClosing& it,
+                                       const SoftContact& soft, double h) {
+    dSurfaceParameters& surface = named.contact.surface;
+    const auto most = double(dWorldGetContactMaxCorrectingVel(of_.world));
+    const double layer = double(dWorldGetContactSurfaceLayer(of_.world));
+    const double deep = std::max(0.0, double(named.contact.geom.depth) - layer);
+    const double share = soft.stiffness / (soft.damping + length_ * soft.stiffness); // erp/frame
+    const double motion = (surface.mode & dContactMotionN) != 0 ? double(surface.motionN) : 0;
+    const double turned = this->turned(it, h), start = -it.speed + turned - motion;
+    const LawRow law = soft.row(share * deep > most ? most / share : deep, start, h);
+    named.by_law = true;
+    surface.mode |= dContactSoftERP | dContactSoftCFM | dContactMotionN;
+    surface.mode &= ~dContactBounce;
+    surface.soft_erp = 0;
+    surface.soft_cfm = dReal(law.compliance * h);
+    surface.motionN = dReal(law.target + turned + motion);
+    hold_turning(named, it, h);
+    make_anew(named);
+    soft_.push_back({soft, named.joint, it, start, turned + motion});
+}
+/// As the bodies leave a part of `h` [s].
+DUCTILE_INLINE void WorldParts::tell_of_soft(double h) {
+    for (const auto& [soft, joint, it, start, turned] : soft_) {
+        const dJointFeedback* feedback = dJointGetFeedback(joint);
+        if (feedback == nullptr) continue;
+        const double force = dot(it.seen.normal, to_core(feedback->f1));
+        const double end = -it.speed_of(contact_body(it.bodies.a), contact_body(it.bodies.b));
+        soft.tell(motion_.own, force, start, end - turned, h);
+    }
 }
 
 DUCTILE_INLINE double WorldParts::closes(const ContactClosing& it, double depth, double h,
@@ -130,7 +161,10 @@ DUCTILE_INLINE void WorldParts::open_others() {
     for (const NamedContact& named : of_.contacts) {
         const auto [a, b, reversed] = attached_bodies(named.joint);
         const bool plastic = closing_.is_plastic(a) || closing_.is_plastic(b);
-        if (!plastic || ContactClosing(named).rebounds(named)) dJointDisable(named.joint);
+        const ContactClosing it(named);
+        if (!plastic || it.rebounds(named) || it.softness(named, length_)) {
+            dJointDisable(named.joint);
+        }
     }
 }
 
@@ -173,10 +207,7 @@ DUCTILE_INLINE ClosingContacts WorldParts::closing(double h, double touching, do
     const bool looks = of_.maker || closing_.any_stops();
     if (found.strikes || !looks || !closing_.any_plastic()) return found;
     found.strikes = closing_.strikes(touching);
-    if (found.strikes) {
-        found.yielding = yielding(touching);
-        return found;
-    }
+    if (found.strikes) return found;
     found.time = closing_.next_gap(apart);
     if (!(found.time < h) && of_.maker) found.time = next_gap(h, apart);
     return found;
