@@ -32,8 +32,8 @@ class MemberTick final : public Divisible {
     [[nodiscard]] DUCTILE_INLINE bool whole() const override;
     [[nodiscard]] DUCTILE_INLINE bool doubts() const override;
     DUCTILE_INLINE void driven_through() override;
-    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
-                                                    int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE int section_of(const PlasticConstraint& joint) const override;
+    [[nodiscard]] const void* key_of(int /*section*/) const override { return &member_; }
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
     [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     DUCTILE_INLINE void require_possible() const override;
@@ -58,20 +58,19 @@ class MemberTick final : public Divisible {
     }
     [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
                                                     const btVector3& gravity) const override;
-    DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
-                             const btVector3& gravity) override;
-    DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
+    DUCTILE_INLINE void find_beyond(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
     DUCTILE_INLINE void begin_blow(double noticed) override;
-    DUCTILE_INLINE bool switch_holds_off() override;
+    DUCTILE_INLINE bool switch_holds(bool on) override;
     DUCTILE_INLINE void see_coming() override;
-    DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
-    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
-                             std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE void find_struck(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
+    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
     DUCTILE_INLINE double count_vibration() override;
-    DUCTILE_INLINE bool close_held(Closing when, bool ahead,
-                                   std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE std::vector<int> close_held(Closing when, bool ahead) override;
 
   private:
+    void read(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
     void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
     void read_attachments(double dt);
     [[nodiscard]] static bool is_support(const Member::Attachment& attachment);

@@ -29,13 +29,11 @@ DUCTILE_INLINE void MemberTick::leave() { member_.leave(); }
 DUCTILE_INLINE double MemberTick::closed_work() const { return member_.course_.closed_work(); }
 DUCTILE_INLINE double MemberTick::unmissed_work() const { return member_.course_.unmissed_work(); }
 
-DUCTILE_INLINE const void* MemberTick::key_of(const PlasticConstraint& joint, int& section) const {
+DUCTILE_INLINE int MemberTick::section_of(const PlasticConstraint& joint) const {
     for (const OpenSection& open : member_.joints_) {
-        if (open.hinge.get() != &joint) continue;
-        section = open.section;
-        return &member_;
+        if (open.hinge.get() == &joint) return open.section;
     }
-    return nullptr;
+    return no_section;
 }
 
 DUCTILE_INLINE void MemberTick::apply_forces() {
@@ -49,7 +47,9 @@ DUCTILE_INLINE void MemberTick::apply_forces() {
 }
 DUCTILE_INLINE void MemberTick::drop_forces() { member_.forces_.clear(); }
 
-DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::vector<int>& sections) {
+DUCTILE_INLINE void MemberTick::find_beyond(double dt, std::span<const BodyBefore> before,
+                                            const btVector3& gravity, std::vector<int>& sections) {
+    read(dt, before, gravity);
     sections = member_.course_.beyond(steps_, loads_, dt);
 }
 DUCTILE_INLINE void MemberTick::begin_blow(double noticed) { member_.course_.begin_blow(noticed); }
@@ -62,43 +62,41 @@ DUCTILE_INLINE void MemberTick::list_holds(std::vector<const btTypedConstraint*>
         list.push_back(held.constraint.get());
     }
 }
-DUCTILE_INLINE bool MemberTick::switch_holds_off() {
+DUCTILE_INLINE bool MemberTick::switch_holds(bool on) {
     bool any = false;
-    for (const Member::Attachment& held : member_.attachments_) any = held.switch_off() || any;
+    for (const Member::Attachment& held : member_.attachments_) any = held.switch_on(on) || any;
     return any;
 }
 DUCTILE_INLINE void MemberTick::see_coming() {
     for (Member::Attachment& held : member_.attachments_) held.see_coming();
 }
-DUCTILE_INLINE void MemberTick::find_struck(std::vector<int>& sections) {
+DUCTILE_INLINE void MemberTick::find_struck(double dt, std::span<const BodyBefore> before,
+                                            const btVector3& gravity, std::vector<int>& sections) {
+    read(dt, before, gravity);
     const int section = member_.course_.struck(steps_, loads_, strike_, by_joints_);
     if (section != no_section) sections.push_back(section);
 }
-DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, bool ahead,
-                                     std::vector<DivisionChange>& told) {
+DUCTILE_INLINE void MemberTick::open(std::span<const int> sections, bool ahead) {
     member_.open(sections, ahead);
-    for (const int section : sections) told.push_back({&member_, section});
 }
 DUCTILE_INLINE double MemberTick::count_vibration() {
     if (member_.joints_.empty()) return 0;
     member_.note_sections();
     return member_.course_.count_vibration();
 }
-DUCTILE_INLINE bool MemberTick::close_held(Closing when, bool ahead,
-                                           std::vector<DivisionChange>& told) {
-    if (member_.joints_.empty()) return false;
+DUCTILE_INLINE std::vector<int> MemberTick::close_held(Closing when, bool ahead) {
+    if (member_.joints_.empty()) return {};
     member_.note_sections();
     for (const OpenSection& open : member_.joints_) { // slower than Bullet's threshold, too
         if (member_.course_.section(open.section).joint.flowing) open.hinge->keep_awake();
     }
-    const std::vector<int> held = member_.course_.held(when);
+    std::vector<int> held = member_.course_.held(when);
     if (held.empty()) {
         member_.note_broken();
-        return false;
+    } else {
+        member_.close(held, ahead);
     }
-    member_.close(held, ahead);
-    for (const int section : held) told.push_back({&member_, section});
-    return true;
+    return held;
 }
 
 DUCTILE_INLINE MemberTick::MemberTick(Member& member) : member_(member) {
@@ -253,7 +251,8 @@ DUCTILE_INLINE void MemberTick::read_contact(const ContactTouch& touch,
 DUCTILE_INLINE void MemberTick::read_attachments(double dt) {
     for (const Member::Attachment& held : member_.attachments_) {
         if (!held.acts()) continue;
-        const btVector3 place = member_.pose(held.at.segment) * to_bullet(held.at.in_segment);
+        const Vector3<double> place =
+            to_core(member_.pose(held.at.segment) * to_bullet(held.at.in_segment));
         by_joints_.add(held.side(true, place, dt), held.side(false, place, dt), held.at.segment);
     }
 }

@@ -114,8 +114,7 @@ DUCTILE_INLINE void Members::require_known() const {
             const auto owner = owners_.find(body);
             if (owner == owners_.end()) continue;
             const Course& course = members_[owner->second];
-            int section = 0;
-            if (plastic != nullptr && course.of->key_of(*plastic, section) != nullptr) continue;
+            if (plastic != nullptr && course.of->section_of(*plastic) >= 0) continue;
             course.of->require_attached(constraint);
         }
     }

@@ -70,6 +70,7 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
            const MemberBox& box = {});
     DUCTILE_INLINE ~Member() override;
 
+    [[nodiscard]] bool whole() const override { return DividedMember::whole(); }
     /// Null for a body that belongs to no member.
     [[nodiscard]] static Member* of(dBodyID body);
 
@@ -107,12 +108,14 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     DUCTILE_INLINE void leave() override;
     void body_left(dBodyID body) override { is_missing_ = is_missing_ || body == user_; }
     void body_came(dBodyID body) override { is_missing_ = is_missing_ && body != user_; }
-    [[nodiscard]] bool is_open() const override { return !joints_.empty(); }
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
     [[nodiscard]] std::vector<DivisionReport> reports(const std::string& name) const override {
         return {{static_cast<const Divisible*>(this), name, [this] { return report(); }}};
     }
     [[nodiscard]] DUCTILE_INLINE int section_of(const PlasticConstraint& joint) const override;
+    [[nodiscard]] const void* key_of(int /*section*/) const override {
+        return static_cast<const Divisible*>(this);
+    }
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
     [[nodiscard]] DUCTILE_INLINE bool holds(dBodyID own, dBodyID other) const override;
     [[nodiscard]] double closed_work() const override { return course_.closed_work(); }

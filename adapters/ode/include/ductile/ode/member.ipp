@@ -116,7 +116,7 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
 /// pieces.
 DUCTILE_INLINE bool Member::holds(dBodyID own, dBodyID other) const {
     return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
-        return hold.acts && hold.other() == other && hangs_together(own, hold.body);
+        return hold.acts() && hold.other() == other && hangs_together(own, hold.body);
     });
 }
 

@@ -36,7 +36,7 @@ DUCTILE_INLINE void Member::see_coming() {
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
     for (Hold& hold : holds_) {
-        if (hold.acts) hold.support = detail::support_by(hold.other());
+        if (hold.acts()) hold.support = detail::support_by(hold.other());
         (void)hold.see();
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
@@ -58,7 +58,7 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
     }
     for (const PressedTouches::Pressed& asleep : pressed_.asleep()) all += dt * norm(asleep.force);
     for (const Hold& hold : holds_) {
-        if (hold.acts) add(hold.wrench);
+        if (hold.acts()) add(hold.wrench);
     }
     for (const OpenSection& open : joints_) {
         for (const bool of_upper : {true, false}) add(wrench_of(*open.hinge, of_upper));
@@ -114,7 +114,7 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
         loads_.push_back({segment, asleep.point, scaled(dt, asleep.force)});
     }
     for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
+        if (!hold.acts()) continue;
         add_load(hold.wrench, hold.at.segment, dt);
         if (!hold.support.holds) continue;
         loads_.back().support = hold.joint;
@@ -191,7 +191,7 @@ DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                    touch.segment);
     }
     for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
+        if (!hold.acts()) continue;
         const JointFrame<double> segment = pose(hold.at.segment);
         const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
         by_joints.add(hold.side(true, place, dt), hold.side(false, place, dt), hold.at.segment);
