@@ -36,7 +36,7 @@ struct ContactTouch {
 class Divisible : public ductile::Divisible<PlasticConstraint> {
   public:
     /// The bodies that it is now.
-    [[nodiscard]] virtual std::span<const PieceBody> pieces() const = 0;
+    [[nodiscard]] virtual std::span<const PieceBody> all_pieces() const = 0;
     /// Where nothing touches it and no force was applied, nothing can have become of it.
     [[nodiscard]] virtual bool idle() const = 0;
     /// The last look met what it cannot be asked, which its report says.

@@ -27,7 +27,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -36,7 +35,7 @@
 
 #include "ductile/bullet/divisible.hpp"
 #include "ductile/bullet/divisibles.hpp"
-#include "ductile/bullet/member_tick.hpp"
+#include "ductile/bullet/member.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/vocabulary/linkage.hpp"
@@ -48,8 +47,7 @@ struct DivisibleTicks {
     static constexpr int at_once = 60;
 
     Divisible* of;
-    const Member* member;              ///< null: a structure
-    std::unique_ptr<Divisible> tick{}; ///< of a member; a program without any compiles none
+    const Member* member; ///< null: a structure
     std::vector<int> found{};
     std::vector<const btCollisionObject*> bodies{}; ///< as Members::owners_ has them
     int direct = 0;                                 ///< ticks for which it is still solved at once

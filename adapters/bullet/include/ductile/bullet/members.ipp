@@ -25,11 +25,9 @@ DUCTILE_INLINE std::vector<std::string> Members::add(Member& member, std::functi
     member.ends_ = std::move(ends);
     member.pushed_ = [this, &member] { pushed_.push_back(&member); };
     if (!member.forces_.empty()) pushed_.push_back(&member);
-    auto tick = std::make_unique<MemberTick>(member);
-    MemberTick* of = tick.get();
-    member.rearranged_ = [this, of] { rearranged(*of); };
-    add({.of = of, .member = &member, .tick = std::move(tick)});
-    return of->remarks();
+    member.rearranged_ = [this, &member] { rearranged(member); };
+    add({.of = &member, .member = &member});
+    return member.remarks();
 }
 DUCTILE_INLINE void Members::add(Divisible& structure) {
     add({.of = &structure, .member = nullptr});
@@ -57,7 +55,8 @@ DUCTILE_INLINE void Members::remove(Member& member) {
         remove(i);
         break;
     }
-    std::erase_if(idle_changes_, [&](const auto& entry) { return entry.first == &member; });
+    const Divisible* const key = &member;
+    std::erase_if(idle_changes_, [key](const auto& entry) { return entry.first == key; });
     std::erase(pushed_, &member);
     member.leave();
 }
@@ -81,14 +80,14 @@ DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
     course.bodies.clear();
-    for (const PieceBody& piece : course.of->pieces()) {
+    for (const PieceBody& piece : course.of->all_pieces()) {
         if (piece.body == &btTypedConstraint::getFixedBody()) continue;
         course.bodies.push_back(piece.body);
         owners_[piece.body] = i;
     }
     const bool quiet = course.of->whole() && !course.of->doubts(); // what it reports stays
     if (course.member != nullptr && std::exchange(course.asked, !quiet) == quiet) {
-        idle_changes_.emplace_back(course.member, quiet);
+        idle_changes_.emplace_back(course.of, quiet);
     }
     const bool watched = !course.of->idle() || course.direct > 0;
     if (std::exchange(course.watched, watched) == watched) return;
@@ -181,7 +180,7 @@ DUCTILE_INLINE void Members::before_solve() {
         if (course->direct == 0) continue;
         if (!direct_.any) direct_.by_place.assign(before_.size(), 0);
         direct_.any = true;
-        for (const PieceBody& piece : course->of->pieces()) {
+        for (const PieceBody& piece : course->of->all_pieces()) {
             const int place = piece.body->getWorldArrayIndex();
             if (place >= 0) direct_.by_place[std::size_t(place)] = 1;
         }

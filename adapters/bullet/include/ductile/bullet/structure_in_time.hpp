@@ -133,7 +133,7 @@ class StructureInTime final : public SteppedStructure<StructureParts> {
     DUCTILE_INLINE void set_gravity(double factor) override;
 
     // ---- what the world asks
-    [[nodiscard]] std::span<const PieceBody> pieces() const override { return pieces_; }
+    [[nodiscard]] std::span<const PieceBody> all_pieces() const override { return pieces_; }
     [[nodiscard]] bool idle() const override { return false; }
     DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
