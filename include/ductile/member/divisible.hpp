@@ -6,6 +6,7 @@
 // Not thread-safe.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,11 +14,13 @@
 
 namespace ductile {
 
-/// `Joint`: the engine's plastic joints. Sections: of a member; of a structure the joints of its
-/// plan.
-template <class Joint>
+/// `Joint`: the engine's plastic joints; `Hold`: joints of the user's that hold on to it. Sections:
+/// of a member; of a structure the joints of its plan.
+template <class Joint, class Hold>
 class Divisible {
   public:
+    using VisitHold = std::function<void(Hold&)>;
+
     Divisible() = default;
     Divisible(const Divisible&) = delete;
     Divisible& operator=(const Divisible&) = delete;
@@ -33,6 +36,7 @@ class Divisible {
     [[nodiscard]] virtual double unmissed_work() const = 0;
     /// It is in the world no more.
     virtual void leave() = 0;
+    virtual void over_holds(const VisitHold& visit) = 0;
 
     // ---- a step
 
@@ -43,11 +47,6 @@ class Divisible {
     virtual void driven_through() = 0;
     /// Joints of the user's count in it that take more than `noticed` [J].
     virtual void begin_blow(double noticed) = 0;
-    /// Those that hold on to it what can move are off, or on again, so that the bodies go as they
-    /// would without it; false: there are none.
-    virtual bool switch_holds(bool on) = 0;
-    /// So they go, until the next blow.
-    virtual void see_coming() = 0;
     virtual void open(std::span<const int> sections, bool ahead) = 0;
     /// A step stands: what it left in vibration, of what its sections took [J].
     virtual double count_vibration() = 0;

@@ -47,8 +47,10 @@ class Divisibles {
     /// After a step, or a blow, of `dt` [s] that was solved: true where sections have to open.
     [[nodiscard]] virtual bool look(double /*dt*/) { return false; }
     [[nodiscard]] virtual bool look_blow(double /*dt*/) { return false; }
-    /// As Divisible's.
+    /// Joints that hold on to members what can move are off, or on again, so that bodies go as they
+    /// would without these; false: there are none.
     [[nodiscard]] virtual bool switch_holds(bool /*on*/) const { return false; }
+    /// So they go, until the next blow.
     virtual void see_coming() const {}
     /// What the step that stands left in vibration of members that blows opened [J].
     [[nodiscard]] virtual double count_vibration() const { return 0; }
@@ -97,11 +99,11 @@ class DivisibleList : public None {
     }
     [[nodiscard]] bool switch_holds(bool on) const override {
         bool any = false;
-        for (const Course& course : members_) any = course.of->switch_holds(on) || any;
+        over_holds([&any, on](const auto& hold) { any = hold.switch_on(on) || any; });
         return any;
     }
     void see_coming() const override {
-        for (const Course& course : members_) course.of->see_coming();
+        over_holds([](auto& hold) { hold.see_coming(); });
     }
     void tell(const Tell& tell) override {
         for (const Happened& entry : std::exchange(happened_, {})) {
@@ -110,6 +112,10 @@ class DivisibleList : public None {
     }
 
   protected:
+    template <class Visit>
+    void over_holds(const Visit& visit) const {
+        for (const Course& course : members_) course.of->over_holds(visit);
+    }
     void happened(const Course& course, std::span<const int> sections, EventKind kind) {
         for (const int section : sections) happened_.push_back({course.of, section, kind});
     }

@@ -144,13 +144,8 @@ class SteppedMember : public DividedMember<typename Engine::OpenSection>, public
     void drop_forces() override { forces_.clear(); }
     void driven_through() override { course_.doubt(Unmodelled::driven); }
     void begin_blow(double noticed) override { course_.begin_blow(noticed); }
-    bool switch_holds(bool on) override {
-        bool any = false;
-        for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
-        return any;
-    }
-    void see_coming() override {
-        for (Hold& hold : holds_) hold.see_coming();
+    void over_holds(const typename Engine::Divisible::VisitHold& visit) override {
+        for (Hold& hold : holds_) visit(hold);
     }
     void open(std::span<const int> sections, bool ahead) override {
         Base::note_sections();

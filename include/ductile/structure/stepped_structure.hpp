@@ -342,13 +342,8 @@ class SteppedStructure : public DividedStructure<typename Engine::OpenJoint>,
         noticed_ = noticed;
         course_.begin_blow();
     }
-    bool switch_holds(bool on) override {
-        bool any = false;
-        for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
-        return any;
-    }
-    void see_coming() override {
-        for (Hold& hold : holds_) hold.see_coming();
+    void over_holds(const typename Engine::Divisible::VisitHold& visit) override {
+        for (Hold& hold : holds_) visit(hold);
     }
     void open(std::span<const int> sections, bool ahead) override {
         Base::note_joints();

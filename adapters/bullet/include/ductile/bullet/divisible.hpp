@@ -17,6 +17,7 @@ class btTypedConstraint;
 namespace ductile::bullet {
 
 class PlasticConstraint;
+struct Attachment;
 
 /// Of a body as the tick solves it.
 struct BodyBefore {
@@ -33,7 +34,7 @@ struct ContactTouch {
 };
 
 /// Not thread-safe.
-class Divisible : public ductile::Divisible<PlasticConstraint> {
+class Divisible : public ductile::Divisible<PlasticConstraint, Attachment> {
   public:
     /// The bodies that it is now.
     [[nodiscard]] virtual std::span<const PieceBody> all_pieces() const = 0;
@@ -48,7 +49,6 @@ class Divisible : public ductile::Divisible<PlasticConstraint> {
     virtual void require_attached(const btTypedConstraint& constraint) const = 0;
     /// Constraints of the user's hold on to it, which it knows of.
     [[nodiscard]] virtual bool is_held() const = 0;
-    virtual void list_holds(std::vector<const btTypedConstraint*>& list) const = 0;
 
     // ---- a tick
 

@@ -130,7 +130,6 @@ class Member final : public SteppedMember<MemberParts> {
     DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
     [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
-    DUCTILE_INLINE void list_holds(std::vector<const btTypedConstraint*>& list) const override;
     DUCTILE_INLINE void leave() override;
     void begin() override {
         course_.begin_step();

@@ -20,9 +20,6 @@ DUCTILE_INLINE void Member::add_force(int segment, const Vector3<double>& force,
     body.applyForce(to_bullet(force), to_bullet(at) - body.getCenterOfMassPosition());
 }
 
-DUCTILE_INLINE void Member::list_holds(std::vector<const btTypedConstraint*>& list) const {
-    for (const Hold& hold : holds_) list.push_back(hold.constraint.get());
-}
 DUCTILE_INLINE void Member::find_beyond(double dt, std::span<const BodyBefore> before,
                                         const btVector3& gravity, std::vector<int>& sections) {
     read(dt, before, gravity);

@@ -104,13 +104,11 @@ DUCTILE_INLINE bool Members::has(const Member& member) const noexcept {
 }
 
 DUCTILE_INLINE std::vector<int> Members::held_islands() const {
-    std::vector<const btTypedConstraint*> holds;
-    for (const Course& course : members_) course.of->list_holds(holds);
     std::vector<int> islands;
-    for (const btTypedConstraint* hold : holds) {
-        islands.push_back(hold->getRigidBodyA().getIslandTag());
-        islands.push_back(hold->getRigidBodyB().getIslandTag());
-    }
+    over_holds([&islands](const Attachment& hold) {
+        islands.push_back(hold.constraint->getRigidBodyA().getIslandTag());
+        islands.push_back(hold.constraint->getRigidBodyB().getIslandTag());
+    });
     std::sort(islands.begin(), islands.end());
     return islands;
 }

@@ -138,7 +138,6 @@ class StructureInTime final : public SteppedStructure<StructureParts> {
     DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
     [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
-    DUCTILE_INLINE void list_holds(std::vector<const btTypedConstraint*>& list) const override;
     void begin() override {
         begin_step();
         touches_.clear();

@@ -146,10 +146,6 @@ DUCTILE_INLINE void StructureInTime::require_attached(const btTypedConstraint& c
         "StructureInTime.bodies: no constraint of the user's may hold them but by "
         "StructureInTime::attach, as they come and go");
 }
-DUCTILE_INLINE void StructureInTime::list_holds(std::vector<const btTypedConstraint*>& list) const {
-    for (const Hold& hold : holds_) list.push_back(hold.constraint.get());
-}
-
 DUCTILE_INLINE void StructureInTime::wake() {
     proved_.reset();
     for (const PieceBody& piece : pieces_) piece.body->activate(true);

@@ -16,6 +16,7 @@
 namespace ductile::ode {
 
 class World;
+struct UserJoint;
 
 /// A contact of the coming step on something divisible, told by what it does to the first body of
 /// attached_bodies.
@@ -35,7 +36,7 @@ struct Touch {
 };
 
 /// Not thread-safe.
-class Divisible : public ductile::Divisible<PlasticConstraint> {
+class Divisible : public ductile::Divisible<PlasticConstraint, UserJoint> {
   public:
     // ---- its life in a World, which calls these
 
