@@ -16,7 +16,6 @@
 #include <ductile/bullet/meeting_islands.ipp>
 #include <ductile/bullet/member.ipp>
 #include <ductile/bullet/member_snapshot.ipp>
-#include <ductile/bullet/member_tick.ipp>
 #include <ductile/bullet/members.ipp>
 #include <ductile/bullet/multibody_constraint.ipp>
 #include <ductile/bullet/piece_maker.ipp>

@@ -110,6 +110,11 @@ struct PartRow {
         const double rest = flows() ? noise : std::max(noise, turning);
         return strength > 0 && !(std::abs(start) <= rest && std::abs(end) <= rest);
     }
+    /// It did nothing, far below its strength.
+    [[nodiscard]] bool is_calm() const noexcept {
+        constexpr double near = 0.5; // of the strength
+        return strength > 0 && share <= near && !moves();
+    }
 };
 
 /// What a part misplaced of a row; travel is no number where the part's answer is none.

@@ -73,6 +73,11 @@ struct BodyMotion {
     }
 };
 
+/// What acts on a body, about its centre of mass, world axes [N], [N m]. Plain value.
+struct Wrench {
+    Vector3<double> force = Vector3<double>::Zero(), torque = force;
+};
+
 /// A body, or several that are one, somewhere. Plain value.
 struct PlacedBody {
     JointFrame<double> pose;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // What a structure that is as few bodies as its yielding joints need is in any engine beside its
-// bodies: its course, its open joints, the forces on it, and what it says of them. The adapter
-// makes bodies and joints, moves them and reads what acted on them.
+// bodies: its course, its open joints, the forces on it, and what it says of them. How it goes
+// through steps: stepped_structure.hpp.
 //
 // Not thread-safe.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <stdexcept>
@@ -21,7 +20,6 @@
 #include "ductile/structure/refuse.hpp"
 #include "ductile/structure/structure_course.hpp"
 #include "ductile/structure/structure_save.hpp"
-#include "ductile/vocabulary/number_text.hpp"
 #include "ductile/world/joint_report.hpp"
 
 namespace ductile {
@@ -34,16 +32,6 @@ struct StructureHold {
     /// On it, about where it holds, world axes [N], [N m].
     Vector3<double> force{0, 0, 0}, moment{0, 0, 0};
 };
-
-/// @throws std::logic_error where a body of a structure is no more as that made it: of mass `made`
-/// [kg], 0: it stands.
-inline void require_body(double made, double mass, bool kinematic) {
-    constexpr double share = 1e-3;
-    if (!kinematic && std::abs(mass - made) <= share * made) return;
-    throw std::logic_error(
-        "StructureInTime.bodies: must move as they did when they were made, with " +
-        number_text(made, 6) + " kg");
-}
 
 /// `OpenJoint`: has the `joint` [index in the plan] and, by a pointer, the engine's plastic joint
 /// of six axes there, `constraint`.
@@ -80,7 +68,8 @@ class DividedStructure : public BuiltStructure {
     explicit DividedStructure(const StructureModel& model)
         : BuiltStructure(make_plan(model)), course_(plan()) {
         for (std::size_t j = 0; j < plan().joints.size(); ++j) {
-            reports_.push_back({key_of(j), plan().joints[j].name, [this, j] { return report(j); }});
+            reports_.push_back(
+                {&plan().joints[j], plan().joints[j].name, [this, j] { return report(j); }});
         }
     }
     ~DividedStructure() = default;
@@ -121,18 +110,15 @@ class DividedStructure : public BuiltStructure {
         report.absorbed_energy = state->joint.plastic_work;
         return report;
     }
-    /// Of a joint of its own.
-    template <class Constraint>
-    [[nodiscard]] std::optional<std::size_t> index_of(const Constraint& joint) const {
-        for (const OpenJoint& open : joints_) {
-            if (open.constraint.get() == &joint) return open.joint;
-        }
-        return std::nullopt;
-    }
-    /// Under which it is reported.
-    [[nodiscard]] const void* key_of(std::size_t joint) const { return &plan().joints[joint]; }
     [[nodiscard]] bool stands_on_ground(std::size_t joint) const {
         return plan().joints[joint].b.kind == PlanSeat::Kind::ground;
+    }
+    [[nodiscard]] JointFrame<double> pose_of(std::size_t cluster) const {
+        return course_.clusters()[cluster].held ? JointFrame<double>{} : cluster_now(cluster).pose;
+    }
+    [[nodiscard]] JointFrame<double> frame_of(const PlanSeat& seat) const override {
+        const std::size_t c = course_.cluster_of(seat.index);
+        return placed(pose_of(c), course_.clusters()[c].place(seat.index));
     }
     [[nodiscard]] std::vector<PlacedBody> placed_clusters() const {
         std::vector<PlacedBody> all;
@@ -182,40 +168,6 @@ class DividedStructure : public BuiltStructure {
             return !kept(joint.a) || (!stands_on_ground(open.joint) && !kept(joint.b.index));
         });
     }
-    /// `make(joint, a, in_a, b, in_b)`: an OpenJoint between clusters a and b, none: the ground;
-    /// `enter`: it is as it was, and goes into the world.
-    template <class Make, class Enter>
-    void make_joints(const Make& make, const Enter& enter) {
-        for (std::size_t j = 0; j < plan().joints.size(); ++j) {
-            const PlanJoint& joint = plan().joints[j];
-            const auto& course = course_.joint(j);
-            if (!course.there || !course.open || open_joint(j) != nullptr) continue;
-            const std::size_t a = course_.cluster_of(joint.a);
-            std::optional<std::size_t> b;
-            if (!stands_on_ground(j)) b = course_.cluster_of(joint.b.index);
-            // what it joins hangs together by other joints, too
-            if (b ? *b == a : course_.clusters()[a].held) continue;
-            const auto& [in_a, in_b] = course_.frames(j);
-            const auto in_cluster = [&](std::size_t c, std::size_t body, const auto& frame) {
-                return placed(course_.clusters()[c].place(body), frame);
-            };
-            OpenJoint open = make(j, a, in_cluster(a, joint.a, in_a), b,
-                                  b ? in_cluster(*b, joint.b.index, in_b) : in_b);
-            if (course.state) open.constraint->restore(*course.state);
-            enter(open);
-            joints_.push_back(std::move(open));
-        }
-    }
-    /// Forces that were applied to it act in the coming solve; `add(cluster, force, at)`.
-    template <class Add>
-    void add_forces(const Add& add) const {
-        for (const Force& force : forces_) {
-            const std::size_t c = course_.cluster_of(force.body);
-            if (course_.clusters()[c].held) continue;
-            const JointFrame<double> at = frame_of({PlanSeat::Kind::body, force.body});
-            add(c, force.force, sum(at.origin, times(at.axes, force.in_body)));
-        }
-    }
 
     // ---- what of the user's holds on to it
 
@@ -230,6 +182,7 @@ class DividedStructure : public BuiltStructure {
                 {transposed_times(made.axes, difference(point.at, made.origin)),
                  transposed_times(made.axes, Matrix3<double>(Matrix3<double>::Identity()))}};
     }
+
     /// On the body of a cluster whose shape is the nearest to a point [m].
     [[nodiscard]] StructureHold hold_near(std::size_t cluster, const Vector3<double>& at) const {
         StructureHold hold;
@@ -247,12 +200,11 @@ class DividedStructure : public BuiltStructure {
         const Cluster& cluster = course_.clusters()[course_.cluster_of(hold.body)];
         return placed(cluster.place(hold.body), hold.in_body);
     }
-    /// `force`, `torque`: on the cluster's body, about its centre, where that was solved at `pose`.
-    void note(StructureHold& hold, const JointFrame<double>& pose, const Vector3<double>& force,
-              const Vector3<double>& torque) const {
+    /// `wrench`: on the cluster's body where that was solved at `pose`.
+    void note(StructureHold& hold, const JointFrame<double>& pose, const Wrench& wrench) const {
         const Vector3<double> arm = difference(placed(pose, place_of(hold)).origin, pose.origin);
-        hold.force = force;
-        hold.moment = difference(torque, cross(arm, force));
+        hold.force = wrench.force;
+        hold.moment = difference(wrench.torque, cross(arm, wrench.force));
     }
     /// Those that hang together with one, itself among them, by open joints that did not break.
     [[nodiscard]] std::vector<bool> hanging_on(std::size_t cluster) const {
@@ -272,53 +224,11 @@ class DividedStructure : public BuiltStructure {
         return reached;
     }
 
-    // ---- how a step went: steps_ has to have the poses of the clusters that move
-
-    void begin_read() {
-        loads_.clear();
-        steps_.assign(course_.clusters().size(), {});
-    }
-    /// About the centre of the cluster's body, for `dt` [s].
-    void add_load(std::size_t body, const Vector3<double>& force, const Vector3<double>& moment,
-                  double dt) {
-        loads_.push_back({body, steps_[course_.cluster_of(body)].pose.origin, scaled(dt, force),
-                          scaled(dt, moment)});
-    }
-    void add_load(const StructureHold& hold, double dt) {
-        const JointFrame<double>& pose = steps_[course_.cluster_of(hold.body)].pose;
-        loads_.push_back({hold.body, placed(pose, place_of(hold)).origin, scaled(dt, hold.force),
-                          scaled(dt, hold.moment)});
-    }
-    /// A blow: joints of the user's that take no more than `noticed` [J] do not count, as their
-    /// bodies came with what a part left of their velocities.
-    void expect_blow(double noticed) noexcept {
-        noticed_ = noticed;
-        course_.begin_blow();
-    }
-    /// Joints to open after it was read: contacts took `energy` [J].
-    [[nodiscard]] const std::vector<int>& struck(double energy, const MemberStrike& by_joints) {
-        const double more = by_joints.energy > noticed_ ? by_joints.energy : 0.0;
-        return course_.struck(steps_, loads_, energy + more);
-    }
-    /// Those that were applied to it.
-    void read_forces(double dt) {
-        for (const Force& force : forces_) {
-            const std::size_t c = course_.cluster_of(force.body);
-            const JointFrame<double> at =
-                placed(steps_[c].pose, course_.clusters()[c].place(force.body));
-            loads_.push_back({force.body, sum(at.origin, times(at.axes, force.in_body)),
-                              scaled(dt, force.force), Vector3<double>::Zero()});
-        }
-    }
-
     StructureCourse course_;
     std::vector<DivisionReport> reports_; ///< by joint
     std::vector<OpenJoint> joints_;
     std::vector<Force> forces_;
-    std::vector<ClusterStep> steps_; ///< of the last step, by cluster
-    std::vector<BodyLoad> loads_;    ///< of it
-    double noticed_ = 0;             ///< [J]
-    bool driven_through_ = false;    ///< in this step, by a driven body
+    bool driven_through_ = false; ///< in this step, by a driven body
 
   private:
     // ---- the engine's
@@ -333,16 +243,8 @@ class DividedStructure : public BuiltStructure {
     /// It is to: joints of the user's may have come and gone.
     virtual void find_holds() {}
 
-    [[nodiscard]] JointFrame<double> pose_of(std::size_t cluster) const {
-        return course_.clusters()[cluster].held ? JointFrame<double>{} : cluster_now(cluster).pose;
-    }
-
     // ---- what BuiltStructure asks
 
-    [[nodiscard]] JointFrame<double> frame_of(const PlanSeat& seat) const override {
-        const std::size_t c = course_.cluster_of(seat.index);
-        return placed(pose_of(c), course_.clusters()[c].place(seat.index));
-    }
     [[nodiscard]] const PairQueries& queries(std::size_t joint) const override {
         return *open_joint(joint)->constraint;
     }

@@ -41,16 +41,17 @@ struct Attachment {
     [[nodiscard]] btRigidBody& other() const;
     /// In ticks: what sleeps carries on as when it was solved; between what cannot move nothing is.
     [[nodiscard]] bool is_solved() const;
-    /// Of what can move: it acts no more; false: it is none.
-    bool switch_off() const;
+    /// Of what can move: not `on`, it acts no more until that is put back; false: it is none.
+    bool switch_on(bool on) const;
     void see_coming();
     /// After a solve; false: it was none of this.
     bool see();
     [[nodiscard]] const btVector3& force() const;
     [[nodiscard]] const btVector3& torque() const;
+    [[nodiscard]] Wrench given() const;
     /// In a blow of `dt` [s] that was seen, of its own body or of the other; `place`: where it
     /// holds, world [m].
-    [[nodiscard]] JointSide side(bool own, const btVector3& place, double dt) const;
+    [[nodiscard]] JointSide side(bool own, const Vector3<double>& place, double dt) const;
 
   private:
     [[nodiscard]] bool is_first() const { return &constraint->getRigidBodyA() == body; }

@@ -43,9 +43,9 @@ DUCTILE_INLINE bool Attachment::is_solved() const {
     };
     return acts() && (moves(*body) || moves(other()));
 }
-DUCTILE_INLINE bool Attachment::switch_off() const {
+DUCTILE_INLINE bool Attachment::switch_on(bool on) const {
     if (!acts() || other().isStaticOrKinematicObject()) return false;
-    constraint->setEnabled(false);
+    constraint->setEnabled(on);
     return true;
 }
 DUCTILE_INLINE void Attachment::see_coming() {
@@ -62,13 +62,14 @@ DUCTILE_INLINE const btVector3& Attachment::force() const {
 DUCTILE_INLINE const btVector3& Attachment::torque() const {
     return is_first() ? told.m_appliedTorqueBodyA : told.m_appliedTorqueBodyB;
 }
-DUCTILE_INLINE JointSide Attachment::side(bool own, const btVector3& place, double dt) const {
+DUCTILE_INLINE Wrench Attachment::given() const { return {to_core(force()), to_core(torque())}; }
+DUCTILE_INLINE JointSide Attachment::side(bool own, const Vector3<double>& place, double dt) const {
     const btRigidBody& of = own ? *body : other();
     const bool a = own == is_first();
     return {
         .before = before[own ? 0 : 1],
         .after = contact_body(of),
-        .arm = to_core(place - of.getCenterOfMassPosition()),
+        .arm = to_core(to_bullet(place) - of.getCenterOfMassPosition()),
         .impulse = scaled(dt, to_core(a ? told.m_appliedForceBodyA : told.m_appliedForceBodyB)),
         .moment = scaled(dt, to_core(a ? told.m_appliedTorqueBodyA : told.m_appliedTorqueBodyB))};
 }

@@ -28,17 +28,20 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ductile/bullet/attachment.hpp"
+#include "ductile/bullet/divisible.hpp"
 #include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/piece_maker.hpp"
 #include "ductile/bullet/plastic_hinge.hpp"
 #include "ductile/joint/usual_joints.hpp"
-#include "ductile/member/divided_member.hpp"
+#include "ductile/member/stepped_member.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
@@ -50,12 +53,21 @@ struct OpenSection {
     std::unique_ptr<PlasticHinge<UsualAxisJoint>> hinge;
 };
 
+/// As member/stepped_member.hpp wants it.
+struct MemberParts {
+    using Divisible = bullet::Divisible;
+    using Joint = PlasticConstraint;
+    using OpenSection = bullet::OpenSection;
+    using Piece = PieceBody;
+    using Hold = Attachment;
+};
+
 /// What it says of its sections: member/divided_member.hpp. All of it: member_snapshot.hpp.
-class Member : public DividedMember<OpenSection> {
+class Member final : public SteppedMember<MemberParts> {
   public:
     /// Makes a constraint between a body of the member and whatever it holds; `place`: in that
     /// body, axes of the member.
-    using Maker = bullet::Attachment::Maker;
+    using Maker = Attachment::Maker;
 
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is kinematic, is static and the member not
@@ -63,9 +75,7 @@ class Member : public DividedMember<OpenSection> {
     /// is a member already, or a frame is none.
     Member(btRigidBody& body, ductile::Member member, const btTransform& start_in_body,
            const MemberBox& box = {});
-    DUCTILE_INLINE ~Member();
-    Member(const Member&) = delete;
-    Member& operator=(const Member&) = delete;
+    DUCTILE_INLINE ~Member() override;
 
     /// Null for a body that belongs to no member.
     [[nodiscard]] static Member* of(const btCollisionObject* object);
@@ -88,26 +98,75 @@ class Member : public DividedMember<OpenSection> {
   private:
     friend class Members;
     friend class MemberSnapshot;
-    friend class MemberTick;
-    struct Attachment : bullet::Attachment {
-        MemberPlace at;
-    };
-    [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
-    [[nodiscard]] PlacedPiece placed_piece(std::size_t piece) const;
-    [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
-    void require_possible() const;
-    void require_attached(const btTypedConstraint& constraint) const;
     void require_free(const btDiscreteDynamicsWorld& world) const;
     void enter(btDiscreteDynamicsWorld& world);
-    void leave();
-    void open(std::span<const int> sections, bool ahead);
-    void close(std::span<const int> sections, bool ahead);
-    void become(const std::vector<PlacedPiece>& pieces, bool ahead);
-    void make_joints(bool ahead);
+    /// Lines for the World's user.
+    [[nodiscard]] std::vector<std::string> remarks() const;
     void make_attachments();
     void let_pieces_pass();
-    /// Sections that broke since pieces were last told whom they meet.
-    void note_broken();
+
+    // ---- what SteppedMember asks
+    [[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(std::size_t piece) const override;
+    [[nodiscard]] DUCTILE_INLINE BodyMotion motion_of(std::size_t piece) const override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> momentum() const override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> point_of(const MemberPlace& at) const override;
+    DUCTILE_INLINE void become(const std::vector<PlacedPiece>& pieces, bool ahead) override;
+    [[nodiscard]] DUCTILE_INLINE OpenSection
+    make_joint(std::size_t lower, const JointFrame<double>& in_lower,
+               const JointFrame<double>& in_upper) override;
+    DUCTILE_INLINE void enter_joint(OpenSection& open, bool ahead) override;
+    DUCTILE_INLINE void see_open() override;
+    DUCTILE_INLINE void add_force(int segment, const Vector3<double>& force,
+                                  const Vector3<double>& at) override;
+
+    // ---- what the world asks
+    [[nodiscard]] std::span<const PieceBody> all_pieces() const override { return pieces_; }
+    [[nodiscard]] bool idle() const override {
+        return whole() && description().clamped() && holds_.empty();
+    }
+    [[nodiscard]] bool doubts() const override {
+        return course_.unmodelled() != Unmodelled::nothing;
+    }
+    DUCTILE_INLINE void require_possible() const override;
+    DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
+    [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
+    DUCTILE_INLINE void leave() override;
+    void begin() override {
+        course_.begin_step();
+        touches_.clear();
+        sum_ = 0;
+    }
+    void touch(const ContactTouch& touch, double sum) override {
+        touches_.push_back(touch);
+        sum_ += sum;
+    }
+    void sum_up(double dt) override {
+        read_constraints(dt, false);
+        read_forces(dt, false);
+    }
+    [[nodiscard]] bool touched() const override { return !touches_.empty() || is_held(); }
+    [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
+                                                    const btVector3& gravity) const override;
+    DUCTILE_INLINE void find_beyond(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
+    DUCTILE_INLINE void find_struck(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
+
+    // ---- a tick
+    void read(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
+    void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
+    [[nodiscard]] static bool is_support(const Hold& hold);
+    [[nodiscard]] static std::array<bool, 3> borne_by(btTypedConstraint& constraint,
+                                                      const btTransform& pose);
+    /// Sums what acted, and lists it where `lists`.
+    void read_constraints(double dt, bool lists);
+    void read_forces(double dt, bool lists);
+    /// The largest moment that the contacts of a whole straight member can have given a section,
+    /// with what its own motion takes [N m s].
+    [[nodiscard]] double largest_moment(double dt, std::span<const BodyBefore> before,
+                                        const btVector3& gravity) const;
+    [[nodiscard]] bool is_plain() const;
+    void finish_steps(double dt, std::span<const BodyBefore> before, const btVector3& gravity);
 
     btRigidBody& user_;
     std::unique_ptr<PieceMaker> maker_;
@@ -116,10 +175,12 @@ class Member : public DividedMember<OpenSection> {
     std::function<void()> ends_;       ///< tells the World that it was added to
     std::function<void()> pushed_;     ///< tells it that a force was applied, the first one
     std::function<void()> rearranged_; ///< that its bodies are others
-    std::vector<PieceBody> pieces_;    ///< by piece
-    PassingBodies passing_;            ///< of them; ends before they do
-    int broken_ = 0;                   ///< sections
-    std::vector<Attachment> attachments_;
+    PassingBodies passing_;            ///< ends before its pieces do
+    int broken_ = 0;                   ///< sections, when pieces were last told whom they meet
+    std::vector<ContactTouch> touches_;
+    MemberStrike strike_;
+    double sum_ = 0;                           ///< of impulses [N s]
+    double own_about_x_ = 0, own_inertia_ = 0; ///< of its segments, each about its middle [kg m²]
 };
 
 } // namespace ductile::bullet

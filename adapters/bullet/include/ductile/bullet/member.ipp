@@ -15,7 +15,7 @@ namespace ductile::bullet {
 
 DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
                               const btTransform& start_in_body, const MemberBox& box)
-    : DividedMember(std::move(member)), user_(body) {
+    : SteppedMember(std::move(member)), user_(body) {
     const ductile::Member& of = description();
     if (body.isKinematicObject()) {
         throw std::invalid_argument("Member.body: must not be kinematic");
@@ -37,6 +37,10 @@ DUCTILE_INLINE Member::Member(btRigidBody& body, ductile::Member member,
     maker_ = std::make_unique<PieceMaker>(body, of, box, in_body);
     held_ = placed(to_core(body.getCenterOfMassTransform()), start);
     pieces_.push_back({&user_, nullptr, nullptr, whole.run});
+    for (int k = 0; k < of.segments(); ++k) {
+        own_about_x_ += of.segment(k).inertia[0];
+        for (int i = 0; i < 3; ++i) own_inertia_ += of.segment(k).inertia[i];
+    }
     MemberBook<Member>::all().enter(&user_, this);
 }
 
@@ -61,9 +65,7 @@ DUCTILE_INLINE std::vector<btRigidBody*> Member::pieces() const {
     return bodies;
 }
 
-DUCTILE_INLINE btRigidBody& Member::body_of(int segment) const {
-    return *pieces_[course_.piece_of(segment)].body;
-}
+DUCTILE_INLINE btRigidBody& Member::body_of(int segment) const { return *piece_of(segment).body; }
 
 DUCTILE_INLINE btTransform Member::pose(int segment) const {
     const std::size_t piece = course_.piece_of(segment);
@@ -77,7 +79,7 @@ DUCTILE_INLINE void Member::attach(double place, Maker maker) {
         throw std::logic_error("Member.attach: must be called before the member is in a World");
     }
     const MemberPlace at = description().on_axis("Member.attach.place", place);
-    attachments_.push_back({{.maker = std::move(maker)}, at});
+    holds_.push_back({{.maker = std::move(maker)}, at});
 }
 
 DUCTILE_INLINE void Member::apply_force(const btVector3& force, double place) {
@@ -120,7 +122,7 @@ DUCTILE_INLINE void Member::require_free(const btDiscreteDynamicsWorld& world) c
     }
 }
 DUCTILE_INLINE void Member::require_attached(const btTypedConstraint& constraint) const {
-    for (const Attachment& held : attachments_) {
+    for (const Hold& held : holds_) {
         if (held.constraint.get() == &constraint) return;
     }
     if (Member::of(&constraint.getRigidBodyA()) != nullptr &&
@@ -157,8 +159,8 @@ DUCTILE_INLINE void Member::leave() {
     pushed_ = rearranged_ = nullptr;
     ends_ = nullptr;
     note_sections();
-    if (!whole()) close(all_open(), false);
-    for (Attachment& attachment : attachments_) attachment.drop(*world_);
+    if (!whole()) become(course_.close(all_open(), placed_pieces()), false);
+    for (Hold& hold : holds_) hold.drop(*world_);
     world_ = nullptr;
 }
 
@@ -167,37 +169,18 @@ DUCTILE_INLINE JointFrame<double> Member::frame_of(std::size_t piece) const {
     const JointFrame<double> body = to_core(pieces_[piece].body->getCenterOfMassTransform());
     return pieces_[piece].body == &user_ ? placed(body, maker_->whole_in_body()) : body;
 }
-
-DUCTILE_INLINE PlacedPiece Member::placed_piece(std::size_t piece) const {
+DUCTILE_INLINE BodyMotion Member::motion_of(std::size_t piece) const {
     const btRigidBody& body = *pieces_[piece].body;
-    PlacedPiece result{&course_.pieces()[piece], frame_of(piece), {}};
-    if (result.piece->held) return result;
-    result.motion = {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
-    return result;
+    return {to_core(body.getLinearVelocity()), to_core(body.getAngularVelocity())};
 }
-
-DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
-    std::vector<PlacedPiece> all;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) all.push_back(placed_piece(i));
-    if (whole() && !description().clamped()) {
-        // the moment of momentum is that of the user's inertia
-        const btMatrix3x3& inverse = user_.getInvInertiaTensorWorld();
-        const btVector3 about = inverse.inverse() * user_.getAngularVelocity();
-        all[0].motion.spin =
-            times(all[0].piece->inverse_inertia_in_world(all[0].pose.axes), to_core(about));
-    }
-    return all;
+DUCTILE_INLINE Vector3<double> Member::momentum() const {
+    return to_core(user_.getInvInertiaTensorWorld().inverse() * user_.getAngularVelocity());
 }
-
-DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {
-    note_sections();
-    become(course_.open(sections, placed_pieces()), ahead);
-}
-
-DUCTILE_INLINE void Member::close(std::span<const int> sections, bool ahead) {
-    become(course_.close(sections, placed_pieces()), ahead);
+DUCTILE_INLINE Vector3<double> Member::point_of(const MemberPlace& at) const {
+    return to_core(pose(at.segment) * to_bullet(at.in_segment));
 }
 
 } // namespace ductile::bullet
 
 #include "ductile/bullet/member_bodies.ipp" // IWYU pragma: keep
+#include "ductile/bullet/member_step.ipp"   // IWYU pragma: keep

@@ -32,10 +32,8 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
                            pieces_[lower + 1].body == &open.hinge->getRigidBodyA();
         return !stays;
     });
-    for (Attachment& attachment : attachments_) {
-        if (pieces_[course_.piece_of(attachment.at.segment)].body != attachment.body) {
-            attachment.drop(*world_);
-        }
+    for (Hold& hold : holds_) {
+        if (piece_of(hold.at.segment).body != hold.body) hold.drop(*world_);
     }
     for (PieceBody& piece : old) {
         if (piece.own == nullptr) continue;
@@ -68,7 +66,7 @@ DUCTILE_INLINE void Member::let_pieces_pass() {
             if (course_.section(pieces_[j].run.first - 1).joint.broken) break;
             if (pieces_[i].own == nullptr) continue;
             passing_.add(*pieces_[i].body, *pieces_[j].body);
-            for (const Attachment& held : attachments_) {
+            for (const Hold& held : holds_) {
                 if (!held.acts()) continue;
                 const std::size_t at = course_.piece_of(held.at.segment);
                 if (at == i) passing_.add(*pieces_[j].body, held.other());
@@ -77,52 +75,43 @@ DUCTILE_INLINE void Member::let_pieces_pass() {
         }
     }
 }
-DUCTILE_INLINE void Member::note_broken() {
+DUCTILE_INLINE void Member::see_open() {
     int broken = 0;
-    for (const OpenSection& open : joints_) broken += course_.section(open.section).joint.broken;
+    for (const OpenSection& open : joints_) {
+        const auto& joint = course_.section(open.section).joint;
+        if (joint.flowing) open.hinge->keep_awake(); // slower than Bullet's threshold, too
+        broken += joint.broken;
+    }
     if (broken != broken_) let_pieces_pass();
 }
 
-DUCTILE_INLINE void Member::make_joints(bool ahead) {
-    for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
-        const int section = pieces_[i].run.last;
-        if (std::any_of(joints_.begin(), joints_.end(),
-                        [&](const OpenSection& open) { return open.section == section; })) {
-            continue;
-        }
-        const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
-        const JointFrame<double> in_lower = lower.section(description(), section, true);
-        const bool ground = pieces_[i].own == nullptr;
-        const btTransform frame =
-            to_bullet(hinge_frame(ground ? placed(held_, in_lower) : in_lower));
-        OpenSection open{section, std::make_unique<btJointFeedback>(), nullptr};
-        open.hinge = std::make_unique<PlasticHinge<UsualAxisJoint>>(
-            *pieces_[i + 1].body, *pieces_[i].body,
-            to_bullet(hinge_frame(upper.section(description(), section + 1, false))), frame,
-            description().section(section), Meeting::as_they_are);
-        PlasticHinge<UsualAxisJoint>& hinge = *open.hinge;
-        go_on(hinge, course_.section(section));
-        hinge.setJointFeedback(open.feedback.get());
-        hinge.set_ahead(ahead);
-        hinge.add_to(*world_, false); // who meets is passing_'s to say
-        if (ahead) hinge.begin_part();
-        joints_.push_back(std::move(open));
-    }
+DUCTILE_INLINE OpenSection Member::make_joint(std::size_t lower, const JointFrame<double>& in_lower,
+                                              const JointFrame<double>& in_upper) {
+    const int section = pieces_[lower].run.last;
+    return {section, std::make_unique<btJointFeedback>(),
+            std::make_unique<PlasticHinge<UsualAxisJoint>>(
+                *pieces_[lower + 1].body, *pieces_[lower].body, to_bullet(in_upper),
+                to_bullet(in_lower), description().section(section), Meeting::as_they_are)};
+}
+DUCTILE_INLINE void Member::enter_joint(OpenSection& open, bool ahead) {
+    open.hinge->setJointFeedback(open.feedback.get());
+    open.hinge->set_ahead(ahead);
+    open.hinge->add_to(*world_, false); // who meets is passing_'s to say
+    if (ahead) open.hinge->begin_part();
 }
 
 DUCTILE_INLINE void Member::make_attachments() {
-    for (Attachment& attachment : attachments_) {
-        if (attachment.constraint != nullptr) continue;
-        const std::size_t piece = course_.piece_of(attachment.at.segment);
-        const MemberPiece& of = course_.pieces()[piece];
-        JointFrame<double> place =
-            placed(of.segment(attachment.at.segment), {.origin = attachment.at.in_segment});
+    for (Hold& hold : holds_) {
+        if (hold.constraint != nullptr) continue;
+        const std::size_t piece = course_.piece_of(hold.at.segment);
+        JointFrame<double> place = placed(course_.pieces()[piece].segment(hold.at.segment),
+                                          {.origin = hold.at.in_segment});
         if (pieces_[piece].body == &user_) {
             place = placed(maker_->whole_in_body(), place);
         } else if (pieces_[piece].own == nullptr) {
             place = placed(held_, place);
         }
-        attachment.make("Member.attach", *world_, *pieces_[piece].body, to_bullet(place));
+        hold.make("Member.attach", *world_, *pieces_[piece].body, to_bullet(place));
     }
 }
 

@@ -41,7 +41,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
         if (piece.held) continue;
         placed_piece.motion = saved_.bodies[i].motion;
     }
-    for (Member::Attachment& attachment : member.attachments_) attachment.drop(*member.world_);
+    for (Member::Hold& hold : member.holds_) hold.drop(*member.world_);
     for (PieceBody& piece : member.pieces_) piece.run = {no_section, no_section};
     member.become(pieces, {});
     for (std::size_t i = 0; i < saved_.bodies.size(); ++i) {

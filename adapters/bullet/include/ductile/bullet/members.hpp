@@ -27,7 +27,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -36,14 +35,29 @@
 
 #include "ductile/bullet/divisible.hpp"
 #include "ductile/bullet/divisibles.hpp"
-#include "ductile/bullet/member_tick.hpp"
+#include "ductile/bullet/member.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/bullet/world.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
 
-class Members final : public Divisibles {
+/// Of one divisible.
+struct DivisibleTicks {
+    static constexpr int at_once = 60;
+
+    Divisible* of;
+    const Member* member; ///< null: a structure
+    std::vector<int> found{};
+    std::vector<const btCollisionObject*> bodies{}; ///< as Members::owners_ has them
+    int direct = 0;                                 ///< ticks for which it is still solved at once
+    double left = 0;                                ///< of contacts in this tick, by sweeps [N s]
+    bool asked = true;                              ///< for its report
+    bool watched = false;                           ///< in every tick
+    bool here = false;                              ///< in this one
+};
+
+class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
   public:
     explicit Members(btDiscreteDynamicsWorld& world) : world_(world) {}
     ~Members() override {
@@ -61,18 +75,12 @@ class Members final : public Divisibles {
     void rearranged(const Divisible& structure);
     /// Bodies whose islands are solved at once.
     [[nodiscard]] const DirectBodies& direct() const noexcept { return direct_; }
-    [[nodiscard]] bool empty() const noexcept override { return members_.empty(); }
     [[nodiscard]] bool has(const Member& member) const noexcept;
     [[nodiscard]] JointReport<double> report(const Member& member) const { return member.report(); }
 
     // ---- what the world's steps ask
 
     DUCTILE_INLINE void require_known() const override;
-    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
-                                                    int& section) const override;
-    [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
-    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
-    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     [[nodiscard]] bool is_member(const btCollisionObject& object) const override {
         return owners_.contains(&object);
     }
@@ -83,34 +91,14 @@ class Members final : public Divisibles {
     [[nodiscard]] DUCTILE_INLINE bool look(double dt) override;
     DUCTILE_INLINE void begin_blow(std::span<const btRigidBody* const> closing, bool thrown,
                                    double noticed) override;
-    [[nodiscard]] DUCTILE_INLINE bool switch_holds_off() override;
-    DUCTILE_INLINE void see_coming() override;
     [[nodiscard]] DUCTILE_INLINE bool look_blow(double dt) override;
     DUCTILE_INLINE void open_found() override;
     [[nodiscard]] DUCTILE_INLINE bool close_held(Closing when) override;
-    [[nodiscard]] DUCTILE_INLINE double count_vibration() override;
-    DUCTILE_INLINE void tell(const Tell& tell) override;
+    [[nodiscard]] DUCTILE_INLINE double count_vibration() const override;
     DUCTILE_INLINE void tell_idle(const TellIdle& tell) override;
 
   private:
-    struct Course {
-        Divisible* of;
-        const Member* member;              ///< null: a structure
-        std::unique_ptr<Divisible> tick{}; ///< of a member; a program without any compiles none
-        std::vector<int> found{};
-        std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
-        int direct = 0;       ///< ticks for which it is still solved at once
-        double left = 0;      ///< of contacts in this tick, by sweeps [N s]
-        bool asked = true;    ///< for its report
-        bool watched = false; ///< in every tick
-        bool here = false;    ///< in this one
-    };
-    static constexpr int direct_ticks = 60;
-    struct Happened {
-        DivisionChange what;
-        EventKind kind;
-    };
-    void happened(EventKind kind);
+    using Course = DivisibleTicks;
     [[nodiscard]] Course* course_of(const btCollisionObject& object);
     void add(Course course);
     void remove(std::size_t course);
@@ -131,7 +119,6 @@ class Members final : public Divisibles {
     [[nodiscard]] bool is_decided(Course& course);
 
     btDiscreteDynamicsWorld& world_;
-    std::vector<Course> members_;
     std::unordered_map<const btCollisionObject*, std::size_t> owners_;
     std::vector<std::size_t> watched_; ///< that may change without being touched
     std::vector<Course*> here_;        ///< that are looked at in this tick
@@ -151,8 +138,6 @@ class Members final : public Divisibles {
     std::vector<Asleep> asleep_; ///< on clamped members
     /// Length of the last tick in which contacts acted on a clamped member [s].
     std::unordered_map<const btPersistentManifold*, double> acted_;
-    std::vector<Happened> happened_;
-    std::vector<DivisionChange> changes_;
 };
 
 } // namespace ductile::bullet

@@ -25,11 +25,9 @@ DUCTILE_INLINE std::vector<std::string> Members::add(Member& member, std::functi
     member.ends_ = std::move(ends);
     member.pushed_ = [this, &member] { pushed_.push_back(&member); };
     if (!member.forces_.empty()) pushed_.push_back(&member);
-    auto tick = std::make_unique<MemberTick>(member);
-    MemberTick* of = tick.get();
-    member.rearranged_ = [this, of] { rearranged(*of); };
-    add({.of = of, .member = &member, .tick = std::move(tick)});
-    return of->remarks();
+    member.rearranged_ = [this, &member] { rearranged(member); };
+    add({.of = &member, .member = &member});
+    return member.remarks();
 }
 DUCTILE_INLINE void Members::add(Divisible& structure) {
     add({.of = &structure, .member = nullptr});
@@ -37,6 +35,7 @@ DUCTILE_INLINE void Members::add(Divisible& structure) {
 
 /// The last one takes its place.
 DUCTILE_INLINE void Members::remove(std::size_t i) {
+    forget(*members_[i].of);
     here_.clear();
     for (Course& course : members_) course.here = false;
     const std::size_t last = members_.size() - 1;
@@ -56,8 +55,8 @@ DUCTILE_INLINE void Members::remove(Member& member) {
         remove(i);
         break;
     }
-    std::erase_if(happened_, [&](const Happened& entry) { return entry.what.key == &member; });
-    std::erase_if(idle_changes_, [&](const auto& entry) { return entry.first == &member; });
+    const Divisible* const key = &member;
+    std::erase_if(idle_changes_, [key](const auto& entry) { return entry.first == key; });
     std::erase(pushed_, &member);
     member.leave();
 }
@@ -73,7 +72,7 @@ DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
     look_at_all_ = true;
     for (std::size_t i = 0; i < members_.size(); ++i) {
         if (members_[i].of != &structure) continue;
-        members_[i].direct = direct_ticks; // whatever went before
+        members_[i].direct = Course::at_once; // whatever went before
         note_bodies(i);
     }
 }
@@ -81,14 +80,14 @@ DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
     course.bodies.clear();
-    for (const PieceBody& piece : course.of->pieces()) {
+    for (const PieceBody& piece : course.of->all_pieces()) {
         if (piece.body == &btTypedConstraint::getFixedBody()) continue;
         course.bodies.push_back(piece.body);
         owners_[piece.body] = i;
     }
     const bool quiet = course.of->whole() && !course.of->doubts(); // what it reports stays
     if (course.member != nullptr && std::exchange(course.asked, !quiet) == quiet) {
-        idle_changes_.emplace_back(course.member, quiet);
+        idle_changes_.emplace_back(course.of, quiet);
     }
     const bool watched = !course.of->idle() || course.direct > 0;
     if (std::exchange(course.watched, watched) == watched) return;
@@ -104,40 +103,12 @@ DUCTILE_INLINE bool Members::has(const Member& member) const noexcept {
                        [&](const Course& course) { return course.member == &member; });
 }
 
-DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
-    for (const Course& course : members_) {
-        if (const void* key = course.of->key_of(joint, section)) return key;
-    }
-    return nullptr;
-}
-
-DUCTILE_INLINE bool Members::any_open() const {
-    return std::any_of(members_.begin(), members_.end(),
-                       [](const Course& course) { return !course.of->whole(); });
-}
-DUCTILE_INLINE double Members::closed_work() const {
-    double sum = 0;
-    for (const Course& course : members_) sum += course.of->closed_work();
-    return sum;
-}
-
-DUCTILE_INLINE double Members::unmissed_work() const {
-    double least = 0;
-    for (const Course& course : members_) {
-        const double work = course.of->unmissed_work();
-        if (least == 0 || (work > 0 && work < least)) least = work;
-    }
-    return least;
-}
-
 DUCTILE_INLINE std::vector<int> Members::held_islands() const {
-    std::vector<const btTypedConstraint*> holds;
-    for (const Course& course : members_) course.of->list_holds(holds);
     std::vector<int> islands;
-    for (const btTypedConstraint* hold : holds) {
-        islands.push_back(hold->getRigidBodyA().getIslandTag());
-        islands.push_back(hold->getRigidBodyB().getIslandTag());
-    }
+    over_holds([&islands](const Attachment& hold) {
+        islands.push_back(hold.constraint->getRigidBodyA().getIslandTag());
+        islands.push_back(hold.constraint->getRigidBodyB().getIslandTag());
+    });
     std::sort(islands.begin(), islands.end());
     return islands;
 }
@@ -207,7 +178,7 @@ DUCTILE_INLINE void Members::before_solve() {
         if (course->direct == 0) continue;
         if (!direct_.any) direct_.by_place.assign(before_.size(), 0);
         direct_.any = true;
-        for (const PieceBody& piece : course->of->pieces()) {
+        for (const PieceBody& piece : course->of->all_pieces()) {
             const int place = piece.body->getWorldArrayIndex();
             if (place >= 0) direct_.by_place[std::size_t(place)] = 1;
         }
@@ -270,7 +241,7 @@ DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
 
 DUCTILE_INLINE bool Members::is_decided(Course& course) {
     const bool was_direct = course.direct > 0 || !course.of->whole();
-    course.direct = direct_ticks;
+    course.direct = Course::at_once;
     note_bodies(std::size_t(&course - members_.data()));
     return was_direct;
 }
@@ -289,8 +260,7 @@ DUCTILE_INLINE bool Members::look(double dt) {
             }
             continue;
         }
-        course->of->read(dt, before_, gravity);
-        course->of->find_beyond(dt, course->found);
+        course->of->find_beyond(dt, before_, gravity, course->found);
         note_doubts(*course);
         if (course->found.empty() && !vain && (course->direct > 0 || !course->of->is_held()))
             continue;
@@ -301,14 +271,6 @@ DUCTILE_INLINE bool Members::look(double dt) {
     return any;
 }
 
-DUCTILE_INLINE bool Members::switch_holds_off() {
-    bool any = false;
-    for (Course& course : members_) any = course.of->switch_holds_off() || any;
-    return any;
-}
-DUCTILE_INLINE void Members::see_coming() {
-    for (Course& course : members_) course.of->see_coming();
-}
 DUCTILE_INLINE void Members::begin_blow(std::span<const btRigidBody* const> closing, bool thrown,
                                         double noticed) {
     for (Course& course : members_) {
@@ -337,8 +299,7 @@ DUCTILE_INLINE bool Members::look_blow(double dt) {
     for (Course* course : here_) {
         course->found.clear();
         if (!course->of->touched()) continue;
-        course->of->read(dt, before_, gravity);
-        course->of->find_struck(course->found);
+        course->of->find_struck(dt, before_, gravity, course->found);
         note_doubts(*course);
         if (course->found.empty()) continue;
         any = true;
@@ -347,46 +308,35 @@ DUCTILE_INLINE bool Members::look_blow(double dt) {
     return any;
 }
 
-DUCTILE_INLINE void Members::happened(EventKind kind) {
-    for (const DivisionChange& change : changes_) happened_.push_back({change, kind});
-    changes_.clear();
-}
-
 DUCTILE_INLINE void Members::open_found() {
     for (Course* course : here_) {
         if (course->found.empty()) continue;
-        course->of->open(course->found, ahead_, changes_);
-        course->found.clear();
+        course->of->open(course->found, ahead_);
+        happened(*course, std::exchange(course->found, {}), EventKind::split);
         note_bodies(std::size_t(course - members_.data()));
     }
-    happened(EventKind::split);
 }
 
-DUCTILE_INLINE double Members::count_vibration() {
+DUCTILE_INLINE double Members::count_vibration() const {
     double sum = 0;
-    for (Course* course : here_) sum += course->of->count_vibration();
+    for (const Course* course : here_) sum += course->of->count_vibration();
     return sum;
 }
 
 DUCTILE_INLINE bool Members::close_held(Closing when) {
     bool changed = false;
     for (Course* course : here_) {
-        if (!course->of->close_held(when, ahead_, changes_)) continue;
+        const std::vector<int> closed = course->of->close_held(when, ahead_);
+        if (closed.empty()) continue;
         changed = true;
+        happened(*course, closed, EventKind::fused);
         note_bodies(std::size_t(course - members_.data()));
     }
-    happened(EventKind::fused);
     return changed;
 }
 
 DUCTILE_INLINE void Members::tell_idle(const TellIdle& tell) {
     for (const auto& [key, idle] : std::exchange(idle_changes_, {})) tell(key, idle);
-}
-
-DUCTILE_INLINE void Members::tell(const Tell& tell) {
-    for (const Happened& entry : std::exchange(happened_, {})) {
-        tell(entry.what.key, entry.what.section, entry.kind);
-    }
 }
 
 } // namespace ductile::bullet

@@ -35,12 +35,10 @@ class PartRisk {
   public:
     /// What the joint at `place` among the world's constraints did in the part just done.
     void note(int place, const PlasticConstraint& joint, std::span<const PartRow> rows) {
-        constexpr double near = 0.5; // of the strength
         Noted& of = noted(place);
         of.joint = &joint;
-        of.calm = std::all_of(rows.begin(), rows.end(), [](const PartRow& row) {
-            return row.strength > 0 && row.share <= near && !row.moves();
-        });
+        of.calm =
+            std::all_of(rows.begin(), rows.end(), [](const PartRow& row) { return row.is_calm(); });
     }
     /// Of the joint at `place`, before a part.
     /// `length`: of the longest part that may come [s].

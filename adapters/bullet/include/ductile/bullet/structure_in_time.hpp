@@ -34,6 +34,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -44,7 +45,7 @@
 #include "ductile/bullet/passing_bodies.hpp"
 #include "ductile/bullet/plastic_joint.hpp"
 #include "ductile/bullet/world.hpp"
-#include "ductile/structure/divided_structure.hpp"
+#include "ductile/structure/stepped_structure.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
@@ -56,54 +57,75 @@ struct OpenJoint {
     std::unique_ptr<PlasticJoint<SectionJoint<double>>> constraint;
 };
 
+/// As structure/stepped_structure.hpp wants it.
+struct StructureParts {
+    using Divisible = bullet::Divisible;
+    using Joint = PlasticConstraint;
+    using OpenJoint = bullet::OpenJoint;
+    using Body = btRigidBody*;
+    using Piece = PieceBody;
+    using Hold = Attachment;
+    using Holder = Attachment::Maker;
+    using Touches = std::vector<ContactTouch>;
+    [[nodiscard]] static Body body(const Piece& piece) { return piece.body; }
+    [[nodiscard]] static bool is_asleep(const ContactTouch& touch) { return touch.asleep; }
+};
+
 /// What it says of its joints: structure/divided_structure.hpp. All of it: structure_snapshot.hpp.
-class StructureInTime final : public DividedStructure<OpenJoint>, private Divisible {
+class StructureInTime final : public SteppedStructure<StructureParts> {
   public:
     /// @throws std::invalid_argument as make_plan and StructureCourse, and where the world is a
     /// btMultiBodyDynamicsWorld.
     StructureInTime(World& world, const StructureModel& model);
     DUCTILE_INLINE ~StructureInTime() override;
 
-    [[nodiscard]] bool whole() const override { return course_.whole(); }
     /// Bodies that it is now.
     [[nodiscard]] std::vector<btRigidBody*> bodies() const;
     /// The one that has a body of a member, by its number from the start.
     /// @throws std::invalid_argument as StructurePlan::body, and where it was removed.
-    [[nodiscard]] btRigidBody& body_of(std::string_view member, std::size_t piece = 0) const;
-    /// Makes a constraint between a body of the structure and another; `place`: in that body, axes
-    /// that were the world's when the structure was made.
-    using Maker = Attachment::Maker;
-    /// A constraint at a node, or at `share` of a member's axis, of the structure as it was made,
-    /// now and whenever bodies change. To be called between steps.
-    /// @throws std::invalid_argument as place(), and where the node is the ground's, nothing is
-    /// made, or no other body is held.
-    void attach(NodeId node, Maker maker) { attach(point(node), std::move(maker)); }
-    void attach(std::string_view member, double share, Maker maker) {
-        attach(point(member, share), std::move(maker));
+    [[nodiscard]] btRigidBody& body_of(std::string_view member, std::size_t piece = 0) const {
+        return *body(member, piece);
     }
+    /// What `attach` is given: makes a constraint between a body of the structure and another;
+    /// `place`: in that body, axes that were the world's when the structure was made. Refused where
+    /// nothing is made, or no other body is held.
+    using Maker = Attachment::Maker;
 
   private:
     friend class StructureSnapshot;
-    struct Hold : Attachment {
-        StructureHold at;
-    };
-    using Joint = PlasticJoint<SectionJoint<double>>;
-    [[nodiscard]] PieceBody make_cluster(std::size_t cluster, const btRigidBody* like);
-    void attach(const Point& point, Maker maker);
     void make(Hold& hold);
-    [[nodiscard]] btRigidBody& body_of(const StructureHold& hold) const {
-        return *pieces_[course_.cluster_of(hold.body)].body;
-    }
-    void let_pass();
-    [[nodiscard]] std::size_t broken_joints() const;
-    [[nodiscard]] std::size_t acting_holds() const;
-    [[nodiscard]] bool rests() const;
-    void read_contact(const ContactTouch& touch, std::span<const BodyBefore> before);
 
-    // ---- what DividedStructure asks
+    // ---- what SteppedStructure asks
+    [[nodiscard]] DUCTILE_INLINE PieceBody make_piece(std::size_t cluster,
+                                                      btRigidBody* like) override;
+    void end_piece(PieceBody& piece) override { world_.engine().removeRigidBody(piece.body); }
+    [[nodiscard]] DUCTILE_INLINE OpenJoint make_joint(std::size_t joint, std::size_t a,
+                                                      const JointFrame<double>& in_a,
+                                                      std::optional<std::size_t> b,
+                                                      const JointFrame<double>& in_b) override;
+    DUCTILE_INLINE void enter_joint(OpenJoint& open, bool ahead) override;
+    DUCTILE_INLINE void hold_on(const StructureHold& at, Maker maker) override;
+    DUCTILE_INLINE void hand_over() override;
+    void hold_again() override {
+        for (Hold& hold : holds_) make(hold);
+    }
+    DUCTILE_INLINE void let_pass() override;
+    DUCTILE_INLINE void add_force(std::size_t cluster, const Vector3<double>& force,
+                                  const Vector3<double>& at) override;
+    [[nodiscard]] bool was_solved(std::size_t cluster) const override {
+        return !body(cluster)->isStaticObject() && body(cluster)->isActive();
+    }
+    [[nodiscard]] DUCTILE_INLINE ClusterStep step_of(std::size_t cluster,
+                                                     const Vector3<double>& gravity,
+                                                     double dt) const override;
+    DUCTILE_INLINE double read_touches(double dt) override;
+    [[nodiscard]] bool was_solved(const OpenJoint& open) const override {
+        return open.constraint->isEnabled();
+    }
+    [[nodiscard]] DUCTILE_INLINE std::optional<Wrench> given(const OpenJoint& open,
+                                                             bool to_a) const override;
     [[nodiscard]] DUCTILE_INLINE PlacedBody cluster_now(std::size_t cluster) const override;
-    void wake_cluster(std::size_t cluster) override { pieces_[cluster].body->activate(); }
-    DUCTILE_INLINE void become(const StructureCourse::Change& change, bool ahead) override;
+    void wake_cluster(std::size_t cluster) override { body(cluster)->activate(); }
     void rearranged() override {
         if (!left_) world_.rearranged(*this);
     }
@@ -111,58 +133,30 @@ class StructureInTime final : public DividedStructure<OpenJoint>, private Divisi
     DUCTILE_INLINE void set_gravity(double factor) override;
 
     // ---- what the world asks
-    [[nodiscard]] std::span<const PieceBody> pieces() const override { return pieces_; }
+    [[nodiscard]] std::span<const PieceBody> all_pieces() const override { return pieces_; }
     [[nodiscard]] bool idle() const override { return false; }
-    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
-                                                    int& section) const override;
-    [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
-    [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
     DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void require_attached(const btTypedConstraint& constraint) const override;
     [[nodiscard]] bool is_held() const override { return !holds_.empty(); }
-    DUCTILE_INLINE void list_holds(std::vector<const btTypedConstraint*>& list) const override;
-    void leave() override { left_ = true; }
-    DUCTILE_INLINE void apply_forces() override;
-    void drop_forces() override { forces_.clear(); }
-    void driven_through() override { driven_through_ = true; }
     void begin() override {
-        course_.begin_step();
-        driven_through_ = false;
+        begin_step();
         touches_.clear();
     }
     void touch(const ContactTouch& touch, double /*sum*/) override { touches_.push_back(touch); }
     void sum_up(double /*dt*/) override {}
-    [[nodiscard]] bool touched() const override { return !touches_.empty() || !holds_.empty(); }
+    [[nodiscard]] bool touched() const override { return !touches_.empty() || is_held(); }
     [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
                                                     const btVector3& gravity) const override;
-    DUCTILE_INLINE void read(double dt, std::span<const BodyBefore> before,
-                             const btVector3& gravity) override;
-    DUCTILE_INLINE void find_beyond(double dt, std::vector<int>& sections) override;
-    void begin_blow(double noticed) override { expect_blow(noticed); }
-    DUCTILE_INLINE bool switch_holds_off() override;
-    DUCTILE_INLINE void see_coming() override;
-    DUCTILE_INLINE void find_struck(std::vector<int>& sections) override;
-    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead,
-                             std::vector<DivisionChange>& told) override;
-    double count_vibration() override { return 0; }
-    DUCTILE_INLINE bool close_held(Closing when, bool ahead,
-                                   std::vector<DivisionChange>& told) override;
+    DUCTILE_INLINE void find_beyond(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
+    DUCTILE_INLINE void find_struck(double dt, std::span<const BodyBefore> before,
+                                    const btVector3& gravity, std::vector<int>& sections) override;
 
     World& world_;
     btVector3 gravity_;
-    bool left_ = false;
     std::vector<std::unique_ptr<btBoxShape>> boxes_; ///< by body
-    std::vector<PieceBody> pieces_;                  ///< by cluster
-    PassingBodies passing_;                          ///< of them; ends before they do
-    std::vector<Hold> holds_;
-    std::size_t broken_ = 0;            ///< joints, when that was last told
-    std::vector<ContactTouch> touches_; ///< of a tick
-    double struck_ = 0;                 ///< energy that contacts took in it [J]
-    MemberStrike by_joints_;            ///< the same of the user's joints
-    /// What sleeps on it and what holds on to it, beside the gravity for which it is proved that it
-    /// stays as it is.
-    std::size_t proved_touches_ = 0;
-    std::optional<btVector3> proved_;
+    PassingBodies passing_;                          ///< ends before its bodies do
+    std::span<const BodyBefore> before_;             ///< of the tick that is looked at
 };
 
 } // namespace ductile::bullet

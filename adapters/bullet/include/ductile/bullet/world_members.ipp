@@ -38,12 +38,13 @@ DUCTILE_INLINE void World::add(Member& member, std::string name) {
     for (const auto& line : all.add(member, [this, &member] { remove(member); })) {
         supervisor().say(line);
     }
-    supervisor().add(&member, std::move(name), [&all, &member] { return all.report(member); });
+    supervisor().add(static_cast<const Divisible*>(&member), std::move(name),
+                     [&all, &member] { return all.report(member); });
 }
 DUCTILE_INLINE void World::remove(Member& member) {
     auto* const members = dynamic_cast<Members*>(members_.get());
     if (members == nullptr || !members->has(member)) return;
-    supervisor().remove(&member);
+    supervisor().remove(static_cast<const Divisible*>(&member));
     members->remove(member);
 }
 
@@ -114,8 +115,7 @@ DUCTILE_INLINE void Members::require_known() const {
             const auto owner = owners_.find(body);
             if (owner == owners_.end()) continue;
             const Course& course = members_[owner->second];
-            int section = 0;
-            if (plastic != nullptr && course.of->key_of(*plastic, section) != nullptr) continue;
+            if (plastic != nullptr && course.of->section_of(*plastic) >= 0) continue;
             course.of->require_attached(constraint);
         }
     }

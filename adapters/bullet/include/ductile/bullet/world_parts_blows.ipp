@@ -45,7 +45,7 @@ DUCTILE_INLINE void WorldParts::find_thrown() {
 
 /// As bodies go that hang on members, were these not there.
 DUCTILE_INLINE void WorldParts::see_coming() {
-    const bool cut = members_->switch_holds_off();
+    const bool cut = members_->switch_holds(false);
     try {
         if (cut) tick(blow_length, false);
     } catch (...) { // a callback's

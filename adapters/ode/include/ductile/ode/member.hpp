@@ -34,7 +34,7 @@
 #include <vector>
 
 #include "ductile/joint/usual_joints.hpp"
-#include "ductile/member/divided_member.hpp"
+#include "ductile/member/stepped_member.hpp"
 #include "ductile/ode/divisible.hpp"
 #include "ductile/ode/member_geoms.hpp"
 #include "ductile/ode/piece.hpp"
@@ -59,8 +59,28 @@ struct HeldBy {
     Vector3<double> rail = Vector3<double>::Zero(); ///< of length 1; zero: not at all
 };
 
+/// A joint of the user's, and by what it holds.
+struct MemberHold : UserJoint {
+    HeldBy support{};
+};
+
+struct MemberBody {
+    dBodyID body = nullptr;
+    MemberRun run{};
+    bool own = false; ///< else the user's
+};
+
+/// As member/stepped_member.hpp wants it.
+struct MemberParts {
+    using Divisible = ode::Divisible;
+    using Joint = PlasticConstraint;
+    using OpenSection = ode::OpenSection;
+    using Piece = MemberBody;
+    using Hold = MemberHold;
+};
+
 /// What it says of its sections: member/divided_member.hpp. All of it: member_snapshot.hpp.
-class Member final : public Divisible, public DividedMember<OpenSection> {
+class Member final : public SteppedMember<MemberParts> {
   public:
     /// `start_in_body`: the member's frame in the frame of the body's centre of mass.
     /// @throws std::invalid_argument where the body is null, is kinematic and the member not
@@ -91,62 +111,48 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
 
   private:
     friend class MemberSnapshot;
-    using Hinge = PlasticHinge<UsualAxisJoint>;
-    struct PieceBody {
-        dBodyID body = nullptr;
-        MemberRun run{};
-        bool own = false; ///< else the user's
-    };
-    struct Hold : UserJoint {
-        MemberPlace at;
-        HeldBy support{}; ///< by what
-    };
+    // ---- what SteppedMember asks
+
+    [[nodiscard]] DUCTILE_INLINE JointFrame<double> frame_of(std::size_t piece) const override;
+    [[nodiscard]] DUCTILE_INLINE BodyMotion motion_of(std::size_t piece) const override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> momentum() const override;
+    [[nodiscard]] DUCTILE_INLINE Vector3<double> point_of(const MemberPlace& at) const override;
+    DUCTILE_INLINE void become(const std::vector<PlacedPiece>& pieces, bool ahead) override;
+    [[nodiscard]] DUCTILE_INLINE OpenSection
+    make_joint(std::size_t lower, const JointFrame<double>& in_lower,
+               const JointFrame<double>& in_upper) override;
+    DUCTILE_INLINE void enter_joint(OpenSection& open, bool ahead) override;
+    DUCTILE_INLINE void add_force(int segment, const Vector3<double>& force,
+                                  const Vector3<double>& at) override;
+
     // ---- what the World asks
 
     DUCTILE_INLINE void enter(World& world) override;
     DUCTILE_INLINE void leave() override;
     void body_left(dBodyID body) override { is_missing_ = is_missing_ || body == user_; }
     void body_came(dBodyID body) override { is_missing_ = is_missing_ && body != user_; }
-    [[nodiscard]] bool is_open() const override { return !joints_.empty(); }
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> bodies() const override;
     [[nodiscard]] std::vector<DivisionReport> reports(const std::string& name) const override {
         return {{static_cast<const Divisible*>(this), name, [this] { return report(); }}};
     }
-    [[nodiscard]] DUCTILE_INLINE int section_of(const PlasticConstraint& joint) const override;
     [[nodiscard]] DUCTILE_INLINE bool hangs_together(dBodyID a, dBodyID b) const override;
     [[nodiscard]] DUCTILE_INLINE bool holds(dBodyID own, dBodyID other) const override;
-    [[nodiscard]] double closed_work() const override { return course_.closed_work(); }
-    [[nodiscard]] double unmissed_work() const override { return course_.unmissed_work(); }
     DUCTILE_INLINE void require_possible() override;
-
-    DUCTILE_INLINE void apply_forces() override;
-    void drop_forces() override { forces_.clear(); }
     DUCTILE_INLINE void before_solve(std::vector<dJointID>& joints) override;
-    void driven_through() override { course_.doubt(Unmodelled::driven); }
     DUCTILE_INLINE void after_solve() override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    void begin_blow(double noticed) override { course_.begin_blow(noticed); }
-    DUCTILE_INLINE bool switch_holds(bool on) override;
-    DUCTILE_INLINE void see_coming() override;
     DUCTILE_INLINE void find_struck(double dt, std::span<Touch> touches,
                                     std::vector<int>& sections) override;
-    DUCTILE_INLINE void open(std::span<const int> sections, bool ahead) override;
-    DUCTILE_INLINE double count_vibration() override;
-    DUCTILE_INLINE std::vector<int> close_held(Closing when, bool ahead) override;
 
     // ---- bodies
 
-    [[nodiscard]] const PieceBody& piece_on(dBodyID body) const;
+    [[nodiscard]] const MemberBody& piece_on(dBodyID body) const;
     [[nodiscard]] JointFrame<double> in_body(std::size_t piece) const;
-    [[nodiscard]] JointFrame<double> frame_of(std::size_t piece) const;
-    [[nodiscard]] std::vector<PlacedPiece> placed_pieces() const;
-    void become(const std::vector<PlacedPiece>& pieces, bool ahead);
-    [[nodiscard]] PieceBody make_body(const PlacedPiece& placed);
+    [[nodiscard]] MemberBody make_body(const PlacedPiece& placed);
     void take_out();
     void put_whole(const PlacedPiece& placed);
     void put_geoms();
-    void make_joints(bool ahead);
     void find_holds();
     [[nodiscard]] MemberPlace place_of(dJointID joint, std::size_t piece) const;
 
@@ -164,14 +170,10 @@ class Member final : public Divisible, public DividedMember<OpenSection> {
     JointFrame<double> first_in_body_, whole_in_body_;
     std::unique_ptr<MemberGeoms> geoms_;
     World* world_ = nullptr;
-    bool is_missing_ = false; ///< the World does not have its body
-    std::vector<PieceBody> pieces_;
-    std::vector<Hold> holds_;
+    bool is_missing_ = false;                            ///< the World does not have its body
     std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
     std::vector<PieceCourse> before_;                    ///< by piece
     PressedTouches pressed_;                             ///< of a clamped one that is whole
-    std::vector<PieceStep> steps_;
-    std::vector<MemberLoad> loads_;
 };
 
 } // namespace ductile::ode

@@ -38,7 +38,7 @@ namespace detail {
 
 DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
                               const JointFrame<double>& start_in_body, const MemberBox& box)
-    : DividedMember(std::move(member)),
+    : SteppedMember(std::move(member)),
       user_(detail::require_body(body)),
       life_(WorldLife::of(dBodyGetWorld(body))) {
     const ductile::Member& of = description();
@@ -63,7 +63,7 @@ DUCTILE_INLINE Member::Member(dBodyID body, ductile::Member member,
 
 DUCTILE_INLINE Member::~Member() {
     if (world_ != nullptr) world_->remove(*this);
-    for (const PieceBody& piece : pieces_) MemberBook<Member>::all().leave(piece.body);
+    for (const MemberBody& piece : pieces_) MemberBook<Member>::all().leave(piece.body);
     MemberBook<Member>::all().leave(user_);
 }
 
@@ -73,7 +73,7 @@ DUCTILE_INLINE Member* Member::of(dBodyID body) { return MemberBook<Member>::all
 
 DUCTILE_INLINE std::vector<dBodyID> Member::pieces() const {
     std::vector<dBodyID> bodies;
-    for (const PieceBody& piece : pieces_) {
+    for (const MemberBody& piece : pieces_) {
         const bool ground = piece.run.first == piece.run.last && description().clamped();
         if (piece.own || !ground) bodies.push_back(piece.body);
     }
@@ -81,26 +81,17 @@ DUCTILE_INLINE std::vector<dBodyID> Member::pieces() const {
 }
 DUCTILE_INLINE std::vector<dBodyID> Member::bodies() const {
     std::vector<dBodyID> bodies;
-    for (const PieceBody& piece : pieces_) bodies.push_back(piece.body);
+    for (const MemberBody& piece : pieces_) bodies.push_back(piece.body);
     return bodies;
 }
-DUCTILE_INLINE dBodyID Member::body_of(int segment) const {
-    return pieces_[course_.piece_of(segment)].body;
-}
+DUCTILE_INLINE dBodyID Member::body_of(int segment) const { return piece_of(segment).body; }
 DUCTILE_INLINE JointFrame<double> Member::pose(int segment) const {
     const std::size_t piece = course_.piece_of(segment);
     return placed(frame_of(piece), course_.pieces()[piece].segment(segment));
 }
-DUCTILE_INLINE int Member::section_of(const PlasticConstraint& joint) const {
-    for (const OpenSection& open : joints_) {
-        if (open.hinge.get() == &joint) return open.section;
-    }
-    return no_section;
-}
-
-DUCTILE_INLINE const Member::PieceBody& Member::piece_on(dBodyID body) const {
+DUCTILE_INLINE const MemberBody& Member::piece_on(dBodyID body) const {
     return *std::find_if(pieces_.begin(), pieces_.end(),
-                         [body](const PieceBody& piece) { return piece.body == body; });
+                         [body](const MemberBody& piece) { return piece.body == body; });
 }
 /// Pieces that hang together do, those with a broken section between them meet.
 DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
@@ -116,7 +107,7 @@ DUCTILE_INLINE bool Member::hangs_together(dBodyID a, dBodyID b) const {
 /// pieces.
 DUCTILE_INLINE bool Member::holds(dBodyID own, dBodyID other) const {
     return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
-        return hold.acts && hold.other() == other && hangs_together(own, hold.body);
+        return hold.acts() && hold.other() == other && hangs_together(own, hold.body);
     });
 }
 
@@ -210,29 +201,12 @@ DUCTILE_INLINE void Member::find_holds() {
                             [joint](const OpenSection& open) { return open.hinge->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
             Hold& hold = holds_.emplace_back(
-                Hold{{joint, body, dJointIsEnabled(joint) != 0}, place_of(joint, i)});
+                Hold{{{joint, body, dJointIsEnabled(joint) != 0}}, place_of(joint, i)});
             for (const Hold& was : before) {
                 if (was.joint == joint && was.body == body) hold.wrench = was.wrench;
             }
         }
     }
-}
-
-DUCTILE_INLINE void Member::open(std::span<const int> sections, bool ahead) {
-    note_sections();
-    become(course_.open(sections, placed_pieces()), ahead);
-}
-DUCTILE_INLINE double Member::count_vibration() {
-    if (joints_.empty()) return 0;
-    note_sections();
-    return course_.count_vibration();
-}
-DUCTILE_INLINE std::vector<int> Member::close_held(Closing when, bool ahead) {
-    if (joints_.empty()) return {};
-    note_sections();
-    const std::vector<int> held = course_.held(when);
-    if (!held.empty()) become(course_.close(held, placed_pieces()), ahead);
-    return held;
 }
 
 } // namespace ductile::ode

@@ -15,25 +15,21 @@ DUCTILE_INLINE JointFrame<double> Member::in_body(std::size_t piece) const {
 DUCTILE_INLINE JointFrame<double> Member::frame_of(std::size_t piece) const {
     return placed(detail::frame_of(pieces_[piece].body), in_body(piece));
 }
-DUCTILE_INLINE std::vector<PlacedPiece> Member::placed_pieces() const {
-    std::vector<PlacedPiece> all;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-        PlacedPiece& piece = all.emplace_back(PlacedPiece{&course_.pieces()[i], frame_of(i), {}});
-        if (!piece.piece->held) piece.motion = detail::motion_of(pieces_[i].body);
-    }
-    if (whole() && !description().clamped()) {
-        // the moment of momentum is that of the user's inertia
-        all[0].motion.spin = times(all[0].piece->inverse_inertia_in_world(all[0].pose.axes),
-                                   times(inertia(user_), all[0].motion.spin));
-    }
-    return all;
+DUCTILE_INLINE BodyMotion Member::motion_of(std::size_t piece) const {
+    return detail::motion_of(pieces_[piece].body);
+}
+DUCTILE_INLINE Vector3<double> Member::momentum() const {
+    return times(inertia(user_), angular_velocity(user_));
+}
+DUCTILE_INLINE Vector3<double> Member::point_of(const MemberPlace& at) const {
+    return placed(pose(at.segment), {.origin = at.in_segment}).origin;
 }
 
 DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool ahead) {
     const bool was_whole = pieces_.size() == 1;
-    std::vector<PieceBody> old = std::exchange(pieces_, {});
+    std::vector<MemberBody> old = std::exchange(pieces_, {});
     for (const PlacedPiece& placed : pieces) {
-        const auto kept = std::find_if(old.begin(), old.end(), [&placed](const PieceBody& piece) {
+        const auto kept = std::find_if(old.begin(), old.end(), [&placed](const MemberBody& piece) {
             return piece.own && piece.run == placed.piece->run;
         });
         if (pieces.size() > 1 && kept != old.end()) {
@@ -62,7 +58,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
         return !course_.section(open.section).open ||
                open.hinge->bodies() != AttachedBodies{pieces_[lower + 1].body, below, false};
     });
-    for (const PieceBody& piece : old) {
+    for (const MemberBody& piece : old) {
         if (!piece.own) continue;
         MemberBook<Member>::all().leave(piece.body);
         world_->remove(piece.body);
@@ -71,7 +67,7 @@ DUCTILE_INLINE void Member::become(const std::vector<PlacedPiece>& pieces, bool 
     make_joints(ahead);
 }
 
-DUCTILE_INLINE auto Member::make_body(const PlacedPiece& placed) -> PieceBody {
+DUCTILE_INLINE MemberBody Member::make_body(const PlacedPiece& placed) {
     const MemberPiece& of = *placed.piece;
     if (of.held || of.run == MemberRun{0, description().segments() - 1}) {
         return {user_, of.run, false};
@@ -122,27 +118,17 @@ DUCTILE_INLINE void Member::put_geoms() {
     }
 }
 
-DUCTILE_INLINE void Member::make_joints(bool ahead) {
-    for (std::size_t i = 0; i + 1 < pieces_.size(); ++i) {
-        const int section = pieces_[i].run.last;
-        if (std::any_of(joints_.begin(), joints_.end(),
-                        [&](const OpenSection& open) { return open.section == section; })) {
-            continue;
-        }
-        const MemberPiece &lower = course_.pieces()[i], &upper = course_.pieces()[i + 1];
-        const JointFrame<double> in_lower = lower.section(description(), section, true);
-        const bool held = !pieces_[i].own;
-        OpenSection open{section, nullptr};
-        open.hinge = std::make_unique<Hinge>(
-            dBodyGetWorld(user_), pieces_[i + 1].body, held ? nullptr : pieces_[i].body,
-            hinge_frame(upper.section(description(), section + 1, false)),
-            hinge_frame(held ? placed(frame_of(i), in_lower) : in_lower),
-            description().section(section), Meeting::as_they_are);
-        go_on(*open.hinge, course_.section(section));
-        world_->take_in(*open.hinge);
-        if (ahead) (void)open.hinge->begin_frame();
-        joints_.push_back(std::move(open));
-    }
+DUCTILE_INLINE OpenSection Member::make_joint(std::size_t lower, const JointFrame<double>& in_lower,
+                                              const JointFrame<double>& in_upper) {
+    const int section = pieces_[lower].run.last;
+    return {section, std::make_unique<PlasticHinge<UsualAxisJoint>>(
+                         dBodyGetWorld(user_), pieces_[lower + 1].body,
+                         pieces_[lower].own ? pieces_[lower].body : nullptr, in_upper, in_lower,
+                         description().section(section), Meeting::as_they_are)};
+}
+DUCTILE_INLINE void Member::enter_joint(OpenSection& open, bool ahead) {
+    world_->take_in(*open.hinge);
+    if (ahead) (void)open.hinge->begin_frame();
 }
 
 } // namespace ductile::ode

@@ -12,7 +12,7 @@ namespace ductile::ode {
 
 DUCTILE_INLINE MemberSnapshot::MemberSnapshot(const Member& member)
     : saved_(member.save(bodies_of(member))), pressed_(member.pressed_) {
-    for (const Member::PieceBody& piece : member.pieces_) bodies_.emplace_back(piece.body);
+    for (const MemberBody& piece : member.pieces_) bodies_.emplace_back(piece.body);
     for (const Member::Hold& hold : member.holds_) holds_.emplace_back(hold);
 }
 
@@ -38,7 +38,7 @@ DUCTILE_INLINE void MemberSnapshot::put_back(Member& member) const {
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         pieces.push_back({&course.pieces()[i], saved_.bodies[i].pose, {}});
     }
-    for (Member::PieceBody& piece : member.pieces_) piece.run = {no_section, no_section};
+    for (MemberBody& piece : member.pieces_) piece.run = {no_section, no_section};
     member.become(pieces, false);
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         bodies_[i].put_back(member.pieces_[i].body);

@@ -8,35 +8,22 @@
 
 namespace ductile::ode {
 
-DUCTILE_INLINE void Member::apply_forces() {
-    for (const Force& force : forces_) {
-        const dBodyID body = body_of(force.at.segment);
-        if (!can_move(body)) continue;
-        const JointFrame<double> segment = pose(force.at.segment);
-        const Vector3<double> place = sum(segment.origin, times(segment.axes, force.at.in_segment));
-        const Vector3<double> arm = difference(place, to_core(dBodyGetPosition(body)));
-        add_force(body, force.force, cross(arm, force.force));
-    }
+DUCTILE_INLINE void Member::add_force(int segment, const Vector3<double>& force,
+                                      const Vector3<double>& at) {
+    const dBodyID body = body_of(segment);
+    if (can_move(body)) ode::add_force(body, force, cross(arm_of(body, at), force));
 }
 
 DUCTILE_INLINE void Member::before_solve(std::vector<dJointID>& joints) {
     course_.begin_step();
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     before_.clear();
-    for (const PieceBody& piece : pieces_) before_.emplace_back(piece.body);
-}
-DUCTILE_INLINE bool Member::switch_holds(bool on) {
-    bool any = false;
-    for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
-    return any;
-}
-DUCTILE_INLINE void Member::see_coming() {
-    for (Hold& hold : holds_) hold.see_coming();
+    for (const MemberBody& piece : pieces_) before_.emplace_back(piece.body);
 }
 DUCTILE_INLINE void Member::after_solve() {
     if (description().clamped()) dBodyDisable(user_); // ODE wakes what was touched
     for (Hold& hold : holds_) {
-        if (hold.acts) hold.support = detail::support_by(hold.other());
+        if (hold.acts()) hold.support = detail::support_by(hold.other());
         (void)hold.see();
     }
     for (std::size_t i = 0; i < before_.size() && i < pieces_.size(); ++i) {
@@ -58,7 +45,7 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
     }
     for (const PressedTouches::Pressed& asleep : pressed_.asleep()) all += dt * norm(asleep.force);
     for (const Hold& hold : holds_) {
-        if (hold.acts) add(hold.wrench);
+        if (hold.acts()) add(hold.wrench);
     }
     for (const OpenSection& open : joints_) {
         for (const bool of_upper : {true, false}) add(wrench_of(*open.hinge, of_upper));
@@ -114,7 +101,7 @@ DUCTILE_INLINE void Member::read(double dt, std::span<Touch> touches) {
         loads_.push_back({segment, asleep.point, scaled(dt, asleep.force)});
     }
     for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
+        if (!hold.acts()) continue;
         add_load(hold.wrench, hold.at.segment, dt);
         if (!hold.support.holds) continue;
         loads_.back().support = hold.joint;
@@ -184,20 +171,13 @@ DUCTILE_INLINE void Member::find_struck(double dt, std::span<Touch> touches,
                                         std::vector<int>& sections) {
     if (touches.empty() && holds_.empty()) return;
     read(dt, touches);
-    MemberStrike strike, by_joints;
+    MemberStrike strike;
     for (const Touch& touch : touches) {
         const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
         strike.add(pressed * (touch.closing + touch.closing_speed()) / 2, touch.closing,
                    touch.segment);
     }
-    for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
-        const JointFrame<double> segment = pose(hold.at.segment);
-        const Vector3<double> place = sum(segment.origin, times(segment.axes, hold.at.in_segment));
-        by_joints.add(hold.side(true, place, dt), hold.side(false, place, dt), hold.at.segment);
-    }
-    const int section = course_.struck(steps_, loads_, strike, by_joints);
-    if (section != no_section) sections.push_back(section);
+    look_blow(dt, strike, sections);
 }
 
 } // namespace ductile::ode

@@ -30,56 +30,44 @@
 
 namespace ductile::ode {
 
-class Members final : public Divisibles {
+/// Of one divisible.
+struct DivisibleSteps {
+    Divisible* of;
+    std::vector<dBodyID> bodies{};
+    std::vector<Touch> touches{};
+    std::vector<int> found{};
+};
+
+class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
   public:
     void add(Divisible& member);
     void remove(Divisible& member);
-    [[nodiscard]] bool has(const Divisible& member) const noexcept;
 
     // ---- what the World's steps ask
 
-    [[nodiscard]] bool empty() const noexcept override { return members_.empty(); }
     void rearranged() override { note_bodies(); }
     DUCTILE_INLINE void leave() override;
     [[nodiscard]] std::span<const dBodyID> bodies() const noexcept override { return bodies_; }
     DUCTILE_INLINE void body_left(dBodyID body) override;
     DUCTILE_INLINE void body_came(dBodyID body) override;
-    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
-                                                    int& section) const override;
     [[nodiscard]] DUCTILE_INLINE bool hang_together(dBodyID a, dBodyID b) const override;
     [[nodiscard]] DUCTILE_INLINE bool hold(dBodyID a, dBodyID b) const override;
-    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
-    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     DUCTILE_INLINE void require_possible() const override;
-    DUCTILE_INLINE void apply_forces() const override;
-    DUCTILE_INLINE void drop_forces() const override;
+    DUCTILE_INLINE void apply_forces() override;
+    DUCTILE_INLINE void drop_forces() override;
     DUCTILE_INLINE void before_solve(std::span<const NamedContact> contacts) override;
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> touched() const override;
     [[nodiscard]] std::span<const dJointID> held_by() const override { return held_by_; }
     DUCTILE_INLINE void after_solve() const override;
-    [[nodiscard]] DUCTILE_INLINE bool any_open() const override;
     [[nodiscard]] bool look(double dt) override { return look(dt, false); }
     DUCTILE_INLINE void begin_blow(double noticed) const override;
-    [[nodiscard]] DUCTILE_INLINE bool switch_holds(bool on) const override;
-    DUCTILE_INLINE void see_coming() const override;
     [[nodiscard]] bool look_blow(double dt) override { return look(dt, true); }
     DUCTILE_INLINE void open_found(bool ahead) override;
     DUCTILE_INLINE void close_held(Closing when, bool ahead) override;
     [[nodiscard]] DUCTILE_INLINE double count_vibration() const override;
-    DUCTILE_INLINE void tell(const Tell& tell) override;
 
   private:
-    struct Course {
-        Divisible* of;
-        std::vector<dBodyID> bodies{};
-        std::vector<Touch> touches{};
-        std::vector<int> found{};
-    };
-    struct Happened {
-        const Divisible* of;
-        int section;
-        EventKind kind;
-    };
+    using Course = DivisibleSteps;
 
     void note_bodies();
     [[nodiscard]] bool look(double dt, bool blow);
@@ -90,10 +78,8 @@ class Members final : public Divisibles {
     [[nodiscard]] const dJointFeedback* feedback_of(dJointID joint);
     void take_feedback_back();
 
-    std::vector<Course> members_;
     std::vector<dBodyID> bodies_;
     AddressMap<std::size_t> owners_; ///< by body
-    std::vector<Happened> happened_;
     std::deque<dJointFeedback> lent_;
     std::vector<dJointID> borrowers_, held_by_;
 };

@@ -14,17 +14,13 @@ namespace ductile::ode {
 
 // ---- who is here
 
-DUCTILE_INLINE bool Members::has(const Divisible& member) const noexcept {
-    return std::any_of(members_.begin(), members_.end(),
-                       [&](const Course& course) { return course.of == &member; });
-}
 DUCTILE_INLINE void Members::add(Divisible& member) {
     members_.push_back({&member});
     note_bodies();
 }
 DUCTILE_INLINE void Members::remove(Divisible& member) {
     std::erase_if(members_, [&](const Course& course) { return course.of == &member; });
-    std::erase_if(happened_, [&](const Happened& entry) { return entry.of == &member; });
+    forget(member);
     note_bodies();
 }
 DUCTILE_INLINE void Members::leave() {
@@ -50,13 +46,6 @@ DUCTILE_INLINE void Members::body_came(dBodyID body) {
     for (const Course& course : members_) course.of->body_came(body);
 }
 
-DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
-    for (const Course& course : members_) {
-        section = course.of->section_of(joint);
-        if (section >= 0) return course.of->key_of(section);
-    }
-    return nullptr;
-}
 DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
     if (members_.empty() || a == nullptr || b == nullptr) return false;
     const std::size_t *of_a = owners_.find(a), *of_b = owners_.find(b);
@@ -70,29 +59,16 @@ DUCTILE_INLINE bool Members::hold(dBodyID a, dBodyID b) const {
     };
     return a != nullptr && b != nullptr && (holds(a, b) || holds(b, a));
 }
-DUCTILE_INLINE double Members::closed_work() const {
-    double sum = 0;
-    for (const Course& course : members_) sum += course.of->closed_work();
-    return sum;
-}
-DUCTILE_INLINE double Members::unmissed_work() const {
-    double least = 0;
-    for (const Course& course : members_) {
-        const double work = course.of->unmissed_work();
-        if (least == 0 || (work > 0 && work < least)) least = work;
-    }
-    return least;
-}
 DUCTILE_INLINE void Members::require_possible() const {
     for (const Course& course : members_) course.of->require_possible();
 }
 
 // ---- around the solve
 
-DUCTILE_INLINE void Members::apply_forces() const {
+DUCTILE_INLINE void Members::apply_forces() {
     for (const Course& course : members_) course.of->apply_forces();
 }
-DUCTILE_INLINE void Members::drop_forces() const {
+DUCTILE_INLINE void Members::drop_forces() {
     for (const Course& course : members_) course.of->drop_forces();
 }
 
@@ -176,10 +152,6 @@ DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {
     return found;
 }
 
-DUCTILE_INLINE bool Members::any_open() const {
-    return std::any_of(members_.begin(), members_.end(),
-                       [](const Course& course) { return course.of->is_open(); });
-}
 DUCTILE_INLINE void Members::after_solve() const {
     for (const Course& course : members_) course.of->after_solve();
 }
@@ -189,15 +161,6 @@ DUCTILE_INLINE void Members::after_solve() const {
 DUCTILE_INLINE void Members::begin_blow(double noticed) const {
     for (const Course& course : members_) course.of->begin_blow(noticed);
 }
-DUCTILE_INLINE bool Members::switch_holds(bool on) const {
-    bool any = false;
-    for (const Course& course : members_) any = course.of->switch_holds(on) || any;
-    return any;
-}
-DUCTILE_INLINE void Members::see_coming() const {
-    for (const Course& course : members_) course.of->see_coming();
-}
-
 DUCTILE_INLINE bool Members::look(double dt, bool blow) {
     bool any = false;
     for (Course& course : members_) {
@@ -235,10 +198,7 @@ DUCTILE_INLINE void Members::open_found(bool ahead) {
             dJointAttach(joint, attached[i].a, attached[i].b);
             wake(joint);
         }
-        for (const int section : course.found) {
-            happened_.push_back({course.of, section, EventKind::split});
-        }
-        course.found.clear();
+        happened(course, std::exchange(course.found, {}), EventKind::split);
     }
     note_bodies();
 }
@@ -251,17 +211,9 @@ DUCTILE_INLINE double Members::count_vibration() const {
 
 DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
     for (const Course& course : members_) {
-        for (const int section : course.of->close_held(when, ahead)) {
-            happened_.push_back({course.of, section, EventKind::fused});
-        }
+        happened(course, course.of->close_held(when, ahead), EventKind::fused);
     }
     note_bodies();
-}
-
-DUCTILE_INLINE void Members::tell(const Tell& tell) {
-    for (const Happened& entry : std::exchange(happened_, {})) {
-        tell(entry.of->key_of(entry.section), entry.section, entry.kind);
-    }
 }
 
 } // namespace ductile::ode

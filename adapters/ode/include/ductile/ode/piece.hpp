@@ -109,11 +109,6 @@ inline void copy_manners(dBodyID from, dBodyID body) {
 
 } // namespace detail
 
-/// What acts on a body, about its centre of mass [N], [N m].
-struct Wrench {
-    Vector3<double> force = Vector3<double>::Zero(), torque = force;
-};
-
 [[nodiscard]] inline Wrench wrench_of(const dJointFeedback& feedback, bool of_a) {
     return of_a ? Wrench{to_core(feedback.f1), to_core(feedback.t1)}
                 : Wrench{to_core(feedback.f2), to_core(feedback.t2)};

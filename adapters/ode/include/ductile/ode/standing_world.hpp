@@ -114,10 +114,8 @@ class StandingWorld {
         return own_;
     }
     void note(std::span<const PartRow> of_joint) {
-        constexpr double near = 0.5; // of the strength
-        rows_calm_.push_back(std::all_of(of_joint.begin(), of_joint.end(), [](const PartRow& row) {
-            return row.strength > 0 && row.share <= near && !row.moves();
-        }));
+        rows_calm_.push_back(std::all_of(of_joint.begin(), of_joint.end(),
+                                         [](const PartRow& row) { return row.is_calm(); }));
     }
 
   private:

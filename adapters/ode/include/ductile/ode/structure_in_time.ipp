@@ -3,6 +3,7 @@
 // Bodies of structure_in_time.hpp.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "ductile/ode/convert.hpp"
@@ -12,19 +13,14 @@ namespace ductile::ode {
 
 DUCTILE_INLINE StructureInTime::StructureInTime(World& world, dSpaceID space,
                                                 const StructureModel& model)
-    : DividedStructure(model), world_(world), gravity_(gravity_of(world.id())) {
+    : SteppedStructure(model), world_(world), gravity_(gravity_of(world.id())) {
     for (const PlanBody& body : plan().bodies) boxes_.push_back(detail::box_of(body, space));
-    for (std::size_t c = 0; c < course_.clusters().size(); ++c) {
-        bodies_.push_back(make_cluster(c, nullptr));
-    }
-    made();
+    make_pieces();
     try {
-        world_.add(*this);
+        world_.add(static_cast<Divisible&>(*this));
     } catch (...) {
-        for (dBodyID body : bodies_) end_body(body);
-        for (dGeomID box : boxes_) {
-            if (box != nullptr) dGeomDestroy(box);
-        }
+        end_pieces();
+        end_boxes();
         throw;
     }
 }
@@ -32,21 +28,14 @@ DUCTILE_INLINE StructureInTime::StructureInTime(World& world, dSpaceID space,
 DUCTILE_INLINE StructureInTime::~StructureInTime() {
     if (!left_) world_.remove(static_cast<Divisible&>(*this));
     joints_.clear();
-    for (dBodyID body : bodies_) end_body(body);
-    for (dGeomID box : boxes_) {
-        if (box != nullptr) dGeomDestroy(box);
-    }
-}
-
-DUCTILE_INLINE std::vector<dBodyID> StructureInTime::bodies() const { return bodies_; }
-DUCTILE_INLINE dBodyID StructureInTime::body_of(std::string_view member, std::size_t piece) const {
-    return bodies_[course_.cluster_of(present_body(plan().body(member, piece)))];
+    end_pieces();
+    end_boxes();
 }
 
 // ---- its bodies
 
 /// The frame of one that is held is the world's.
-DUCTILE_INLINE dBodyID StructureInTime::make_cluster(std::size_t c, dBodyID like) {
+DUCTILE_INLINE dBodyID StructureInTime::make_piece(std::size_t c, dBodyID like) {
     const Cluster& cluster = course_.clusters()[c];
     const PlacedBody& at = course_.made_at()[c];
     const dBodyID body = dBodyCreate(world_.id());
@@ -68,76 +57,63 @@ DUCTILE_INLINE dBodyID StructureInTime::make_cluster(std::size_t c, dBodyID like
     return body;
 }
 
-DUCTILE_INLINE void StructureInTime::end_body(dBodyID body) {
-    world_.remove(body);
-    dBodyDestroy(body);
+DUCTILE_INLINE void StructureInTime::end_piece(dBodyID& piece) {
+    world_.remove(piece);
+    dBodyDestroy(piece);
 }
 
-DUCTILE_INLINE void StructureInTime::become(const StructureCourse::Change& change, bool ahead) {
-    proved_.reset();
-    pressed_.forget();
-    end_joints(change); // before their bodies do
-    std::vector<dBodyID> old = std::exchange(bodies_, {});
-    const dBodyID like = old.empty() ? nullptr : old.front();
-    for (std::size_t c = 0; c < change.kept.size(); ++c) {
-        bodies_.push_back(change.kept[c] ? std::exchange(old[*change.kept[c]], nullptr)
-                                         : make_cluster(c, like));
-    }
+/// Of bodies that are no more, or of all where it ends.
+DUCTILE_INLINE void StructureInTime::end_boxes() {
     for (std::size_t b = 0; b < boxes_.size(); ++b) {
-        if (course_.has_body(b) || boxes_[b] == nullptr) continue;
+        if (boxes_[b] == nullptr || (!pieces_.empty() && course_.has_body(b))) continue;
         dGeomDestroy(boxes_[b]);
         boxes_[b] = nullptr;
     }
-    hand_over();
-    for (dBodyID body : old) {
-        if (body != nullptr) end_body(body);
-    }
-    make_joints(
-        [this](std::size_t j, std::size_t a, const JointFrame<double>& in_a,
-               std::optional<std::size_t> b, const JointFrame<double>& in_b) {
-            // one that is held has the world's frame
-            const dBodyID other = b && !held(*b) ? bodies_[*b] : nullptr;
-            return OpenJoint{j, std::make_unique<Joint>(world_.id(), bodies_[a], other, in_a, in_b,
-                                                        plan().joints[j].joint)};
-        },
-        [this, ahead](OpenJoint& open) {
-            world_.take_in(*open.constraint);
-            if (ahead) (void)open.constraint->begin_frame();
-        });
+}
+
+DUCTILE_INLINE OpenJoint StructureInTime::make_joint(std::size_t joint, std::size_t a,
+                                                     const JointFrame<double>& in_a,
+                                                     std::optional<std::size_t> b,
+                                                     const JointFrame<double>& in_b) {
+    // one that is held has the world's frame
+    return {joint, std::make_unique<PlasticJoint<SectionJoint<double>>>(
+                       world_.id(), body(a), b && !held(*b) ? body(*b) : nullptr, in_a, in_b,
+                       plan().joints[joint].joint)};
+}
+DUCTILE_INLINE void StructureInTime::enter_joint(OpenJoint& open, bool ahead) {
+    world_.take_in(*open.constraint);
+    if (ahead) (void)open.constraint->begin_frame();
 }
 
 /// Pieces that hang together do, and those that meet at a node; where a joint broke they meet.
 DUCTILE_INLINE bool StructureInTime::hangs_together(dBodyID a, dBodyID b) const {
-    const auto between = [&](std::size_t first, std::size_t second) {
-        const dBodyID one = bodies_[course_.cluster_of(first)],
-                      other = bodies_[course_.cluster_of(second)];
-        return (one == a && other == b) || (one == b && other == a);
+    bool any = false;
+    const auto note = [&](dBodyID one, dBodyID other) {
+        any = any || (one == a && other == b) || (one == b && other == a);
     };
-    for (const auto& [first, second] : plan().neighbours) {
-        if (has_body(first) && has_body(second) && between(first, second)) return true;
-    }
-    return std::any_of(joints_.begin(), joints_.end(), [&](const OpenJoint& open) {
+    over_neighbours(note);
+    for (const OpenJoint& open : joints_) {
+        if (stands_on_ground(open.joint) || open.constraint->broken()) continue;
         const PlanJoint& joint = plan().joints[open.joint];
-        return !stands_on_ground(open.joint) && !open.constraint->broken() &&
-               between(joint.a, joint.b.index);
-    });
+        note(body(course_.cluster_of(joint.a)), body(course_.cluster_of(joint.b.index)));
+    }
+    return any;
 }
 
 // ---- what holds on to it
 
-DUCTILE_INLINE void StructureInTime::attach(const Point& point, dJointID joint) {
-    const StructureHold hold = hold_at(point);
+DUCTILE_INLINE void StructureInTime::hold_on(const StructureHold& at, dJointID joint) {
     if (joint == nullptr) {
         throw std::invalid_argument("StructureInTime.attach.joint = null: must be a joint");
     }
     std::erase_if(told_, [joint](const auto& told) { return told.first == joint; });
     std::erase_if(holds_, [joint](const Hold& known) { return known.joint == joint; });
-    told_.emplace_back(joint, hold);
+    told_.emplace_back(joint, at);
 }
 
 /// Of a joint that is new, on the body of a cluster.
 DUCTILE_INLINE StructureHold StructureInTime::hold_of(dJointID joint, std::size_t c) const {
-    const auto anchor = anchor_of(joint, bodies_[c], "StructureInTime.attach.joint");
+    const auto anchor = anchor_of(joint, body(c), "StructureInTime.attach.joint");
     for (const auto& [told, hold] : told_) {
         if (told != joint) continue;
         if (course_.has_body(hold.body) && course_.cluster_of(hold.body) == c) return hold;
@@ -163,22 +139,21 @@ DUCTILE_INLINE bool StructureInTime::is_there(const Hold& hold) const {
 
 DUCTILE_INLINE void StructureInTime::find_holds() {
     std::vector<Hold> found;
-    for (std::size_t c = 0; c < bodies_.size(); ++c) {
-        for (int i = 0, count = dBodyGetNumJoints(bodies_[c]); i < count; ++i) {
-            const dJointID joint = dBodyGetJoint(bodies_[c], i);
+    for (std::size_t c = 0; c < pieces_.size(); ++c) {
+        for (int i = 0, count = dBodyGetNumJoints(body(c)); i < count; ++i) {
+            const dJointID joint = dBodyGetJoint(body(c), i);
             const bool own = std::any_of(
                 joints_.begin(), joints_.end(),
                 [joint](const OpenJoint& open) { return open.constraint->id() == joint; });
             if (own || dJointGetType(joint) == dJointTypeContact) continue;
             const bool acts = dJointIsEnabled(joint) != 0;
             const auto known = std::find_if(holds_.begin(), holds_.end(), [&](const Hold& hold) {
-                return hold.joint == joint && hold.body == bodies_[c] && is_there(hold);
+                return hold.joint == joint && hold.body == body(c) && is_there(hold);
             });
-            found.push_back(known != holds_.end()
-                                ? *known
-                                : Hold{{joint, bodies_[c], acts}, hold_of(joint, c)});
-            found.back().acts = acts;
-            if (cluster_on(found.back().other()) == bodies_.size()) continue;
+            found.push_back(
+                known != holds_.end() ? *known : Hold{{joint, body(c), acts}, hold_of(joint, c)});
+            found.back().enabled = acts;
+            if (cluster_on(found.back().other()) == pieces_.size()) continue;
             throw std::invalid_argument(
                 "StructureInTime.attach.joint: must hold another body, not two of the structure's");
         }
@@ -188,13 +163,14 @@ DUCTILE_INLINE void StructureInTime::find_holds() {
 
 /// To the bodies that there are now.
 DUCTILE_INLINE void StructureInTime::hand_over() {
-    std::erase_if(holds_, [this](const Hold& hold) {
-        if (course_.has_body(hold.at.body)) return false;
-        dJointAttach(hold.joint, nullptr, nullptr);
-        return true;
-    });
+    pressed_.forget();
+    end_boxes();
     for (Hold& hold : holds_) {
-        hold.go_to(bodies_[course_.cluster_of(hold.at.body)]);
+        if (!course_.has_body(hold.at.body)) {
+            dJointAttach(hold.joint, nullptr, nullptr);
+            continue;
+        }
+        hold.go_to(body(hold.at));
         ode::wake(hold.joint);
     }
 }
@@ -203,23 +179,14 @@ DUCTILE_INLINE void StructureInTime::hand_over() {
 /// bodies that hang together with it.
 DUCTILE_INLINE bool StructureInTime::holds(dBodyID own, dBodyID other) const {
     return std::any_of(holds_.begin(), holds_.end(), [&](const Hold& hold) {
-        return hold.acts && hold.other() == other &&
+        return hold.acts() && hold.other() == other &&
                hanging_on(course_.cluster_of(hold.at.body))[cluster_on(own)];
     });
 }
 
-DUCTILE_INLINE bool StructureInTime::switch_holds(bool on) {
-    bool any = false;
-    for (const Hold& hold : holds_) any = hold.switch_on(on) || any;
-    return any;
-}
-DUCTILE_INLINE void StructureInTime::see_coming() {
-    for (Hold& hold : holds_) hold.see_coming();
-}
-
 DUCTILE_INLINE void StructureInTime::wake() {
     proved_.reset();
-    for (std::size_t c = 0; c < bodies_.size(); ++c) wake_cluster(c);
+    for (std::size_t c = 0; c < pieces_.size(); ++c) wake_cluster(c);
 }
 
 DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
@@ -231,112 +198,73 @@ DUCTILE_INLINE void StructureInTime::set_gravity(double factor) {
 
 DUCTILE_INLINE void StructureInTime::require_possible() {
     find_holds();
-    for (std::size_t c = 0; c < bodies_.size(); ++c) {
+    for (std::size_t c = 0; c < pieces_.size(); ++c) {
         if (held(c)) continue;
         dMass mass;
-        dBodyGetMass(bodies_[c], &mass);
-        require_body(course_.clusters()[c].mass, double(mass.mass),
-                     dBodyIsKinematic(bodies_[c]) != 0);
+        dBodyGetMass(body(c), &mass);
+        require_body(course_.clusters()[c].mass, double(mass.mass), dBodyIsKinematic(body(c)) != 0);
     }
 }
-DUCTILE_INLINE void StructureInTime::apply_forces() {
-    add_forces([this](std::size_t c, const Vector3<double>& force, const Vector3<double>& at) {
-        add_force(bodies_[c], force, cross(arm_of(bodies_[c], at), force));
-    });
+DUCTILE_INLINE void StructureInTime::add_force(std::size_t c, const Vector3<double>& force,
+                                               const Vector3<double>& at) {
+    ode::add_force(body(c), force, cross(arm_of(body(c), at), force));
 }
 
 DUCTILE_INLINE void StructureInTime::before_solve(std::vector<dJointID>& joints) {
-    course_.begin_step();
-    driven_through_ = false;
+    begin_step();
     for (const Hold& hold : holds_) joints.push_back(hold.joint);
     courses_.clear();
-    for (dBodyID body : bodies_) courses_.emplace_back(body);
+    for (dBodyID body : pieces_) courses_.emplace_back(body);
 }
 DUCTILE_INLINE void StructureInTime::after_solve() {
-    for (std::size_t c = 0; c < courses_.size() && c < bodies_.size(); ++c) {
-        if (held(c)) dBodyDisable(bodies_[c]); // ODE wakes what was touched
-        courses_[c].see(bodies_[c]);
+    for (std::size_t c = 0; c < courses_.size() && c < pieces_.size(); ++c) {
+        if (held(c)) dBodyDisable(body(c)); // ODE wakes what was touched
+        courses_[c].see(body(c));
     }
     for (Hold& hold : holds_) {
-        if (!hold.see()) continue;
-        note(hold.at, courses_[cluster_on(hold.body)].pose, hold.wrench.force, hold.wrench.torque);
+        if (hold.see()) note(hold.at, courses_[cluster_on(hold.body)].pose, hold.wrench);
     }
 }
 
-/// Nothing acts on it but what it carried before.
-DUCTILE_INLINE bool StructureInTime::rests(std::span<const Touch> touches) const {
-    return forces_.empty() &&
-           std::none_of(touches.begin(), touches.end(),
-                        [](const Touch& touch) {
-                            return detail::is_solved(touch.bodies.a) ||
-                                   detail::is_solved(touch.bodies.b);
-                        }) &&
-           std::none_of(holds_.begin(), holds_.end(),
-                        [](const Hold& hold) { return hold.acts && hold.is_solved(); });
-}
-DUCTILE_INLINE bool StructureInTime::may_be_beyond(std::span<const Touch> touches) const {
-    if (!proved_ || *proved_ != gravity_of(world_.id()) || !rests(touches) ||
-        proved_touches_ != touches.size() + acting_holds()) {
-        return true;
-    }
-    return std::any_of(courses_.begin(), courses_.end(),
-                       [](const PieceCourse& course) { return course.solved; });
+DUCTILE_INLINE ClusterStep StructureInTime::step_of(std::size_t c, const Vector3<double>& gravity,
+                                                    double dt) const {
+    const PieceCourse& course = courses_[c];
+    ClusterStep step{.pose = course.pose};
+    if (!course.solved) return step; // what sleeps stays as it is
+    const Vector3<double>& inertia = course_.clusters()[c].inertia;
+    const Vector3<double> inverse{1 / inertia[0], 1 / inertia[1], 1 / inertia[2]};
+    step.change = course.change(body(c), scaled(dt, gravity), along_axes(inertia, step.pose.axes),
+                                along_axes(inverse, step.pose.axes), dt, step.dt);
+    step.spin = course.motion.spin;
+    return step;
 }
 
-DUCTILE_INLINE void StructureInTime::read(double dt, std::span<Touch> touches) {
-    begin_read();
-    const Vector3<double> fallen = scaled(dt, gravity_of(world_.id()));
-    for (std::size_t c = 0; c < bodies_.size(); ++c) {
-        ClusterStep& step = steps_[c];
-        if (held(c)) {
-            step.change.velocity = scaled(-1, fallen);
-            continue;
-        }
-        const PieceCourse& course = courses_[c];
-        step.pose = course.pose;
-        if (!course.solved) continue; // what sleeps stays as it is
-        const Vector3<double>& inertia = course_.clusters()[c].inertia;
-        const Vector3<double> inverse{1 / inertia[0], 1 / inertia[1], 1 / inertia[2]};
-        step.change = course.change(bodies_[c], fallen, along_axes(inertia, step.pose.axes),
-                                    along_axes(inverse, step.pose.axes), dt, step.dt);
-        step.spin = course.motion.spin;
-    }
-    const auto push = [&](dBodyID body, const Vector3<double>& point,
-                          const Vector3<double>& force) {
+DUCTILE_INLINE double StructureInTime::read_touches(double dt) {
+    const auto press = [&](dBodyID body, const Vector3<double>& point,
+                           const Vector3<double>& force) {
         const std::size_t c = cluster_on(body);
         const std::size_t on = course_.nearest(c, steps_[c].pose, point);
         loads_.push_back({on, point, scaled(dt, force), Vector3<double>::Zero()});
         return int(on);
     };
-    for (Touch& touch : touches) {
-        touch.segment = push(touch.of_a ? touch.bodies.a : touch.bodies.b, touch.point,
-                             wrench_of(*touch.feedback, touch.of_a).force);
+    double energy = 0;
+    for (Touch& touch : touches_) {
+        touch.segment = press(touch.of_a ? touch.bodies.a : touch.bodies.b, touch.point,
+                              wrench_of(*touch.feedback, touch.of_a).force);
+        const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
+        energy += pressed * (touch.closing + touch.closing_speed()) / 2;
     }
     for (const PressedTouches::Pressed& asleep : pressed_.asleep()) {
-        push(asleep.on, asleep.point, asleep.force);
+        press(asleep.on, asleep.point, asleep.force);
     }
-    for (const Hold& hold : holds_) {
-        if (hold.acts) add_load(hold.at, dt);
-    }
-    for (const OpenJoint& open : joints_) {
-        if (!open.constraint->is_awake_member()) continue;
-        const PlanJoint& joint = plan().joints[open.joint];
-        const Wrench upper = wrench_of(*open.constraint, true);
-        add_load(joint.a, upper.force, upper.torque, dt);
-        if (stands_on_ground(open.joint)) continue;
-        // one that is held on the static world says nothing of that
-        if (held(course_.cluster_of(joint.b.index))) {
-            BodyLoad lower = loads_.back();
-            lower.body = joint.b.index;
-            lower.impulse = scaled(-1, lower.impulse);
-            lower.moment = scaled(-1, lower.moment);
-            loads_.push_back(lower);
-        } else {
-            const Wrench lower = wrench_of(*open.constraint, false);
-            add_load(joint.b.index, lower.force, lower.torque, dt);
-        }
-    }
-    read_forces(dt);
+    return energy;
+}
+
+/// One that is held on the static world says nothing of that.
+DUCTILE_INLINE std::optional<Wrench> StructureInTime::given(const OpenJoint& open,
+                                                            bool to_a) const {
+    if (!to_a && held(course_.cluster_of(plan().joints[open.joint].b.index))) return std::nullopt;
+    return wrench_of(*open.constraint, to_a);
 }
 
 DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> touches,
@@ -346,44 +274,17 @@ DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<Touch> tou
         if (!can_move(touch.of_a ? touch.bodies.a : touch.bodies.b)) on_held.push_back(touch);
     }
     pressed_.see(on_held);
-    if (!may_be_beyond(touches)) return;
-    read(dt, touches);
-    proved_.reset();
-    proved_touches_ = touches.size() + acting_holds();
-    sections = course_.beyond(steps_, loads_, dt);
-    if (sections.empty() && rests(touches) && joints_.empty()) proved_ = gravity_of(world_.id());
+    touches_ = touches;
+    const Vector3<double> gravity = gravity_of(world_.id());
+    if (is_unproved(gravity)) look(dt, gravity, sections);
 }
 
 DUCTILE_INLINE void StructureInTime::find_struck(double dt, std::span<Touch> touches,
                                                  std::vector<int>& sections) {
     proved_.reset();
+    touches_ = touches;
     if (touches.empty() && holds_.empty()) return;
-    read(dt, touches);
-    double energy = 0; // that contacts took
-    for (const Touch& touch : touches) {
-        const double pressed = dt * dot(touch.normal, to_core(touch.feedback->f1));
-        energy += pressed * (touch.closing + touch.closing_speed()) / 2;
-    }
-    MemberStrike by_joints;
-    for (const Hold& hold : holds_) {
-        if (!hold.acts) continue;
-        const Vector3<double> place = point_of(hold.at);
-        by_joints.add(hold.side(true, place, dt), hold.side(false, place, dt), 0);
-    }
-    sections = struck(energy, by_joints);
-}
-
-DUCTILE_INLINE void StructureInTime::open(std::span<const int> sections, bool ahead) {
-    note_joints();
-    become(course_.open(sections, placed_clusters()), ahead);
-}
-
-DUCTILE_INLINE std::vector<int> StructureInTime::close_held(Closing when, bool ahead) {
-    if (whole() || when == Closing::before_blow) return {};
-    note_joints();
-    std::vector<int> held = course_.held();
-    if (!held.empty()) become(course_.close(held, placed_clusters()), ahead);
-    return held;
+    look_blow(dt, gravity_of(world_.id()), sections);
 }
 
 } // namespace ductile::ode

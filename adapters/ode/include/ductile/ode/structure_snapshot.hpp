@@ -30,7 +30,7 @@ class StructureSnapshot {
     explicit StructureSnapshot(StructureInTime& structure)
         : saved_(structure.save()), pressed_(structure.pressed_) {
         structure.find_holds();
-        for (dBodyID body : structure.bodies_) bodies_.emplace_back(body);
+        for (dBodyID body : structure.pieces_) bodies_.emplace_back(body);
         for (const StructureInTime::Hold& hold : structure.holds_) {
             holds_.emplace_back(SavedHold(hold), hold.at);
         }
@@ -41,7 +41,7 @@ class StructureSnapshot {
     void put_back(StructureInTime& structure) const {
         structure.put_back(saved_);
         for (std::size_t c = 0; c < bodies_.size(); ++c) {
-            bodies_[c].put_back(structure.bodies_[c]);
+            bodies_[c].put_back(structure.pieces_[c]);
         }
         for (const auto& [hold, at] : holds_) {
             for (StructureInTime::Hold& now : structure.holds_) {
@@ -49,7 +49,7 @@ class StructureSnapshot {
             }
         }
         structure.pressed_ = pressed_;
-        structure.pressed_.go_to(structure.bodies_.front()); // the one that is held
+        structure.pressed_.go_to(structure.pieces_.front()); // the one that is held
     }
 
   private:

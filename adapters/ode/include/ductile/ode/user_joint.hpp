@@ -43,14 +43,15 @@ class JointPlace {
 
 struct UserJoint {
     dJointID joint;
-    dBodyID body;      ///< of the member or structure
-    bool acts;         ///< it is enabled
+    dBodyID body; ///< of the member or structure
+    bool enabled;
     Wrench wrench{};   ///< when it was last solved; the ledger may have lent its feedback
     Wrench on_other{}; ///< the same, on what is on its other side
     std::array<ContactBody, 2> before{}; ///< a blow: of its body, of the other
 
     /// Null: the static world.
     [[nodiscard]] dBodyID other() const;
+    [[nodiscard]] bool acts() const noexcept { return enabled; }
     /// In steps: what sleeps carries on as when it was solved; between what cannot move nothing is.
     [[nodiscard]] bool is_solved() const;
     /// Of what can move: it acts no more, or again; false: it is none.

@@ -88,10 +88,10 @@ DUCTILE_INLINE dBodyID UserJoint::other() const {
     return bodies.a == body ? bodies.b : bodies.a;
 }
 DUCTILE_INLINE bool UserJoint::is_solved() const {
-    return detail::is_solved(body) || detail::is_solved(other());
+    return acts() && (detail::is_solved(body) || detail::is_solved(other()));
 }
 DUCTILE_INLINE bool UserJoint::switch_on(bool on) const {
-    if (!acts || !can_move(other())) return false;
+    if (!acts() || !can_move(other())) return false;
     (on ? dJointEnable : dJointDisable)(joint);
     return true;
 }
@@ -99,7 +99,7 @@ DUCTILE_INLINE void UserJoint::see_coming() {
     before = {contact_body(body), contact_body(other())};
 }
 DUCTILE_INLINE bool UserJoint::see() {
-    if (!acts || !is_solved()) return false;
+    if (!is_solved()) return false;
     const bool of_a = attached_bodies(joint).a == body;
     wrench = wrench_of(*dJointGetFeedback(joint), of_a);
     on_other = wrench_of(*dJointGetFeedback(joint), !of_a);
