@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "adapters/bullet_engine.hpp"
@@ -310,6 +313,43 @@ TEST_CASE("Locality: what a member meets within the frame comes along", "[frame]
         CAPTURE(step, ends[0], ends[1]);
         CHECK(ends[0] > 10);
         CHECK(ends[1] == Approx(ends[0]).epsilon(0.01));
+    }
+}
+
+TEST_CASE("Locality: a second post that is struck within the frame takes what it takes alone",
+          "[frame][member]") {
+    // 400 kg go from one post to the next in a part of a frame
+    const auto absorbed = [](int boxes, int standing) {
+        Scene scene(boxes, false);
+        std::vector<std::unique_ptr<bullet::Member>> posts;
+        const auto stand = [&](const btVector3& foot) -> btRigidBody& {
+            auto around = std::make_unique<btCompoundShape>();
+            scene.shapes.push_back(std::make_unique<btBoxShape>(
+                btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+            around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
+            return scene.body(std::move(around), 0, foot);
+        };
+        const btTransform upright(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
+        for (const double z : {-9.0, -8.8}) {
+            posts.push_back(std::make_unique<bullet::Member>(stand({0, 0, btScalar(z)}),
+                                                             test::heavy_post(10, 4000), upright,
+                                                             MemberBox{0.05, 0.05}));
+            scene.world->add(*posts.back());
+        }
+        for (int i = 0; i < standing; ++i) stand({btScalar(100 + i), 0, 0});
+        btRigidBody& ball = scene.ball({0, btScalar(1.9), btScalar(-9.6)}, {0, 0, 15});
+        ball.setMassProps(400, ball.getLocalInertia());
+        for (int i = 0; i < 3; ++i) scene.world->step(1.0 / 30);
+        std::vector<double> result;
+        for (const auto& post : posts) result.push_back(post->absorbed_energy());
+        return result;
+    };
+    const std::vector<double> alone = absorbed(0, 0);
+    CHECK(alone[0] > 100);
+    CHECK(alone[1] > 100);
+    for (const auto& among : {absorbed(200, 0), absorbed(0, 200)}) {
+        CHECK(among[0] == Approx(alone[0]).epsilon(rough ? 0.02 : 1e-6));
+        CHECK(among[1] == Approx(alone[1]).epsilon(rough ? 0.02 : 1e-6));
     }
 }
 

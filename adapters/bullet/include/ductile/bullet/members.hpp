@@ -28,6 +28,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -99,11 +100,12 @@ class Members final : public Divisibles {
         std::unique_ptr<Divisible> tick{}; ///< of a member; a program without any compiles none
         std::vector<int> found{};
         std::vector<const btCollisionObject*> bodies{}; ///< as owners_ has them
-        int direct = 0;       ///< ticks for which it is still solved at once
-        double left = 0;      ///< of contacts in this tick, by sweeps [N s]
-        bool asked = true;    ///< for its report
-        bool watched = false; ///< in every tick
-        bool here = false;    ///< in this one
+        int direct = 0;                  ///< ticks for which it is still solved at once
+        double closed = 0, unmissed = 0; ///< works, since its bodies were noted [J]
+        double left = 0;                 ///< of contacts in this tick, by sweeps [N s]
+        bool asked = true;               ///< for its report
+        bool watched = false;            ///< in every tick
+        bool here = false;               ///< in this one
     };
     static constexpr int direct_ticks = 60;
     struct Happened {
@@ -111,6 +113,7 @@ class Members final : public Divisibles {
         EventKind kind;
     };
     void happened(EventKind kind);
+    void count_own(int before);
     [[nodiscard]] Course* course_of(const btCollisionObject& object);
     void add(Course course);
     void remove(std::size_t course);
@@ -151,6 +154,7 @@ class Members final : public Divisibles {
     std::vector<Asleep> asleep_; ///< on clamped members
     /// Length of the last tick in which contacts acted on a clamped member [s].
     std::unordered_map<const btPersistentManifold*, double> acted_;
+    mutable std::optional<double> closed_work_, unmissed_work_; ///< as long as bodies stay
     std::vector<Happened> happened_;
     std::vector<DivisionChange> changes_;
 };

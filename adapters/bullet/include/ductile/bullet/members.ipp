@@ -12,6 +12,7 @@
 #include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
 
 namespace ductile::bullet {
 
@@ -38,6 +39,8 @@ DUCTILE_INLINE void Members::add(Divisible& structure) {
 /// The last one takes its place.
 DUCTILE_INLINE void Members::remove(std::size_t i) {
     here_.clear();
+    closed_work_.reset();
+    unmissed_work_.reset();
     for (Course& course : members_) course.here = false;
     const std::size_t last = members_.size() - 1;
     for (const std::size_t leaves : {i, last}) {
@@ -79,6 +82,9 @@ DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
 }
 DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
+    const double closed = course.of->closed_work(), unmissed = course.of->unmissed_work();
+    if (std::exchange(course.closed, closed) != closed) closed_work_.reset();
+    if (std::exchange(course.unmissed, unmissed) != unmissed) unmissed_work_.reset();
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
     course.bodies.clear();
     for (const PieceBody& piece : course.of->pieces()) {
@@ -105,8 +111,10 @@ DUCTILE_INLINE bool Members::has(const Member& member) const noexcept {
 }
 
 DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
-    for (const Course& course : members_) {
-        if (const void* key = course.of->key_of(joint, section)) return key;
+    for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
+        const auto owner = owners_.find(body);
+        if (owner == owners_.end()) continue;
+        if (const void* key = members_[owner->second].of->key_of(joint, section)) return key;
     }
     return nullptr;
 }
@@ -116,17 +124,21 @@ DUCTILE_INLINE bool Members::any_open() const {
                        [](const Course& course) { return !course.of->whole(); });
 }
 DUCTILE_INLINE double Members::closed_work() const {
+    if (closed_work_) return *closed_work_;
     double sum = 0;
-    for (const Course& course : members_) sum += course.of->closed_work();
+    for (const Course& course : members_) sum += course.closed;
+    closed_work_ = sum;
     return sum;
 }
 
 DUCTILE_INLINE double Members::unmissed_work() const {
+    if (unmissed_work_) return *unmissed_work_;
     double least = 0;
     for (const Course& course : members_) {
-        const double work = course.of->unmissed_work();
+        const double work = course.unmissed;
         if (least == 0 || (work > 0 && work < least)) least = work;
     }
+    unmissed_work_ = least;
     return least;
 }
 
@@ -352,13 +364,20 @@ DUCTILE_INLINE void Members::happened(EventKind kind) {
     changes_.clear();
 }
 
+/// They themselves brought and took bodies, and nobody else since there were `before` in the world.
+DUCTILE_INLINE void Members::count_own(int before) {
+    if (objects_ == before) objects_ = world_.getNumCollisionObjects();
+}
+
 DUCTILE_INLINE void Members::open_found() {
+    const int before = world_.getNumCollisionObjects();
     for (Course* course : here_) {
         if (course->found.empty()) continue;
         course->of->open(course->found, ahead_, changes_);
         course->found.clear();
         note_bodies(std::size_t(course - members_.data()));
     }
+    count_own(before);
     happened(EventKind::split);
 }
 
@@ -370,11 +389,13 @@ DUCTILE_INLINE double Members::count_vibration() {
 
 DUCTILE_INLINE bool Members::close_held(Closing when) {
     bool changed = false;
+    const int before = world_.getNumCollisionObjects();
     for (Course* course : here_) {
         if (!course->of->close_held(when, ahead_, changes_)) continue;
         changed = true;
         note_bodies(std::size_t(course - members_.data()));
     }
+    count_own(before);
     happened(EventKind::fused);
     return changed;
 }
