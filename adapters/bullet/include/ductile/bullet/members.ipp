@@ -119,41 +119,6 @@ DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& 
     return nullptr;
 }
 
-DUCTILE_INLINE bool Members::any_open() const {
-    return std::any_of(members_.begin(), members_.end(),
-                       [](const Course& course) { return !course.of->whole(); });
-}
-DUCTILE_INLINE double Members::closed_work() const {
-    if (closed_work_) return *closed_work_;
-    double sum = 0;
-    for (const Course& course : members_) sum += course.closed;
-    closed_work_ = sum;
-    return sum;
-}
-
-DUCTILE_INLINE double Members::unmissed_work() const {
-    if (unmissed_work_) return *unmissed_work_;
-    double least = 0;
-    for (const Course& course : members_) {
-        const double work = course.unmissed;
-        if (least == 0 || (work > 0 && work < least)) least = work;
-    }
-    unmissed_work_ = least;
-    return least;
-}
-
-DUCTILE_INLINE std::vector<int> Members::held_islands() const {
-    std::vector<const btTypedConstraint*> holds;
-    for (const Course& course : members_) course.of->list_holds(holds);
-    std::vector<int> islands;
-    for (const btTypedConstraint* hold : holds) {
-        islands.push_back(hold->getRigidBodyA().getIslandTag());
-        islands.push_back(hold->getRigidBodyB().getIslandTag());
-    }
-    std::sort(islands.begin(), islands.end());
-    return islands;
-}
-
 DUCTILE_INLINE void Members::apply_forces() {
     for (const std::size_t i : watched_) { // structures are
         if (members_[i].member == nullptr) members_[i].of->apply_forces();

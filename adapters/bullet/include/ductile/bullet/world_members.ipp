@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of world.hpp that concern members and structures; which of its constraints members bear,
-// and what they met that they cannot be asked. A part of members.ipp.
+// Bodies of world.hpp that concern members and structures; what of these is open and closed, which
+// of its constraints they bear, and what they met that they cannot be asked. A part of members.ipp.
 #pragma once
 
 #include "ductile/bullet/front_solver.hpp"
@@ -45,6 +45,41 @@ DUCTILE_INLINE void World::remove(Member& member) {
     if (members == nullptr || !members->has(member)) return;
     supervisor().remove(&member);
     members->remove(member);
+}
+
+DUCTILE_INLINE bool Members::any_open() const {
+    return std::any_of(members_.begin(), members_.end(),
+                       [](const Course& course) { return !course.of->whole(); });
+}
+DUCTILE_INLINE double Members::closed_work() const {
+    if (closed_work_) return *closed_work_;
+    double sum = 0;
+    for (const Course& course : members_) sum += course.closed;
+    closed_work_ = sum;
+    return sum;
+}
+
+DUCTILE_INLINE double Members::unmissed_work() const {
+    if (unmissed_work_) return *unmissed_work_;
+    double least = 0;
+    for (const Course& course : members_) {
+        const double work = course.unmissed;
+        if (least == 0 || (work > 0 && work < least)) least = work;
+    }
+    unmissed_work_ = least;
+    return least;
+}
+
+DUCTILE_INLINE std::vector<int> Members::held_islands() const {
+    std::vector<const btTypedConstraint*> holds;
+    for (const Course& course : members_) course.of->list_holds(holds);
+    std::vector<int> islands;
+    for (const btTypedConstraint* hold : holds) {
+        islands.push_back(hold->getRigidBodyA().getIslandTag());
+        islands.push_back(hold->getRigidBodyB().getIslandTag());
+    }
+    std::sort(islands.begin(), islands.end());
+    return islands;
 }
 
 DUCTILE_INLINE void Members::note_doubts(Course& course) {

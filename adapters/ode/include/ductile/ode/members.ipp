@@ -51,9 +51,13 @@ DUCTILE_INLINE void Members::body_came(dBodyID body) {
 }
 
 DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
-    for (const Course& course : members_) {
-        section = course.of->section_of(joint);
-        if (section >= 0) return course.of->key_of(section);
+    const AttachedBodies bodies = joint.bodies();
+    for (dBodyID body : {bodies.a, bodies.b}) {
+        const std::size_t* owner = owners_.find(body);
+        if (owner == nullptr) continue;
+        const Divisible& of = *members_[*owner].of;
+        section = of.section_of(joint);
+        if (section >= 0) return of.key_of(section);
     }
     return nullptr;
 }
@@ -250,12 +254,13 @@ DUCTILE_INLINE double Members::count_vibration() const {
 }
 
 DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
+    const std::size_t before = happened_.size();
     for (const Course& course : members_) {
         for (const int section : course.of->close_held(when, ahead)) {
             happened_.push_back({course.of, section, EventKind::fused});
         }
     }
-    note_bodies();
+    if (happened_.size() > before) note_bodies();
 }
 
 DUCTILE_INLINE void Members::tell(const Tell& tell) {
