@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "adapters/bullet_engine.hpp"
@@ -310,6 +313,129 @@ TEST_CASE("Locality: what a member meets within the frame comes along", "[frame]
         CAPTURE(step, ends[0], ends[1]);
         CHECK(ends[0] > 10);
         CHECK(ends[1] == Approx(ends[0]).epsilon(0.01));
+    }
+}
+
+TEST_CASE("Locality: a second post that is struck within the frame takes what it takes alone",
+          "[frame][member]") {
+    // 400 kg go from one post to the next in a part of a frame
+    const auto absorbed = [](int boxes, int standing) {
+        Scene scene(boxes, false);
+        std::vector<std::unique_ptr<bullet::Member>> posts;
+        const auto stand = [&](const btVector3& foot) -> btRigidBody& {
+            auto around = std::make_unique<btCompoundShape>();
+            scene.shapes.push_back(std::make_unique<btBoxShape>(
+                btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+            around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
+            return scene.body(std::move(around), 0, foot);
+        };
+        const btTransform upright(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
+        for (const double z : {-9.0, -8.8}) {
+            posts.push_back(std::make_unique<bullet::Member>(stand({0, 0, btScalar(z)}),
+                                                             test::heavy_post(10, 4000), upright,
+                                                             MemberBox{0.05, 0.05}));
+            scene.world->add(*posts.back());
+        }
+        for (int i = 0; i < standing; ++i) stand({btScalar(100 + i), 0, 0});
+        btRigidBody& ball = scene.ball({0, btScalar(1.9), btScalar(-9.6)}, {0, 0, 15});
+        ball.setMassProps(400, ball.getLocalInertia());
+        for (int i = 0; i < 3; ++i) scene.world->step(1.0 / 30);
+        std::vector<double> result;
+        for (const auto& post : posts) result.push_back(post->absorbed_energy());
+        return result;
+    };
+    const std::vector<double> alone = absorbed(0, 0);
+    CHECK(alone[0] > 100);
+    CHECK(alone[1] > 100);
+    for (const auto& among : {absorbed(200, 0), absorbed(0, 200)}) {
+        CHECK(among[0] == Approx(alone[0]).epsilon(rough ? 0.02 : 1e-6));
+        CHECK(among[1] == Approx(alone[1]).epsilon(rough ? 0.02 : 1e-6));
+    }
+}
+
+TEST_CASE("Locality: a listener may take a body out while others stand aside", "[frame][member]") {
+    for (const bool few : {false, true}) { // some of many that move; all that moves of what stands
+        Scene scene(few ? 0 : 200, false);
+        for (int i = 0; few && i < 200; ++i) {
+            scene.body(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0,
+                       {btScalar(100 + 3 * i), 1, 0});
+        }
+        auto around = std::make_unique<btCompoundShape>();
+        scene.shapes.push_back(
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+        around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
+        btRigidBody& foot = scene.body(std::move(around), 0, {0, 0, -9});
+        bullet::Member post(
+            foot, test::heavy_post(10, 4000),
+            btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2))),
+            MemberBox{0.05, 0.05});
+        scene.world->add(post);
+        btRigidBody& ball = scene.ball({0, btScalar(1.9), btScalar(-9.6)}, {0, 0, 5});
+        scene.world->on_event([&](const auto& event) {
+            if (event.kind == EventKind::split && ball.isInWorld()) {
+                scene.engine.removeRigidBody(&ball);
+            }
+        });
+        for (int i = 0; i < 30; ++i) scene.world->step(frame);
+        CHECK_FALSE(ball.isInWorld());
+        CHECK(post.whole());
+        CHECK(post.absorbed_energy() > 1);
+        CHECK(scene.world->time() == Approx(30 * frame));
+    }
+}
+
+TEST_CASE("Locality: a frame that throws leaves all at one time", "[frame][member]") {
+    // a listener's word as a section splits, or who makes what hangs on the member then
+    for (const bool by_maker : {false, true}) {
+        CAPTURE(by_maker);
+        Scene scene(200, false);
+        auto around = std::make_unique<btCompoundShape>();
+        scene.shapes.push_back(
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+        around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
+        btRigidBody& foot = scene.body(std::move(around), 0, {0, 0, -9});
+        bullet::Member post(
+            foot, test::heavy_post(10, 4000),
+            btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2))),
+            MemberBox{0.05, 0.05});
+        bool armed = true;
+        btRigidBody& lamp = scene.ball({0, btScalar(2.3), btScalar(-9)}, {0, 0, 0});
+        post.attach(2, [&](btRigidBody& piece, const btTransform& place) {
+            if (by_maker && armed && post.open_sections() > 0) {
+                armed = false;
+                throw std::runtime_error("of the maker");
+            }
+            return std::make_unique<btPoint2PointConstraint>(piece, lamp, place.getOrigin(),
+                                                             btVector3(0, btScalar(-0.3), 0));
+        });
+        scene.world->add(post);
+        scene.world->on_event([&](const auto& event) {
+            if (by_maker || event.kind != EventKind::split || !std::exchange(armed, false)) return;
+            throw std::runtime_error("of the listener");
+        });
+        scene.ball({0, btScalar(1.2), btScalar(-9.6)}, {0, 0, 5});
+        btRigidBody& far = scene.ball({0, 40, 0}, {3, 0, 0});
+        int frames = 0;
+        std::string word;
+        double way = 0;
+        for (; frames < 20 && word.empty(); ++frames) {
+            const double from = double(far.getCenterOfMassPosition().x());
+            try {
+                scene.world->step(frame);
+            } catch (const std::runtime_error& error) {
+                word = error.what();
+            }
+            way = double(far.getCenterOfMassPosition().x()) - from;
+        }
+        CHECK(word == (by_maker ? "of the maker" : "of the listener"));
+        // until the ball touches the post: 0.35 m
+        const double within = 0.35 / 5 - frame * (frames - 1);
+        CHECK(within > 0.1 * frame);
+        CHECK(within < 0.9 * frame);
+        CHECK(way == Approx(3 * within).epsilon(1e-3));
+        for (int i = 0; i < 30; ++i) scene.world->step(frame);
+        CHECK(post.absorbed_energy() > 500);
+        CHECK(std::abs(scene.world->ledger().unexplained()) < (rough ? 2 : 1e-6));
     }
 }
 

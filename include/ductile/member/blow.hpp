@@ -50,7 +50,11 @@
 // told as `astray`, from a band of
 //
 //   N² (1 - 0.7 R) to 1.06 N²,   of a free one that is pushed at one place from (1 - 8 U_s/U) of it
-//   on
+//   on, of a free one that is struck e of its length off its middle from (1 - 0.9 √e) of it, of a
+//   clamped one that is struck a from there, with b > a behind it, from a/b of it
+//
+// as halves of a free one that are not alike, and what hangs over by more than what bends, go on
+// swinging by themselves.
 //
 // The exponents of n and N² keep to a chain of joints where a cantilever is struck at its end,
 // which is to bear E up to that of its profile (P39).
@@ -170,6 +174,15 @@ struct Wave {
         1.0, most * most * (before + behind) / (6 * member.bending_stiffness() * per_impulse));
 }
 
+/// Of N², from which the band of a member begins that is clamped at one end or not held at all.
+[[nodiscard]] inline double least_of_one_sided(const Member& member, int segment) {
+    const double half = member.segment(segment).length / 2, middle = member.place(segment) - half,
+                 before = middle + half, behind = member.length() - middle - half;
+    if (member.clamped()) return behind > before ? before / behind : 1;
+    const double off = std::abs(middle - member.length() / 2) - half;
+    return off > 0 ? 1 - 0.9 * std::sqrt(off / member.length()) : 1;
+}
+
 } // namespace detail
 
 enum class Striker {
@@ -272,8 +285,9 @@ struct MemberBlow {
         if (striker != Striker::sticks && blow.in_all > 1) {
             blow.in_all /= std::min(std::sqrt(collapse), std::pow(blow.in_all, 0.6));
         }
+        if (supports.empty()) least = detail::least_of_one_sided(member, segment);
         if (striker == Striker::pushes_alone && !held) {
-            least = std::max(0.0, 1 - 8 * sheared / blow.impulse_energy);
+            least = std::clamp(1 - 8 * sheared / blow.impulse_energy, 0.0, least);
         }
     }
     if (in_shape > 0) {

@@ -72,14 +72,6 @@ class DivisibleList : public None {
                            [&](const Course& course) { return course.of == &member; });
     }
     [[nodiscard]] bool empty() const noexcept override { return members_.empty(); }
-    [[nodiscard]] const void* key_of(const typename None::Joint& joint,
-                                     int& section) const override {
-        for (const Course& course : members_) {
-            section = course.of->section_of(joint);
-            if (section >= 0) return course.of->key_of(section);
-        }
-        return nullptr;
-    }
     [[nodiscard]] bool any_open() const override {
         return std::any_of(members_.begin(), members_.end(),
                            [](const Course& course) { return !course.of->whole(); });
@@ -112,6 +104,12 @@ class DivisibleList : public None {
     }
 
   protected:
+    /// As key_of, of one of them.
+    [[nodiscard]] static const void* key_in(const Course& course, const typename None::Joint& joint,
+                                            int& section) {
+        section = course.of->section_of(joint);
+        return section >= 0 ? course.of->key_of(section) : nullptr;
+    }
     template <class Visit>
     void over_holds(const Visit& visit) const {
         for (const Course& course : members_) course.of->over_holds(visit);

@@ -111,7 +111,8 @@ class Supervisor {
     [[nodiscard]] std::size_t place(const void* joint) const;
 
     std::vector<Entry> joints_;
-    mutable std::size_t next_ = 0; ///< place that is likely asked for next, as they are in turn
+    mutable std::size_t next_ = 0; ///< place that was asked for last: again, or the one behind it
+    int idle_ = 0;                 ///< of the joints
     Watch<double> watch_;
     Warn warn_;
     JointWarning unreliable_{unreliable_warning, unreliable_advice};

@@ -24,7 +24,8 @@ DUCTILE_INLINE Supervisor::Supervisor(Warn warn) : warn_(std::move(warn)) {
 }
 DUCTILE_INLINE void Supervisor::set_idle(const void* joint, bool idle) {
     const auto found = find(joint);
-    if (found != joints_.end()) found->idle = idle;
+    if (found == joints_.end()) return;
+    idle_ += int(idle) - int(std::exchange(found->idle, idle));
 }
 DUCTILE_INLINE std::size_t Supervisor::add(const void* joint, std::string name, Ask ask) {
     if (find(joint) != joints_.end()) {
@@ -38,6 +39,7 @@ DUCTILE_INLINE std::size_t Supervisor::add(const void* joint, std::string name, 
 DUCTILE_INLINE void Supervisor::remove(const void* joint) {
     const auto found = find(joint);
     if (found == joints_.end()) return;
+    set_idle(joint, false);
     found->joint = nullptr;
     removed_ = true;
     if (!looking_) forget_removed();
@@ -52,6 +54,7 @@ DUCTILE_INLINE bool Supervisor::knows(const void* joint) const {
 DUCTILE_INLINE void Supervisor::look(double time, const std::function<bool(const void*)>& whom) {
     time_ = time;
     watch_.go_on(time);
+    if (std::size_t(idle_) == joints_.size()) return; // nothing to ask for
     const Looking guard(looking_);
     const std::size_t here = joints_.size(); // a listener may add more
     for (std::size_t i = 0; i < here; ++i) {
@@ -84,7 +87,7 @@ DUCTILE_INLINE std::size_t Supervisor::place(const void* joint) const {
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t at = (next_ + i) % count;
         if (joints_[at].joint != joint) continue;
-        next_ = at + 1;
+        next_ = at;
         return at;
     }
     return count;

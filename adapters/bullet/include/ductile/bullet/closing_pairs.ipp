@@ -112,7 +112,8 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
     const btBroadphaseInterface& broadphase = *world.getBroadphase();
     const bool has_leaves = scope_ == nullptr && typeid(broadphase) == typeid(btDbvtBroadphase);
     detail::ShapeReach shapes;
-    std::vector<btRigidBody*> struck, far;
+    const bool all_look = scope_ != nullptr && !members_->empty(); // still ones are in no scope
+    std::vector<btRigidBody*> fast, struck, far;
     pairs_.clear();
     for (int i = 0; i < count; ++i) {
         btRigidBody* body =
@@ -120,14 +121,18 @@ DUCTILE_INLINE void ClosingContactsFinder::list_pairs(btDiscreteDynamicsWorld& w
         if (body == nullptr || body->getBroadphaseHandle() == nullptr) continue;
         const btScalar way = reach(*body, h, shapes);
         const double most = double(way / h + fastest);
-        const bool counts = most * most > 2 * double(body->getInvMass()) * least;
-        if (counts && is_struck_on(*body)) struck.push_back(body);
+        if (most * most > 2 * double(body->getInvMass()) * least) fast.push_back(body);
         if (has_leaves && !stands(*body) && !detail::stays_in_leaf(*body, way)) {
             far.push_back(body);
         }
     }
     btOverlappingPairCache& cache = *world.getPairCache();
-    const bool by_pairs = has_leaves && far.size() < struck.size();
+    bool by_pairs = false;
+    for (btRigidBody* body : fast) {
+        if (all_look || is_struck_on(*body)) struck.push_back(body);
+        by_pairs = has_leaves && far.size() < struck.size();
+        if (by_pairs) break;
+    }
     for (btRigidBody* body : by_pairs ? far : struck) {
         struct Near final : btBroadphaseAabbCallback {
             std::vector<btCollisionObject*> found;
@@ -169,11 +174,11 @@ DUCTILE_INLINE void ClosingContactsFinder::add_pair(btDiscreteDynamicsWorld& wor
                                                     btCollisionObject& one, btCollisionObject& two,
                                                     btScalar h, double least,
                                                     detail::ShapeReach& shapes) {
+    if (detail::pushed(one) == nullptr && detail::pushed(two) == nullptr) return;
     btRigidBody *of_one = btRigidBody::upcast(&one), *of_two = btRigidBody::upcast(&two);
     const bool one_counts = of_one != nullptr && is_struck_on(*of_one),
                two_counts = of_two != nullptr && is_struck_on(*of_two);
-    const bool moves = detail::pushed(one) != nullptr || detail::pushed(two) != nullptr;
-    if (!(one_counts || two_counts) || !moves) return;
+    if (!(one_counts || two_counts)) return;
     // seen from what moves, and from that which comes first
     const auto rank = [](bool counts, const btCollisionObject& object) {
         return std::tuple(!counts, detail::pushed(object) == nullptr, object.getWorldArrayIndex());

@@ -27,6 +27,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
@@ -81,6 +82,10 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     // ---- what the world's steps ask
 
     DUCTILE_INLINE void require_known() const override;
+    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
+                                                    int& section) const override;
+    [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
+    [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     [[nodiscard]] bool is_member(const btCollisionObject& object) const override {
         return owners_.contains(&object);
     }
@@ -99,6 +104,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
 
   private:
     using Course = DivisibleTicks;
+    void count_own(int before);
     [[nodiscard]] Course* course_of(const btCollisionObject& object);
     void add(Course course);
     void remove(std::size_t course);
@@ -138,6 +144,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     std::vector<Asleep> asleep_; ///< on clamped members
     /// Length of the last tick in which contacts acted on a clamped member [s].
     std::unordered_map<const btPersistentManifold*, double> acted_;
+    mutable std::optional<double> closed_work_, unmissed_work_; ///< as long as bodies stay
 };
 
 } // namespace ductile::bullet

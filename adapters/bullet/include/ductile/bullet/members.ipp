@@ -12,6 +12,7 @@
 #include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/bullet/plastic_constraint.hpp"
 
 namespace ductile::bullet {
 
@@ -37,6 +38,8 @@ DUCTILE_INLINE void Members::add(Divisible& structure) {
 DUCTILE_INLINE void Members::remove(std::size_t i) {
     forget(*members_[i].of);
     here_.clear();
+    closed_work_.reset();
+    unmissed_work_.reset();
     for (Course& course : members_) course.here = false;
     const std::size_t last = members_.size() - 1;
     for (const std::size_t leaves : {i, last}) {
@@ -78,6 +81,8 @@ DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
 }
 DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
+    closed_work_.reset();
+    unmissed_work_.reset();
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
     course.bodies.clear();
     for (const PieceBody& piece : course.of->all_pieces()) {
@@ -111,6 +116,24 @@ DUCTILE_INLINE std::vector<int> Members::held_islands() const {
     });
     std::sort(islands.begin(), islands.end());
     return islands;
+}
+
+DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
+    for (const btRigidBody* body : {&joint.getRigidBodyA(), &joint.getRigidBodyB()}) {
+        const auto owner = owners_.find(body);
+        if (owner == owners_.end()) continue;
+        if (const void* key = key_in(members_[owner->second], joint, section)) return key;
+    }
+    return nullptr;
+}
+
+DUCTILE_INLINE double Members::closed_work() const {
+    if (!closed_work_) closed_work_ = DivisibleList::closed_work();
+    return *closed_work_;
+}
+DUCTILE_INLINE double Members::unmissed_work() const {
+    if (!unmissed_work_) unmissed_work_ = DivisibleList::unmissed_work();
+    return *unmissed_work_;
 }
 
 DUCTILE_INLINE void Members::apply_forces() {
@@ -308,13 +331,20 @@ DUCTILE_INLINE bool Members::look_blow(double dt) {
     return any;
 }
 
+/// They themselves brought and took bodies, and nobody else since there were `before` in the world.
+DUCTILE_INLINE void Members::count_own(int before) {
+    if (objects_ == before) objects_ = world_.getNumCollisionObjects();
+}
+
 DUCTILE_INLINE void Members::open_found() {
+    const int before = world_.getNumCollisionObjects();
     for (Course* course : here_) {
         if (course->found.empty()) continue;
         course->of->open(course->found, ahead_);
         happened(*course, std::exchange(course->found, {}), EventKind::split);
         note_bodies(std::size_t(course - members_.data()));
     }
+    count_own(before);
 }
 
 DUCTILE_INLINE double Members::count_vibration() const {
@@ -325,6 +355,7 @@ DUCTILE_INLINE double Members::count_vibration() const {
 
 DUCTILE_INLINE bool Members::close_held(Closing when) {
     bool changed = false;
+    const int before = world_.getNumCollisionObjects();
     for (Course* course : here_) {
         const std::vector<int> closed = course->of->close_held(when, ahead_);
         if (closed.empty()) continue;
@@ -332,6 +363,7 @@ DUCTILE_INLINE bool Members::close_held(Closing when) {
         happened(*course, closed, EventKind::fused);
         note_bodies(std::size_t(course - members_.data()));
     }
+    count_own(before);
     return changed;
 }
 

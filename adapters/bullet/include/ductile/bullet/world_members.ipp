@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Bodies of world.hpp that concern members and structures; which of its constraints members bear,
-// and what they met that they cannot be asked. A part of members.ipp.
+// Bodies of world.hpp that concern members and structures; what of these is open and closed, which
+// of its constraints they bear, and what they met that they cannot be asked. A part of members.ipp.
 #pragma once
 
 #include "ductile/bullet/front_solver.hpp"

@@ -124,8 +124,12 @@ class WorldParts final : public PartEngine {
     void find_risk();
     [[nodiscard]] bool is_little() const;
     void try_all();
+    [[nodiscard]] bool most_stands() const;
+    /// All that moves is ticked alone.
+    void leave_what_stands();
     [[nodiscard]] std::vector<btRigidBody*> find_trouble(std::vector<char>& chosen);
     void add_reached(std::vector<char>& chosen) const;
+    void look_at(const LocalScope& scope);
     void narrow_to(LocalScope& scope);
     void widen();
     void go_back_alone(LocalScope& scope);
@@ -138,6 +142,8 @@ class WorldParts final : public PartEngine {
     /// Those of bodies that the last tick touched; true where there were some, and the tick was put
     /// back.
     [[nodiscard]] bool join_touched();
+    /// Something threw.
+    void break_off();
 
     [[nodiscard]] std::span<btPersistentManifold* const> manifolds();
     [[nodiscard]] bool concerns(const btCollisionObject& object);
@@ -154,6 +160,7 @@ class WorldParts final : public PartEngine {
     void find_thrown();
     void see_coming();
     void close_held(Closing when);
+    void see_bodies();
     void do_again();
     const PartMotion& tell();
     /// `place`: of the joint among the world's constraints.
@@ -170,6 +177,7 @@ class WorldParts final : public PartEngine {
     DrivenWays ways_;
     double length_ = 0;               ///< of the frame [s]
     double time_ = 0, kept_time_ = 0; ///< since its begin [s]
+    bool kept_ = false;               ///< what is kept may be put back
     HeldForces forces_;
     WorldSnapshot snapshot_;
     ClosingContactsFinder closing_;

@@ -166,6 +166,7 @@ DUCTILE_INLINE bool WorldParts::may_be_put_back() {
 }
 
 DUCTILE_INLINE void WorldParts::save() {
+    kept_ = true;
     kept_time_ = time_;
     meter_.keep();
     snapshot_.take(world_, front_.usual(), scope());
@@ -230,7 +231,7 @@ DUCTILE_INLINE void WorldParts::tick_with_met(double h, bool ahead) {
     } while (local_ && join_touched());
 }
 
-DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
+DUCTILE_INLINE const PartMotion& WorldParts::part(double h) try {
     if (local_ && scope_.bodies().empty() && members_->empty()) { // all stands
         motion_.rigid_work = motion_.contact_work = motion_.closed = 0;
         motion_.contact_lost = false;
@@ -269,6 +270,9 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) {
     if (members_->empty()) motion_.closed = closed_early(h);
     look_at_pushes(h);
     return motion_;
+} catch (...) { // a callback's, or of who makes what holds on to a member
+    break_off();
+    throw;
 }
 
 DUCTILE_INLINE std::span<btPersistentManifold* const> WorldParts::manifolds() {
@@ -291,12 +295,18 @@ DUCTILE_INLINE void WorldParts::look_at_pushes(double h) {
     motion_.contact_lost = held_.lost(world_, manifolds(), h, concerned);
 }
 
-DUCTILE_INLINE void WorldParts::accept(double h) {
+DUCTILE_INLINE void WorldParts::accept(double h) try {
+    kept_ = false;
     half_ = h / 2;
     held_.accept();
     if (h > 0) meter_.rings_down(members_->count_vibration());
+    const int objects = world_.getNumCollisionObjects();
     accept_(h);
+    if (world_.getNumCollisionObjects() != objects) see_bodies(); // a listener took some out
     if (h > 0 && !members_->empty()) close_held(Closing::after_step);
+} catch (...) { // a listener's
+    break_off();
+    throw;
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {

@@ -15,8 +15,28 @@ DUCTILE_INLINE void WorldParts::decide() {
     at_risk_ = true;
     if (!ways_.empty() || calls_others_ || islands_ == nullptr) return;
     if (!members_->empty() && !closes_ && !members_->any_open()) return;
-    if (!is_little() || !LocalTick::is_possible(world_, front_.usual())) return;
-    try_all();
+    if (!LocalTick::is_possible(world_, front_.usual())) return;
+    if (is_little()) {
+        try_all();
+    } else if (most_stands()) {
+        leave_what_stands();
+    }
+}
+
+/// Bullet's own ticks look at all that stands, too. What joints without members told of themselves
+/// is known from a part of all.
+DUCTILE_INLINE bool WorldParts::most_stands() const {
+    constexpr std::size_t many = 16; // bodies by one that moves
+    return !members_->empty() &&
+           MovingBodies::all(world_).size() * many < std::size_t(world_.getNumCollisionObjects());
+}
+DUCTILE_INLINE void WorldParts::leave_what_stands() {
+    const auto bodies = MovingBodies::all(world_);
+    scope_.set(world_, {bodies.begin(), bodies.end()});
+    local_ = true;
+    outside_work_ = 0;
+    outside_.clear();
+    look_at(scope_);
 }
 
 /// Whether less than half of the bodies are in islands of suspects, as the last tick had them.
@@ -57,7 +77,7 @@ DUCTILE_INLINE void WorldParts::try_all() {
         world_.clearForces();
     } else {
         scope_.set(world_, std::move(trouble));
-        local_ = narrow_ = true;
+        local_ = true;
         meter_.keep_step(double(btScalar(length_)));
         go_back_alone(scope_);
         frame_.leave_out(scope_);
@@ -204,11 +224,16 @@ DUCTILE_INLINE void WorldParts::go_back_alone(LocalScope& scope) {
     meter_.moved_back();
 }
 
-DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
+DUCTILE_INLINE void WorldParts::look_at(const LocalScope& scope) {
+    narrow_ = true;
     meter_.set_scope(&scope);
-    meter_.narrow();
     closing_.set_scope(&scope);
     members_->set_scope(&scope);
+}
+
+DUCTILE_INLINE void WorldParts::narrow_to(LocalScope& scope) {
+    look_at(scope);
+    meter_.narrow();
     outside_work_ = 0;
     outside_.clear();
     for (btTypedConstraint* constraint : constraints_of(world_, nullptr)) {
@@ -256,6 +281,18 @@ DUCTILE_INLINE void WorldParts::join(const std::vector<btRigidBody*>& met) {
     scope_.set(world_, std::move(joined));
     narrow_to(scope_);
     forces_act_ = false;
+}
+
+/// The frame ends here: what stood aside went through all of it.
+DUCTILE_INLINE void WorldParts::break_off() {
+    if (!local_) return;
+    if (std::exchange(kept_, false)) put_back();
+    see_members();
+    std::vector<btRigidBody*> aside;
+    for (btRigidBody* body : MovingBodies::all(world_)) {
+        if (!scope_.has(*body)) aside.push_back(body);
+    }
+    if (!aside.empty()) join(aside);
 }
 
 DUCTILE_INLINE std::size_t WorldParts::number(int place, const PlasticConstraint& joint) {

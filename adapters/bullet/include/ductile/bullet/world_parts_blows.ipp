@@ -10,6 +10,7 @@ namespace ductile::bullet {
 
 DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
+    kept_ = false;
     const double before = meter_.held().total();
     members_->open_found();
     see_members();
@@ -21,6 +22,7 @@ DUCTILE_INLINE void WorldParts::do_again() {
 /// Members are as whole as they are without it.
 DUCTILE_INLINE void WorldParts::begin_blow() {
     if (members_->empty()) return;
+    kept_ = false;
     close_held(Closing::before_blow);
     save();
     members_->begin_blow(closing_.found_bodies(), !thrown_.bodies().empty(), touching_);
@@ -59,13 +61,18 @@ DUCTILE_INLINE void WorldParts::see_coming() {
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
     const double before = meter_.held().total();
     if (!members_->close_held(when)) return;
-    see_members();
+    see_bodies();
     meter_.bodies_rearranged(before);
+}
+
+/// Some came or went between two parts.
+DUCTILE_INLINE void WorldParts::see_bodies() {
+    see_members();
     closing_.forget_open();
     forces_.forget_gone(world_);
 }
 
-DUCTILE_INLINE const PartMotion& WorldParts::blow() {
+DUCTILE_INLINE const PartMotion& WorldParts::blow() try {
     closing_.show_struck(manifolds());
     if (members_->empty() && local_) save();
     begin_blow();
@@ -77,6 +84,9 @@ DUCTILE_INLINE const PartMotion& WorldParts::blow() {
     motion_.closed = 0;
     motion_.contact_lost = false;
     return tell();
+} catch (...) { // as a part's
+    break_off();
+    throw;
 }
 
 } // namespace ductile::bullet

@@ -48,6 +48,8 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     void rearranged() override { note_bodies(); }
     DUCTILE_INLINE void leave() override;
     [[nodiscard]] std::span<const dBodyID> bodies() const noexcept override { return bodies_; }
+    [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
+                                                    int& section) const override;
     DUCTILE_INLINE void body_left(dBodyID body) override;
     DUCTILE_INLINE void body_came(dBodyID body) override;
     [[nodiscard]] DUCTILE_INLINE bool hang_together(dBodyID a, dBodyID b) const override;

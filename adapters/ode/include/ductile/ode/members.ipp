@@ -46,6 +46,15 @@ DUCTILE_INLINE void Members::body_came(dBodyID body) {
     for (const Course& course : members_) course.of->body_came(body);
 }
 
+DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& section) const {
+    const AttachedBodies bodies = joint.bodies();
+    for (dBodyID body : {bodies.a, bodies.b}) {
+        const std::size_t* owner = owners_.find(body);
+        if (owner == nullptr) continue;
+        if (const void* key = key_in(members_[*owner], joint, section)) return key;
+    }
+    return nullptr;
+}
 DUCTILE_INLINE bool Members::hang_together(dBodyID a, dBodyID b) const {
     if (members_.empty() || a == nullptr || b == nullptr) return false;
     const std::size_t *of_a = owners_.find(a), *of_b = owners_.find(b);
@@ -210,10 +219,13 @@ DUCTILE_INLINE double Members::count_vibration() const {
 }
 
 DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
+    bool changed = false;
     for (const Course& course : members_) {
-        happened(course, course.of->close_held(when, ahead), EventKind::fused);
+        const std::vector<int> closed = course.of->close_held(when, ahead);
+        changed = changed || !closed.empty();
+        happened(course, closed, EventKind::fused);
     }
-    note_bodies();
+    if (changed) note_bodies();
 }
 
 } // namespace ductile::ode
