@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 #
-# Installs what is missing, builds, among it every public header alone, and runs every test. The
-# benchmarks are compiled without being made (bench/run.sh makes them).
+# Installs what is missing, builds, and runs every test; then compiles every public header alone, with the
+# second compiler. The benchmarks are compiled without being made (bench/run.sh makes them).
 #   tests/run.sh [PRESET ...]     presets of CMakePresets.json; default: release
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -13,3 +13,6 @@ for preset in "${@:-release}"; do
     cmake --build --preset "$preset"
     ctest --preset "$preset" -j "$(nproc)"
 done
+echo "== headers"
+cmake --preset clang -DDUCTILE_TESTS=ON -DDUCTILE_EXAMPLES=OFF -DDUCTILE_BENCH=OFF >/dev/null
+cmake --build --preset clang --target headers

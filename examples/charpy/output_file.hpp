@@ -25,7 +25,9 @@ class OutputFile {
     OutputFile(const std::string& option, const std::string& path) : path_(path) {
         if (path_.empty()) return;
         temporary_ = path_ + ".part";
-        if (std::filesystem::is_directory(path_)) fail(option, "is a folder");
+        const auto there = std::filesystem::status(path_);
+        // renamed onto a device, the file would take its place
+        if (exists(there) && !is_regular_file(there)) fail(option, "is no regular file");
         stream_.open(temporary_);
         if (!stream_) fail(option, "cannot be written");
     }

@@ -16,6 +16,10 @@ std::string read_file(const std::filesystem::path& file) {
 }
 
 void write_file(const std::filesystem::path& file, std::string_view bytes) {
+    const auto there = std::filesystem::status(file);
+    if (exists(there) && !is_regular_file(there)) { // a device would be replaced
+        throw Error("cannot write " + file.string() + ": is no regular file");
+    }
     std::filesystem::path part = file;
     part += ".part";
     std::error_code ignored;

@@ -43,7 +43,7 @@ inline RolledCage rolled_cage(bool elastic) {
             const auto& [y, z] = outline[k];
             at[std::size_t(i)][k] = model.node(RolledCage::place(0.8 * i, y, z));
         }
-        for (const std::size_t floor : {0, 5}) cage.floor.push_back(at[std::size_t(i)][floor]);
+        for (const std::size_t floor : {0U, 5U}) cage.floor.push_back(at[std::size_t(i)][floor]);
     }
     int number = 0;
     const auto member = [&](NodeId a, NodeId b) {
@@ -60,7 +60,7 @@ inline RolledCage rolled_cage(bool elastic) {
         member(at[i - 1][5], at[i][4]);
         member(at[i - 1][2], at[i][3]);
     }
-    for (const std::size_t i : {0, 1, 3}) member(at[i][0], at[i][3]);
+    for (const std::size_t i : {0U, 1U, 3U}) member(at[i][0], at[i][3]);
     return cage;
 }
 

@@ -131,7 +131,7 @@ int main(int argc, char** argv) try {
                    "of the one scene; none: all that is no part of one's own");
     app.add_option("--out", out, "folder of the replays and index.html; none: no replays");
     app.add_flag("--glb", glb, "replays as glTF too");
-    app.require_subcommand(0, int(scenes.size()));
+    app.require_subcommand(0, scenes.size());
     app.fallthrough();
     for (const auto& scene : scenes) {
         CLI::App& command = *app.add_subcommand(scene->name(), scene->about());

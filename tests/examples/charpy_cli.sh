@@ -11,8 +11,8 @@ cd "$dir" || exit 1
 passed=0
 failed=0
 
-check() { # what, condition's exit status
-    if [ "$2" -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $1"; fi
+check() { # condition's exit status, before what `$(...)` in the words would make of it; what
+    if [ "$1" -eq 0 ]; then passed=$((passed + 1)); else failed=$((failed + 1)); echo "FAILED: $2"; fi
 }
 
 refuses() { # words the one line must contain, arguments
@@ -20,10 +20,10 @@ refuses() { # words the one line must contain, arguments
     shift
     "$charpy" "$@" >out 2>err
     local status=$?
-    [ $status -ne 0 ]; check "$*: exits non-zero" $?
-    [ "$(wc -l <err)" -eq 1 ] && [ ! -s out ]; check "$*: one line, got: $(cat err out)" $?
-    grep -qF -- "$words" err; check "$*: says '$words', got: $(cat err)" $?
-    [ "$(ls | grep -cvE '^(out|err)$')" -eq 0 ]; check "$*: leaves nothing behind: $(ls)" $?
+    [ $status -ne 0 ]; check $? "$*: exits non-zero"
+    [ "$(wc -l <err)" -eq 1 ] && [ ! -s out ]; check $? "$*: one line, got: $(cat err out)"
+    grep -qF -- "$words" err; check $? "$*: says '$words', got: $(cat err)"
+    [ "$(ls | grep -cvE '^(out|err)$')" -eq 0 ]; check $? "$*: leaves nothing behind: $(ls)"
 }
 
 one="--engine bullet --method plastic-hinge"
@@ -39,7 +39,7 @@ refuses '--parts = 3: must be an even number' $one --parts 3
 refuses '--max-plastic-rotation = 0 rad' $one --max-plastic-rotation 0
 refuses '--method: rubber not in' --engine bullet --method rubber
 refuses '--engine: physx not in' --engine physx
-refuses '--solver = direct: must be mlcp, si or nncg with --engine bullet' $one --solver direct
+refuses '--solver = direct: must be mlcp, island, si or nncg with --engine bullet' $one --solver direct
 refuses '--solver = nncg: must be direct or quick with --engine ode' --engine ode --solver nncg
 refuses '--solver: newton not in' $one --solver newton
 refuses '--hammer-thickness = 0.04 m: must be in [0.002, 0.04) m' $one --hammer-thickness 0.04
@@ -65,28 +65,33 @@ refuses '--engine: must be left out here' --engine ode --table figures
 refuses '--precision = float: must be double with --engine ode' --engine ode --precision float
 refuses '--json = /nowhere/at/all.json: cannot be written' $one --json /nowhere/at/all.json --csv good.csv
 refuses '--csv = /nowhere/at/all.csv: cannot be written' $one --json good.json --csv /nowhere/at/all.csv
-refuses '--json = .: is a folder' $one --json .
+refuses '--json = .: is no regular file' $one --json .
+pipes=$(mktemp -d)
+mkfifo "$pipes/pipe"
+refuses "--json = $pipes/pipe: is no regular file" $one --json "$pipes/pipe"
+[ -p "$pipes/pipe" ]; check $? "a pipe stays one"
+rm -r "$pipes"
 refuses '--yield-stress' $one --yield-stress strong
 refuses '--no-such-option' $one --no-such-option
 
 "$charpy" --engine bullet --method plastic-hinge --frame 0.0001 --json out.json --csv out.csv >out 2>err
-check "a good run exits with zero" $?
+check $? "a good run exits with zero"
 for key in engine solver precision method frame_s friction solves wall_s hammer_loss_J plastic_work_J \
     plastic_rotation_rad specimen_kinetic_J friction_work_J unexplained_J broken believed left_J; do
-    grep -q "\"$key\":" out.json; check "the JSON has $key" $?
+    grep -q "\"$key\":" out.json; check $? "the JSON has $key"
 done
-[ "$(wc -l <out.csv)" -gt 100 ]; check "the history has samples" $?
+[ "$(wc -l <out.csv)" -gt 100 ]; check $? "the history has samples"
 "$charpy" --engine ode --method elastic-plastic-2 --ccd on >out 2>err
-check "a run with --ccd exits with zero" $?
-grep -q -- '--ccd on: no effect' out; check "--ccd says that it has no effect" $?
+check $? "a run with --ccd exits with zero"
+grep -q -- '--ccd on: no effect' out; check $? "--ccd says that it has no effect"
 "$charpy" --table figures >out 2>err
-check "the table of published figures exits with zero" $?
+check $? "the table of published figures exits with zero"
 for file in published.txt published.md published.csv; do
     for method in rigid zero-limits spring spring2 hinge-motor plastic-hinge elastic-plastic elastic-plastic-2; do
-        [ "$(grep -cE "[ ,|]$method[ ,|]" figures/$file)" -ge 4 ]; check "$file has $method on every engine" $?
+        [ "$(grep -cE "[ ,|]$method[ ,|]" figures/$file)" -ge 4 ]; check $? "$file has $method on every engine"
     done
 done
-"$charpy" --help | grep -q -- '--yield-stress.*\[Pa\]'; check "the help states units" $?
+"$charpy" --help | grep -q -- '--yield-stress.*\[Pa\]'; check $? "the help states units"
 
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -4,6 +4,7 @@
 // after 96 J. What it writes into the working directory, the page's own tests read
 // (examples/replay/page/test).
 #include <ode/ode.h>
+#include <sys/stat.h>
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -270,7 +271,14 @@ TEST_CASE("replay: bad input is one clear line, and nothing is half-written", "[
     CHECK_FALSE(std::filesystem::exists("x.glb"));
     // a folder where the file should be
     std::filesystem::create_directory("replay_folder.html");
-    CHECK_THROWS_WITH(replay::write_html(record(rotor, 60, 0.2), "replay_folder.html"),
+    const replay::Recording more = record(rotor, 60, 0.2);
+    CHECK_THROWS_WITH(replay::write_html(more, "replay_folder.html"),
                       Contains("cannot write replay_folder.html"));
     CHECK_FALSE(std::filesystem::exists("replay_folder.html.part"));
+    // a pipe, or a device: what is renamed onto it takes its place
+    REQUIRE(mkfifo("replay_pipe.glb", 0600) == 0);
+    CHECK_THROWS_WITH(replay::write_glb(more, "replay_pipe.glb"),
+                      Contains("cannot write replay_pipe.glb"));
+    CHECK(std::filesystem::is_fifo("replay_pipe.glb"));
+    std::filesystem::remove("replay_pipe.glb");
 }

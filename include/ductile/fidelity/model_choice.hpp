@@ -67,8 +67,8 @@ StepFit<S> fit_axis(const AxisSystem<S>& system, const AxisEvent<S>& event, S ta
     rigid.stiffness = std::numeric_limits<S>::infinity();
     const PeakResponse<S> exact = peak_response(system, event);
     const S ignored = response_error(exact, peak_response(rigid, event));
-    StepFit<S> without, with;
-    if (ignored <= target) without = choose_step(rigid, event, exact, target, longest);
+    const StepFit<S> without = choose_step(rigid, event, exact, target, longest);
+    StepFit<S> with;
     if (!std::isinf(system.stiffness)) {
         const S felt = event.own_mass > 0 ? event.own_mass : system.mass;
         const S period = 2 * std::numbers::pi_v<S> * std::sqrt(felt / system.stiffness);

@@ -118,12 +118,14 @@ struct StepFit {
 
 /// The longest step, up to `longest` [s], from which on every finer one keeps the error of
 /// `rehearse(model, event, dt)` against `exact` within `target`. Steps are looked at 3 % apart,
-/// down to a quarter of the answer: errors that happen to change sign do not count.
+/// down to a quarter of the answer: errors that happen to change sign do not count. None is looked
+/// at where the model itself is off, which the finest step comes to.
 /// @throws std::invalid_argument where a number is out of range.
 template <std::floating_point S>
 [[nodiscard]] StepFit<S> choose_step(const AxisSystem<S>& model, const AxisEvent<S>& event,
                                      const PeakResponse<S>& exact, S target, S longest) {
     check::positive("choose_step.longest", longest, "s");
+    if (!(response_error(exact, peak_response(model, event)) <= target)) return {};
     constexpr S finer = S(0.97), window = S(0.25);
     StepFit<S> fit;
     for (S dt = longest; fit.dt == 0 || dt >= window * fit.dt; dt *= finer) {
@@ -139,7 +141,7 @@ template <std::floating_point S>
         } else {
             fit.error = std::max(fit.error, error);
         }
-        // no step is fine enough where the model itself is off: it takes too many to find out
+        // it takes too many steps to find one that is fine enough
         if (std::isinf(found.displacement) && !std::isinf(exact.displacement)) return {};
     }
     return fit;
