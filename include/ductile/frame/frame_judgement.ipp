@@ -128,8 +128,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.error += std::max(motion.others_work, 0.0);
         }
         if (!(h <= shortest)) {
-            judged.error +=
-                detail::contact_share * std::abs(motion.contact_work - motion.own.contact_work);
+            judged.error += detail::contact_share * std::abs(motion.contact_work);
         }
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }

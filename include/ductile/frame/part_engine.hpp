@@ -34,7 +34,6 @@ struct OwnForces {
     double stops = 0, stop = 0; ///< by the motor that misplaces most [J], s [s]
     double peak = 0;            ///< the largest force of one over its mean [-]
     double late = 0;            ///< of a force, that was a damper's later than it should be [-]
-    double contact_work = 0;    ///< that contacts took that give way, or hold by now [J]
 
     /// @param force mean, of the part  @param mass of the row, > 0  @param start, end u, u'
     /// @param counts of U
@@ -67,7 +66,6 @@ struct OwnForces {
         swings = std::max(swings, other.swings);
         peak = std::max(peak, other.peak);
         late = std::max(late, other.late);
-        contact_work += other.contact_work;
         if (!(other.stops > stops)) return;
         stops = other.stops;
         stop = other.stop;
@@ -92,7 +90,7 @@ struct PartMotion {
                                ///< that is no drift that they pull back [J]
     double stored = 0;         ///< that elastic ones hold [J]
     OwnForces own = {};        ///< of the engine's springs and motors
-    double contact_work = 0;   ///< that contacts of islands with plastic joints took [J]
+    double contact_work = 0;   ///< that hard contacts of islands with plastic joints took [J]
     bool contact_lost = false; ///< one that pushed at first had opened at the end
     /// The farthest that a body turned which a contact pushed; 0 where that could misplace nothing
     /// that matters [rad].

@@ -63,7 +63,6 @@ struct SoftContact {
     void tell(OwnForces& forces, double force, double start, double end, double h) const noexcept {
         constexpr double most = 1e3, held = 0.01;
         if (!(force > 0)) return;
-        forces.contact_work -= force * h * (start + end) / 2;
         const double moved = std::clamp(force * h / std::abs(end - start), mass, most * mass);
         const double followed = std::max(stiffness, damping * damping / moved);
         forces.add_spring(followed, moved, force, start, end, h, held);

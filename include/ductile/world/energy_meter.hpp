@@ -89,7 +89,8 @@ struct MeteredContact {
     /// Of points of such bodies that are not in the list of bodies, A's less B's [m/s]: what these
     /// give is no work of the contact.
     Vector3<double> driven_velocity{0, 0, 0};
-    double taken = 0; ///< what the normal force took, once it is booked [J]
+    double taken = 0;   ///< what the normal force took, once it is booked [J]
+    bool gives = false; ///< it is a spring and a damper (frame/soft_contact.hpp)
 };
 
 class EnergyMeter {
@@ -131,12 +132,13 @@ class EnergyMeter {
     /// They were put elsewhere, by what is no step.
     void moved_back();
     /// Of the last step alone: what plastic joints took beside their flow, damping and what they
-    /// store, but for driven ones, and what contacts of bodies took that count [J].
+    /// store, but for driven ones [J].
     [[nodiscard]] double step_of_plastic_joints() const noexcept { return step_plastic_; }
     /// What rigid rows of the engine's joints took in it, on islands with plastic joints [J].
     [[nodiscard]] double step_of_other_joints() const noexcept { return step_others_; }
     /// What elastic joints held at its end [J].
     [[nodiscard]] double stored() const noexcept { return last_.elastic; }
+    /// What contacts of bodies that count took in it, but for those that give way [J].
     [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;

@@ -353,6 +353,7 @@ DUCTILE_INLINE double EnergyMeter::step_of_contacts(
     const std::function<bool(const void*)>& counts) const {
     double sum = 0;
     for (const MeteredContact& contact : contacts_) {
+        if (contact.gives) continue;
         if (counts(contact.a) || counts(contact.b)) sum += contact.taken;
     }
     return sum;

@@ -13,6 +13,7 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/energy_meter.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/soft_contacts.hpp"
 
 namespace ductile::bullet {
 
@@ -177,6 +178,7 @@ DUCTILE_INLINE void EnergyMeter::list_contacts_of(const btPersistentManifold& ma
                    scaled(double(point.m_appliedImpulse), to_core(point.m_normalWorldOnB)),
                    to_core(lateral),
                    a.isKinematicObject() || b.isKinematicObject()};
+        contact.gives = gives_way(point);
         if (!contact.driven) continue;
         contact.driven_velocity = difference(detail::driven_velocity(a, contact.point_a),
                                              detail::driven_velocity(b, contact.point_b));

@@ -45,8 +45,10 @@ class EnergyMeter final : public ductile::EnergyMeter {
     /// To be called before the constraint is destroyed; what it stores leaves as with a body.
     void remove(const PlasticConstraint& constraint) { std::erase(plastic_, &constraint); }
     /// Names a contact joint of the coming step, so that its work is booked as contact and
-    /// friction.
-    void add_contact(dJointID joint, const dContactGeom& geometry) { contacts_[joint] = geometry; }
+    /// friction. `gives`: it gives way.
+    void add_contact(dJointID joint, const dContactGeom& geometry, bool gives = false) {
+        contacts_[joint] = {geometry, gives};
+    }
     /// Of the scope's bodies alone, or first of those that are out of it, which have no plastic
     /// joint; null: of all. What the others hold is taken to stay.
     void set_scope(const LocalScope* scope, bool out = false) {
@@ -72,6 +74,11 @@ class EnergyMeter final : public ductile::EnergyMeter {
         OwnAxes own; ///< as it is solved
     };
 
+    struct ContactPlace {
+        dContactGeom geometry;
+        bool gives;
+    };
+
     DUCTILE_INLINE void list_bodies(std::vector<MeteredBody>& bodies) const override;
     DUCTILE_INLINE void list_plastic_joints(
         std::vector<MeteredPlasticJoint>& joints) const override;
@@ -95,7 +102,7 @@ class EnergyMeter final : public ductile::EnergyMeter {
     bool out_ = false;
     std::vector<dBodyID> bodies_;
     std::vector<const PlasticConstraint*> plastic_;
-    AddressMap<dContactGeom> contacts_;    ///< by joint
+    AddressMap<ContactPlace> contacts_;    ///< by joint
     std::vector<WatchedJoint> watched_;    ///< each joint of the watched bodies, once
     AddressBook seen_;                     ///< these
     std::vector<dJointFeedback> feedback_; ///< to be lent

@@ -122,15 +122,16 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
 DUCTILE_INLINE void EnergyMeter::list_contacts(double dt,
                                                std::vector<MeteredContact>& contacts) const {
     for (const auto& [id, bodies, feedback, lent, own] : watched_) {
-        const dContactGeom* contact = contacts_.find(id);
+        const ContactPlace* contact = contacts_.find(id);
         if (contact == nullptr) continue;
         const auto& [a, b, reversed] = bodies;
-        const Vector3<double> point = to_core(contact->pos);
-        const Vector3<double> normal = to_core(contact->normal);
+        const Vector3<double> point = to_core(contact->geometry.pos);
+        const Vector3<double> normal = to_core(contact->geometry.normal);
         const Vector3<double> impulse = scaled(dt, to_core(feedback->f1));
         const Vector3<double> pressed = scaled(dot(normal, impulse), normal);
         contacts.push_back({a, b, point, point, pressed, difference(impulse, pressed),
                             detail::drives(a) || detail::drives(b)});
+        contacts.back().gives = contact->gives;
     }
 }
 

@@ -215,7 +215,7 @@ DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
 DUCTILE_INLINE void WorldParts::solve(double h, bool blow,
                                       const std::function<void(double)>& step) {
     for (const NamedContact& named : of_.contacts) {
-        of_.meter.add_contact(named.joint, named.contact.geom);
+        of_.meter.add_contact(named.joint, named.contact.geom, named.by_law);
     }
     of_.meter.look_at_contacts();
     damp(blow ? 0 : h / length_);
