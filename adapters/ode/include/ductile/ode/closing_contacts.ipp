@@ -153,6 +153,7 @@ DUCTILE_INLINE bool ContactClosing::rebounds(const NamedContact& named) const {
 
 DUCTILE_INLINE std::optional<SoftContact> ContactClosing::softness(const NamedContact& named,
                                                                    double frame) const {
+    if (bodies.a == nullptr) return {}; // both stand
     const dSurfaceParameters& surface = named.contact.surface;
     const dWorldID world = dBodyGetWorld(bodies.a);
     const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
