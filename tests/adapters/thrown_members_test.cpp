@@ -7,7 +7,10 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <initializer_list>
+#include <memory>
+#include <vector>
 
 using namespace ductile;
 using namespace ductile::test;
@@ -136,6 +139,30 @@ TEST_CASE(
         scene.go(0.3, frame);
         CHECK(scene.world.run().brought_in > 30); // 1.2 m/s in a frame of 1/30 s: 36 J
         CHECK_FALSE(scene.world.run().believed());
+    }
+}
+
+TEST_CASE("what a joint brought in does not hang on where its successors lie", "[member]") {
+    constexpr double frame = 1.0 / 240;
+    const auto brought_in = [](std::size_t taken) {
+        std::vector<std::unique_ptr<char[]>> room; // of the heap, in pieces of all sizes
+        for (std::size_t i = 0; i < taken; ++i) {
+            room.push_back(std::make_unique<char[]>(16 + 16 * (i % 64)));
+        }
+        for (std::size_t i = 0; i < taken; i += 3) room[i].reset();
+        BallOnHung scene(heavy_post(10, 5000));
+        scene.let_go();
+        scene.strike(scene.hung, 2);
+        scene.go(0.1, frame);
+        scene.strike(scene.hung, 0);
+        scene.let_go(false);
+        scene.go(0.3, frame);
+        return scene.world.run().brought_in;
+    };
+    const double usual = brought_in(0);
+    for (const std::size_t taken : {100u, 1000u, 5000u, 20000u}) {
+        CAPTURE(taken);
+        CHECK(brought_in(taken) == usual);
     }
 }
 

@@ -58,7 +58,8 @@ struct MeteredPlasticJoint {
 
 /// What all rows of a joint did in a step, about the centres of mass, world axes.
 struct MeteredJoint {
-    const void* joint = nullptr; ///< an address, as taken_by wants it
+    const void* joint = nullptr;   ///< an address, as taken_by wants it
+    const void* account = nullptr; ///< one that stays while it is made anew; null: `joint`
     const void* a = nullptr;
     const void* b = nullptr;
     Vector3<double> force_a{0, 0, 0};  ///< [N]

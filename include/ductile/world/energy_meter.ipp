@@ -320,7 +320,8 @@ DUCTILE_INLINE void EnergyMeter::book_joint(const MeteredJoint& joint, double dt
         const double own = work(joint.b, joint.own_force, joint.own_torque_b, dt) -
                            work(joint.a, joint.own_force, joint.own_torque_a, dt);
         const bool plastic = is_plastic(joint.a) || is_plastic(joint.b);
-        book_pair({joint.joint, nullptr}, plastic, joint.powered ? taken - own : taken);
+        const void* account = joint.account != nullptr ? joint.account : joint.joint;
+        book_pair({account, nullptr}, plastic, joint.powered ? taken - own : taken);
         if (plastic) step_others_ += taken - own;
     }
     const std::size_t number = taken_numbers_.enter(joint.joint);

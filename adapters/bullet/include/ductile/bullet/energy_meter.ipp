@@ -138,6 +138,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
         const PlasticConstraint* plastic = as_plastic(constraint);
         MeteredJoint& joint = joints.emplace_back();
         joint = {&constraint,
+                 feedback, // what hangs on a member keeps it (attachment.hpp)
                  &constraint.getRigidBodyA(),
                  &constraint.getRigidBodyB(),
                  to_core(feedback->m_appliedForceBodyA),

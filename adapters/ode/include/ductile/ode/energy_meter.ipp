@@ -80,6 +80,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
         }
         MeteredJoint& joint = joints.emplace_back();
         joint = {id,
+                 nullptr,
                  bodies.a,
                  bodies.b,
                  to_core(feedback->f1),
@@ -101,6 +102,7 @@ DUCTILE_INLINE void EnergyMeter::list_joints(std::vector<MeteredJoint>& joints) 
         const OutsideForce& outside = constraint->outside_force();
         MeteredJoint& joint = joints.emplace_back();
         joint = {constraint->id(),
+                 nullptr,
                  a,
                  b,
                  outside.force,
