@@ -164,7 +164,7 @@ int main(int argc, char** argv) try {
                .plan = frame({.layer = layer}),
                .steps = 600,
                .loses_column = true});
-    bench.run({.name = "column lost, hinges form",
+    bench.run({.name = "column lost and hinges form",
                .plan = frame({.slab = 6000, .layer = layer}),
                .steps = 600,
                .loses_column = true});
