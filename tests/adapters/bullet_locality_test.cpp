@@ -245,6 +245,20 @@ struct Scene : Site {
         world->step(frame);
         worst = std::max(worst, world->frame().solves());
     }
+    /// A box of 2 m that stands there for good.
+    btRigidBody& foot(const btVector3& place) {
+        auto around = std::make_unique<btCompoundShape>();
+        shapes.push_back(
+            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
+        around->addChildShape(at({0, 1, 0}), shapes.back().get());
+        return body(std::move(around), 0, place);
+    }
+    /// It as a clamped member, not in the world yet.
+    [[nodiscard]] std::unique_ptr<bullet::Member> member_on(const btVector3& place) {
+        const btTransform upright(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
+        return std::make_unique<bullet::Member>(foot(place), test::heavy_post(10, 4000), upright,
+                                                MemberBox{0.05, 0.05});
+    }
 };
 
 } // namespace
@@ -257,15 +271,7 @@ TEST_CASE("Locality: others keep their bits while a member is open", "[frame][me
         btRigidBody* far;
 
         WithMember(int boxes, bool struck) : Scene(boxes, false) {
-            auto around = std::make_unique<btCompoundShape>();
-            shapes.push_back(std::make_unique<btBoxShape>(
-                btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
-            around->addChildShape(at({0, 1, 0}), shapes.back().get());
-            btRigidBody& foot = body(std::move(around), 0, {0, 0, -9});
-            const btTransform upright(
-                btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
-            member = std::make_unique<bullet::Member>(foot, test::heavy_post(10, 4000), upright,
-                                                      MemberBox{0.05, 0.05});
+            member = member_on({0, 0, -9});
             far = &ball({0, btScalar(struck ? 1.9 : 60), btScalar(-9.6)},
                         {0, 0, btScalar(struck ? 5 : 0)});
             world->add(*member);
@@ -322,21 +328,11 @@ TEST_CASE("Locality: a second post that is struck within the frame takes what it
     const auto absorbed = [](int boxes, int standing) {
         Scene scene(boxes, false);
         std::vector<std::unique_ptr<bullet::Member>> posts;
-        const auto stand = [&](const btVector3& foot) -> btRigidBody& {
-            auto around = std::make_unique<btCompoundShape>();
-            scene.shapes.push_back(std::make_unique<btBoxShape>(
-                btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
-            around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
-            return scene.body(std::move(around), 0, foot);
-        };
-        const btTransform upright(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2)));
         for (const double z : {-9.0, -8.8}) {
-            posts.push_back(std::make_unique<bullet::Member>(stand({0, 0, btScalar(z)}),
-                                                             test::heavy_post(10, 4000), upright,
-                                                             MemberBox{0.05, 0.05}));
+            posts.push_back(scene.member_on({0, 0, btScalar(z)}));
             scene.world->add(*posts.back());
         }
-        for (int i = 0; i < standing; ++i) stand({btScalar(100 + i), 0, 0});
+        for (int i = 0; i < standing; ++i) scene.foot({btScalar(100 + i), 0, 0});
         btRigidBody& ball = scene.ball({0, btScalar(1.9), btScalar(-9.6)}, {0, 0, 15});
         ball.setMassProps(400, ball.getLocalInertia());
         for (int i = 0; i < 3; ++i) scene.world->step(1.0 / 30);
@@ -360,15 +356,8 @@ TEST_CASE("Locality: a listener may take a body out while others stand aside", "
             scene.body(std::make_unique<btBoxShape>(btVector3(1, 1, 1)), 0,
                        {btScalar(100 + 3 * i), 1, 0});
         }
-        auto around = std::make_unique<btCompoundShape>();
-        scene.shapes.push_back(
-            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
-        around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
-        btRigidBody& foot = scene.body(std::move(around), 0, {0, 0, -9});
-        bullet::Member post(
-            foot, test::heavy_post(10, 4000),
-            btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2))),
-            MemberBox{0.05, 0.05});
+        const std::unique_ptr<bullet::Member> made = scene.member_on({0, 0, -9});
+        bullet::Member& post = *made;
         scene.world->add(post);
         btRigidBody& ball = scene.ball({0, btScalar(1.9), btScalar(-9.6)}, {0, 0, 5});
         scene.world->on_event([&](const auto& event) {
@@ -389,15 +378,8 @@ TEST_CASE("Locality: a frame that throws leaves all at one time", "[frame][membe
     for (const bool by_maker : {false, true}) {
         CAPTURE(by_maker);
         Scene scene(200, false);
-        auto around = std::make_unique<btCompoundShape>();
-        scene.shapes.push_back(
-            std::make_unique<btBoxShape>(btVector3(btScalar(0.05), btScalar(1), btScalar(0.05))));
-        around->addChildShape(at({0, 1, 0}), scene.shapes.back().get());
-        btRigidBody& foot = scene.body(std::move(around), 0, {0, 0, -9});
-        bullet::Member post(
-            foot, test::heavy_post(10, 4000),
-            btTransform(btQuaternion(btVector3(1, 0, 0), btScalar(-std::acos(-1.0) / 2))),
-            MemberBox{0.05, 0.05});
+        const std::unique_ptr<bullet::Member> made = scene.member_on({0, 0, -9});
+        bullet::Member& post = *made;
         bool armed = true;
         btRigidBody& lamp = scene.ball({0, btScalar(2.3), btScalar(-9)}, {0, 0, 0});
         post.attach(2, [&](btRigidBody& piece, const btTransform& place) {

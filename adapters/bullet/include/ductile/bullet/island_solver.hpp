@@ -120,6 +120,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void read_own();
     [[nodiscard]] Vector6<double> began(int body) const;
     [[nodiscard]] Vector6<double> pushed(int body) const;
+    [[nodiscard]] double began(const btSolverConstraint& row) const;
+    [[nodiscard]] double pushed(const btSolverConstraint& row) const;
     void load_contacts();
     void soften(const SoftContact& soft, const btSolverConstraint& row,
                 const btManifoldPoint& point, solve::IslandRow& normal);

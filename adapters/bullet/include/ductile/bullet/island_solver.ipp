@@ -330,10 +330,7 @@ DUCTILE_INLINE void IslandSolver::load_contacts() {
 /// The normal row of one that gives way, with the mean of its forces.
 DUCTILE_INLINE void IslandSolver::soften(const SoftContact& soft, const btSolverConstraint& row,
                                          const btManifoldPoint& point, solve::IslandRow& normal) {
-    const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
-    const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
-    const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
-    const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+    const double comes = began(row), push = pushed(row);
     const double turns = turned(&point), start = comes + turns;
     const LawRow law = soft.row(-double(point.getDistance()), start, 2 * half_);
     normal.target = law.target + turns - comes - push;

@@ -172,6 +172,16 @@ DUCTILE_INLINE Vector6<double> IslandSolver::pushed(int body) const {
     return detail::twist(moved.m_externalForceImpulse, moved.m_externalTorqueImpulse);
 }
 
+/// The same along a row.
+DUCTILE_INLINE double IslandSolver::began(const btSolverConstraint& row) const {
+    return detail::on_a(row).dot(began(row.m_solverBodyIdA)) +
+           detail::on_b(row).dot(began(row.m_solverBodyIdB));
+}
+DUCTILE_INLINE double IslandSolver::pushed(const btSolverConstraint& row) const {
+    return detail::on_a(row).dot(pushed(row.m_solverBodyIdA)) +
+           detail::on_b(row).dot(pushed(row.m_solverBodyIdB));
+}
+
 /// Springs have the mean of their forces over the part, whatever they are limited to.
 DUCTILE_INLINE void IslandSolver::load_springs() {
     spring_rows_.clear();
@@ -196,10 +206,7 @@ DUCTILE_INLINE void IslandSolver::load_springs() {
             const btSolverConstraint& row =
                 m_tmpSolverNonContactConstraintPool[int(of_this) + place];
             if (!(row.m_jacDiagABInv > 0) || !(stiffness > 0 || damping > 0)) continue;
-            const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
-            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
-            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
-            const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+            const double comes = began(row), push = pushed(row);
             const LawRow law =
                 law_row(stiffness, damping, double(row.m_jacDiagABInv), strain, comes, 2 * half_);
             solve::IslandRow& held = island_.rows[first_read_ + of_this + std::size_t(place)];
@@ -235,10 +242,8 @@ DUCTILE_INLINE void IslandSolver::read_own() {
         const double strength = motor.upper / h;
         if (std::isinf(strength) || !(strength > 0) || motor.lower != -motor.upper) continue;
         const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[i];
-        const double push = detail::on_a(row).dot(pushed(row.m_solverBodyIdA)) +
-                            detail::on_b(row).dot(pushed(row.m_solverBodyIdB));
-        own_.add_motor(strength, double(row.m_jacDiagABInv), motor.impulse / h, motor.target + push,
-                       h);
+        own_.add_motor(strength, double(row.m_jacDiagABInv), motor.impulse / h,
+                       motor.target + pushed(row), h);
     }
 }
 
@@ -254,9 +259,7 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
             solve::IslandRow& turned = island_.rows[first_read_ + now + std::size_t(k)];
             if (!std::isinf(turned.lower) || !std::isinf(turned.upper)) continue;
             const int a = row.m_solverBodyIdA, b = row.m_solverBodyIdB;
-            const Vector6<double> on_a = detail::on_a(row), on_b = detail::on_b(row);
-            const double comes = on_a.dot(began(a)) + on_b.dot(began(b));
-            const double push = on_a.dot(pushed(a)) + on_b.dot(pushed(b));
+            const double comes = began(row), push = pushed(row);
             const double leaves = detail::twist(end.move_a, end.turn_a).dot(began(a)) +
                                   detail::twist(end.move_b, end.turn_b).dot(began(b));
             const double asked = turned.target + comes + push; // in the middle
