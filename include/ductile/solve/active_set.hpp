@@ -36,8 +36,9 @@ class ActiveSet {
   public:
     /// From the sides, impulses and multipliers in the island. True where each row is where it
     /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
-    /// them. `near`: all but a few are there already.
-    [[nodiscard]] bool solve(IslandSystem& system, bool near = false);
+    /// them. `near`: all but a few are there already. `patience`: rounds without fewer rows in the
+    /// wrong place; few where the way that follows is a short one.
+    [[nodiscard]] bool solve(IslandSystem& system, bool near = false, int patience = 6);
 
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 

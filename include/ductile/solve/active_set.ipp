@@ -28,9 +28,8 @@ inline constexpr double settled = 1e-7;     ///< of the fastest row: a slip has 
 
 } // namespace detail
 
-DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool near) {
-    constexpr int most = 30;    // rounds
-    constexpr int patience = 6; // of them, without fewer rows in the wrong place
+DUCTILE_INLINE bool ActiveSet::solve(IslandSystem& system, bool near, int patience) {
+    constexpr int most = 30; // rounds
     system_ = &system;
     rounds_ = 0;
     begin();

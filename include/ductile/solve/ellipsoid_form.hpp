@@ -147,7 +147,6 @@ struct EllipsoidForm {
         for (int i = 0; i < v.count(); ++i) v.row[i].impulse = to.point[i];
     }
 
-  private:
     static double square_gauge(const BlockView& v) noexcept {
         double square = 0;
         for (int i = 0; i < v.count(); ++i) {
@@ -170,6 +169,8 @@ struct EllipsoidForm {
         }
         return along;
     }
+
+  private:
     /// x + r/d.
     static void aim_at(const BlockView& v, Vector6<double>& aim, Vector6<double>& metric) noexcept {
         for (int i = 0; i < v.count(); ++i) {

@@ -34,6 +34,7 @@
 
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/certificate.hpp"
+#include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
 #include "ductile/solve/island_system.hpp"
@@ -64,6 +65,7 @@ class IslandSolver {
     IslandSystem system_;
     ActiveSet active_set_;
     LaggedFriction lagged_friction_;
+    InteriorPoint interior_point_;
     ProximalNewton proximal_newton_;
     std::vector<double> start_, best_;
     std::vector<Side> sides_; ///< at the start, as are the blocks

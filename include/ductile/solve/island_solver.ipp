@@ -88,7 +88,9 @@ DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
 }
 
 DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
-    const bool settled = active_set_.solve(system_);
+    constexpr int usual = 6, short_way = 3; // the interior point takes no more than a few rounds
+    const int patience = InteriorPoint::serves(system_.island()) ? short_way : usual;
+    const bool settled = active_set_.solve(system_, false, patience);
     report.rounds += active_set_.rounds();
     return settled;
 }
@@ -126,8 +128,9 @@ DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report, const std::vector
     return settled;
 }
 
-/// Proximal Newton, polished by the active set; each pass goes on from the best so far, from where
-/// the lagged way often settles that did not from the start.
+/// The interior point where it serves, or else proximal Newton, polished by the active set; each
+/// pass goes on from the best so far, from where the lagged way often settles that did not from the
+/// start.
 DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
     const int most = touch ? 2 : 4;
     constexpr double cold = 0.1, warm = 1e-4;
@@ -144,6 +147,12 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
     };
     begin_from(start_);
     best_ = start_;
+    if (InteriorPoint::serves(system_.island())) {
+        interior_point_.solve(system_);
+        ++report.safe_ways;
+        static_cast<void>(keep());
+        if (polished(report) || keep() <= solved_well) return;
+    }
     for (int pass = 0; pass < most; ++pass) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
         ++report.safe_ways;

@@ -165,6 +165,17 @@ TEST_CASE("Random islands with surfaces, bounds and contacts meet the definition
     }
 }
 
+/// Largest difference of two answers' velocities, of the largest velocity.
+double apart(const Island& island, const Island& other) {
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < island.bodies.size(); ++i) {
+        const Vector6<double>& v = island.bodies[i].velocity;
+        largest = std::max(largest, v.cwiseAbs().maxCoeff());
+        apart = std::max(apart, (v - other.bodies[i].velocity).cwiseAbs().maxCoeff());
+    }
+    return apart / largest;
+}
+
 TEST_CASE("The safe way alone solves what the active set solves", "[solve]") {
     for (const bool sections : {false, true}) {
         islands::Random make{std::mt19937(5), 1e-4, 5, sections};
@@ -178,15 +189,34 @@ TEST_CASE("The safe way alone solves what the active set solves", "[solve]") {
             ProximalNewton safe;
             safe.solve(system, 0.1, false);
             CHECK(safe.iterations() <= 200);
-            double largest = 0, apart = 0;
-            for (std::size_t i = 0; i < island.bodies.size(); ++i) {
-                const Vector6<double>& v = island.bodies[i].velocity;
-                largest = std::max(largest, v.cwiseAbs().maxCoeff());
-                apart = std::max(apart, (v - other.bodies[i].velocity).cwiseAbs().maxCoeff());
-            }
-            CHECK(apart <= 1e-6 * largest);
+            CHECK(apart(island, other) <= 1e-6);
         }
     }
+}
+
+TEST_CASE("The interior point alone solves what the active set solves, from anywhere", "[solve]") {
+    islands::Random make{std::mt19937(5), 1e-4, 5};
+    constexpr int islands = 60, of_one = 20;
+    int iterations = 0;
+    for (int repeat = 0; repeat < islands; ++repeat) {
+        Island island = make.island(1 + repeat, true), cold = island, warm = island;
+        REQUIRE(InteriorPoint::serves(island));
+        IslandSolver solver;
+        CHECK(solver.solve(island).solved);
+        for (std::size_t i = 0; i < warm.rows.size(); ++i) { // most of them out of bounds
+            warm.rows[i].impulse = i % 3 == 0 ? -1e3 : island.rows[i].impulse;
+        }
+        for (Island* other : {&cold, &warm}) {
+            IslandSystem system;
+            system.open(*other);
+            InteriorPoint safe;
+            safe.solve(system);
+            INFO("island " << repeat << (other == &warm ? ", warm" : ", cold"));
+            iterations += safe.iterations();
+            CHECK(apart(island, *other) <= 1e-6);
+        }
+    }
+    CHECK(iterations <= 2 * islands * of_one);
 }
 
 TEST_CASE("Friction in random islands: solved means Coulomb's cone with the normals of the answer",
@@ -241,7 +271,7 @@ TEST_CASE("A rigid grid that is struck is solved, however many of its joints flo
                 CHECK(report.solved);
                 CHECK(violation(island, a) <= 1e-4 * report.scale);
                 CHECK(islands::energy(island, a) <= 0);
-                CHECK(report.factorisations <= 150);
+                CHECK(report.factorisations <= 60);
             }
         }
     }
@@ -398,7 +428,7 @@ TEST_CASE("Friction is a disc: pushed at any angle a box slides at the same forc
 
 TEST_CASE("In a struck chain of rigid joints a flow is found in fewer steps than there are joints",
           "[solve]") {
-    constexpr int joints = 100, chains = 20, of_one = 80; // some 2,500 in all where it goes along
+    constexpr int joints = 100, chains = 20, of_one = 40; // some 2,500 in all where it goes along
     for (const double strength : {3.0, 30.0, 100.0}) {
         std::mt19937 random(1);
         int factorisations = 0;
