@@ -73,7 +73,7 @@ DUCTILE_INLINE void WorldParts::see_bodies() {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() try {
-    closing_.show_struck(manifolds());
+    closing_.show_struck(world_);
     if (members_->empty() && local_) save();
     begin_blow();
     for (tick_with_met(blow_length, false); members_->look_blow(blow_length);
