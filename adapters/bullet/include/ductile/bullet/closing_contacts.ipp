@@ -109,16 +109,20 @@ DUCTILE_INLINE void ClosingContactsFinder::look_ahead(btDiscreteDynamicsWorld& w
 }
 
 DUCTILE_INLINE void ClosingContactsFinder::show_struck(btDiscreteDynamicsWorld& world) const {
-    for (const detail::StruckPoint& point : struck_) {
-        const btCollisionObject *a = point.a, *b = point.b;
+    for (const auto& [a, b, normal, on_b, gap] : struck_) {
         const btManifoldArray manifolds = manifolds_between(world, *a, *b);
         if (manifolds.size() == 0) continue;
-        const btCollisionObjectWrapper of_a(nullptr, a->getCollisionShape(), a,
-                                            a->getWorldTransform(), -1, -1),
-            of_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
-        btManifoldResult result(&of_a, &of_b);
+        const btCollisionObject *one = manifolds[0]->getBody0(), *two = manifolds[0]->getBody1();
+        const btCollisionObjectWrapper of_one(nullptr, one->getCollisionShape(), one,
+                                              one->getWorldTransform(), -1, -1),
+            of_two(nullptr, two->getCollisionShape(), two, two->getWorldTransform(), -1, -1);
+        btManifoldResult result(&of_one, &of_two);
         result.setPersistentManifold(manifolds[0]);
-        result.addContactPoint(point.normal, point.on_b, btScalar(point.gap));
+        if (two == b) {
+            result.addContactPoint(normal, on_b, btScalar(gap));
+        } else { // Bullet wants it on the second one
+            result.addContactPoint(-normal, on_b + btScalar(gap) * normal, btScalar(gap));
+        }
     }
 }
 
