@@ -24,6 +24,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <type_traits>
 #include <vector>
 
 #include "ductile/vocabulary/address_book.hpp"
@@ -241,6 +242,20 @@ class EnergyMeter {
     std::vector<MeteredJoint> joints_;
     std::vector<MeteredContact> contacts_;
 };
+
+/// Does what bodies_rearranged books of `meter`, if there is one; of a change that tells whether it
+/// was one, where it was. Returns that.
+template <class Change>
+bool rearrange(EnergyMeter* meter, const Change& change, Account account = Account::members) {
+    const double before = meter != nullptr ? meter->held().total() : 0;
+    if constexpr (std::is_void_v<decltype(change())>) {
+        change();
+    } else if (!change()) {
+        return false;
+    }
+    if (meter != nullptr) meter->bodies_rearranged(before, account);
+    return true;
+}
 
 } // namespace ductile
 

@@ -44,7 +44,6 @@
 // Not thread-safe.
 #pragma once
 
-#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
@@ -106,7 +105,7 @@ class ClosingContactsFinder {
     }
     /// Has Bullet know what the last `find` saw of points that strike, where its algorithms know
     /// one a tick: all shapes but boxes on boxes.
-    void show_struck(std::span<btPersistentManifold* const> manifolds) const;
+    void show_struck(btDiscreteDynamicsWorld& world) const;
     /// Some contact of bodies that the last `find` saw may give way, and swing.
     [[nodiscard]] bool any_soft() const noexcept { return any_soft_; }
     /// Bodies that the last `find` saw may have ended.
@@ -160,7 +159,7 @@ class ClosingContactsFinder {
         double way, speed; ///< until their nearest points are closed [m], closing [m/s]
     };
     /// A contact of the two did in the last tick.
-    [[nodiscard]] bool pushes(btDiscreteDynamicsWorld& world, const Pair& pair) const;
+    [[nodiscard]] static bool pushes(btDiscreteDynamicsWorld& world, const Pair& pair);
     /// When, in the last part of `h` [s], the first of these closed that was passed; `h`: none was.
     [[nodiscard]] double passed(btDiscreteDynamicsWorld& world, double h, double apart);
     const std::unique_ptr<Divisibles>& members_;

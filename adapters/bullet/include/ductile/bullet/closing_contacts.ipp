@@ -5,6 +5,7 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
+#include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 
 #include <algorithm>
 #include <cmath>
@@ -107,22 +108,21 @@ DUCTILE_INLINE void ClosingContactsFinder::look_ahead(btDiscreteDynamicsWorld& w
     }
 }
 
-DUCTILE_INLINE void ClosingContactsFinder::show_struck(
-    std::span<btPersistentManifold* const> manifolds) const {
-    for (const detail::StruckPoint& point : struck_) {
-        const btCollisionObject *a = point.a, *b = point.b;
-        const auto theirs = [a, b](const btPersistentManifold* manifold) {
-            const auto *one = manifold->getBody0(), *two = manifold->getBody1();
-            return (one == a && two == b) || (one == b && two == a);
-        };
-        const auto manifold = std::find_if(manifolds.begin(), manifolds.end(), theirs);
-        if (manifold == manifolds.end()) continue;
-        const btCollisionObjectWrapper of_a(nullptr, a->getCollisionShape(), a,
-                                            a->getWorldTransform(), -1, -1),
-            of_b(nullptr, b->getCollisionShape(), b, b->getWorldTransform(), -1, -1);
-        btManifoldResult result(&of_a, &of_b);
-        result.setPersistentManifold(*manifold);
-        result.addContactPoint(point.normal, point.on_b, btScalar(point.gap));
+DUCTILE_INLINE void ClosingContactsFinder::show_struck(btDiscreteDynamicsWorld& world) const {
+    for (const auto& [a, b, normal, on_b, gap] : struck_) {
+        const btManifoldArray manifolds = manifolds_between(world, *a, *b);
+        if (manifolds.size() == 0) continue;
+        const btCollisionObject *one = manifolds[0]->getBody0(), *two = manifolds[0]->getBody1();
+        const btCollisionObjectWrapper of_one(nullptr, one->getCollisionShape(), one,
+                                              one->getWorldTransform(), -1, -1),
+            of_two(nullptr, two->getCollisionShape(), two, two->getWorldTransform(), -1, -1);
+        btManifoldResult result(&of_one, &of_two);
+        result.setPersistentManifold(manifolds[0]);
+        if (two == b) {
+            result.addContactPoint(normal, on_b, btScalar(gap));
+        } else { // Bullet wants it on the second one
+            result.addContactPoint(-normal, on_b + btScalar(gap) * normal, btScalar(gap));
+        }
     }
 }
 
@@ -237,17 +237,15 @@ DUCTILE_INLINE double ClosingContactsFinder::closed_early(btDiscreteDynamicsWorl
 }
 
 DUCTILE_INLINE bool ClosingContactsFinder::pushes(btDiscreteDynamicsWorld& world,
-                                                  const Pair& pair) const {
-    const auto manifolds = manifolds_of(*world.getDispatcher(), scope_);
-    return std::any_of(manifolds.begin(), manifolds.end(), [&](const auto* manifold) {
-        const btCollisionObject *one = manifold->getBody0(), *two = manifold->getBody1();
-        const bool theirs = (one == pair.a && two == pair.b) || (one == pair.b && two == pair.a);
-        bool any = false;
-        for (int k = 0; theirs && k < manifold->getNumContacts(); ++k) {
-            any = any || manifold->getContactPoint(k).getAppliedImpulse() > 0;
+                                                  const Pair& pair) {
+    const btManifoldArray manifolds = manifolds_between(world, *pair.a, *pair.b);
+    bool any = false;
+    for (int i = 0; i < manifolds.size(); ++i) {
+        for (int k = 0; k < manifolds[i]->getNumContacts(); ++k) {
+            any = any || manifolds[i]->getContactPoint(k).getAppliedImpulse() > 0;
         }
-        return any;
-    });
+    }
+    return any;
 }
 
 DUCTILE_INLINE double ClosingContactsFinder::passed(btDiscreteDynamicsWorld& world, double h,

@@ -26,7 +26,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "ductile/bullet/convert.hpp"
@@ -154,14 +153,15 @@ class JointConstraintOf : public LinkJoint<Joint, JointConstraint> {
     JointConstraintOf(btRigidBody& a, btRigidBody& b, const btTransform& frame_in_a,
                       const btTransform& frame_in_b, Joint joint, const typename Base::Axes& axes,
                       Feedback feedback, Meeting meeting = Meeting::required)
-        : Base(Link<Joint>{std::move(joint), axes, checked("frame_in_a", frame_in_a),
-                           checked("frame_in_b", frame_in_b)},
-               a, b, feedback, meeting) {}
+        : Base(
+              Link<Joint>{std::move(joint), axes, checked("JointConstraint.frame_in_a", frame_in_a),
+                          checked("JointConstraint.frame_in_b", frame_in_b)},
+              a, b, feedback, meeting) {}
 
   private:
-    static JointFrame<double> checked(const char* name, const btTransform& frame) {
+    static JointFrame<double> checked(const char* field, const btTransform& frame) {
         constexpr double round_off = 1e-5; // of axes made in float
-        return require_frame(std::string("JointConstraint.") + name, to_core(frame), round_off);
+        return require_frame(field, to_core(frame), round_off);
     }
 };
 

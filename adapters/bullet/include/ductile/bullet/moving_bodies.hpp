@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// The bodies of a world that are not static, and its constraints; Bullet keeps such lists and does
-// not show them. And where a body goes by its velocities.
+// The bodies of a world that are not static, its constraints and contacts of two bodies; Bullet
+// keeps such lists and does not show them. And where a body goes by its velocities.
 #pragma once
 
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btTransformUtil.h>
@@ -31,6 +33,21 @@ struct AllConstraints : btDiscreteDynamicsWorld {
         return world.*(&AllConstraints::m_constraints);
     }
 };
+
+/// Bullet may have several of two shapes.
+[[nodiscard]] inline btManifoldArray manifolds_between(btDynamicsWorld& world,
+                                                       const btCollisionObject& a,
+                                                       const btCollisionObject& b) {
+    btManifoldArray manifolds;
+    auto* of_a = const_cast<btBroadphaseProxy*>(a.getBroadphaseHandle());
+    auto* of_b = const_cast<btBroadphaseProxy*>(b.getBroadphaseHandle());
+    if (of_a == nullptr || of_b == nullptr) return manifolds;
+    const btBroadphasePair* pair = world.getPairCache()->findPair(of_a, of_b);
+    if (pair != nullptr && pair->m_algorithm != nullptr) {
+        pair->m_algorithm->getAllContactManifolds(manifolds);
+    }
+    return manifolds;
+}
 
 namespace detail {
 

@@ -3,8 +3,6 @@
 // Bodies of plastic_constraint.hpp.
 #pragma once
 
-#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
-#include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/NarrowPhaseCollision/btPersistentManifold.h>
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 
@@ -43,12 +41,7 @@ DUCTILE_INLINE bool let_collide(btTypedConstraint& constraint) {
 
 /// Bullet solves the points that a pair had for good where it is not to collide any more.
 DUCTILE_INLINE void end_contacts(btDynamicsWorld& world, btRigidBody& a, btRigidBody& b) {
-    if (a.getBroadphaseHandle() == nullptr || b.getBroadphaseHandle() == nullptr) return;
-    const btBroadphasePair* pair =
-        world.getPairCache()->findPair(a.getBroadphaseHandle(), b.getBroadphaseHandle());
-    if (pair == nullptr || pair->m_algorithm == nullptr) return;
-    btManifoldArray manifolds;
-    pair->m_algorithm->getAllContactManifolds(manifolds);
+    const btManifoldArray manifolds = manifolds_between(world, a, b);
     for (int i = 0; i < manifolds.size(); ++i) manifolds[i]->clearManifold();
 }
 

@@ -120,8 +120,6 @@ class World final : public SteppedWorld {
     /// From the first one on.
     [[nodiscard]] Members& members();
     void step_with_members(double dt);
-    template <class Change>
-    void rearrange(const Change& change);
     void tell_of_members();
     void tell_idle(bool after);
     void start_frames(double tolerance, int budget);

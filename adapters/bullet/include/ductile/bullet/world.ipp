@@ -211,13 +211,6 @@ DUCTILE_INLINE void World::do_step(double dt) {
     if (keeps_ledger) meter_->after_step(double(btScalar(dt)));
 }
 
-/// What changes bodies of members, which is told to the ledger; true where it did.
-template <class Change>
-void World::rearrange(const Change& change) {
-    const double before = meter_ ? meter_->held().total() : 0;
-    if (change() && meter_) meter_->bodies_rearranged(before);
-}
-
 /// The step, again with more sections open until none that is closed is beyond its strength.
 DUCTILE_INLINE void World::step_with_members(double dt) {
     members_->set_ahead(false);
@@ -233,15 +226,12 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
         if (!members_->look(double(btScalar(dt)))) break;
         snapshot_->put_back(world_, front_->usual());
         if (meter_) meter_->put_back();
-        rearrange([this] {
-            members_->open_found();
-            return true;
-        });
+        rearrange(meter_.get(), [this] { members_->open_found(); });
     }
     if (meter_) meter_->after_step(double(btScalar(dt)));
     const double vibration = members_->count_vibration();
     if (meter_) meter_->rings_down(vibration);
-    rearrange([this] { return members_->close_held(Closing::after_step); });
+    rearrange(meter_.get(), [this] { return members_->close_held(Closing::after_step); });
     tell_of_members();
     members_->drop_forces();
 }

@@ -11,11 +11,11 @@ namespace ductile::bullet {
 DUCTILE_INLINE void WorldParts::do_again() {
     put_back();
     kept_ = false;
-    const double before = meter_.held().total();
-    members_->open_found();
-    see_members();
-    forces_.forget_gone(world_);
-    meter_.bodies_rearranged(before);
+    rearrange(&meter_, [this] {
+        members_->open_found();
+        see_members();
+        forces_.forget_gone(world_);
+    });
     save();
 }
 
@@ -59,10 +59,11 @@ DUCTILE_INLINE void WorldParts::see_coming() {
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
-    const double before = meter_.held().total();
-    if (!members_->close_held(when)) return;
-    see_bodies();
-    meter_.bodies_rearranged(before);
+    rearrange(&meter_, [&] {
+        const bool changed = members_->close_held(when);
+        if (changed) see_bodies();
+        return changed;
+    });
 }
 
 /// Some came or went between two parts.
@@ -73,7 +74,7 @@ DUCTILE_INLINE void WorldParts::see_bodies() {
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() try {
-    closing_.show_struck(manifolds());
+    closing_.show_struck(world_);
     if (members_->empty() && local_) save();
     begin_blow();
     for (tick_with_met(blow_length, false); members_->look_blow(blow_length);

@@ -45,7 +45,8 @@ class Divisibles : public ductile::Divisibles<PlasticConstraint> {
     /// `ahead`: how the forces of joints act from now on. Contacts go to the bodies that have the
     /// segments that they act on.
     virtual void open_found(bool /*ahead*/) {}
-    virtual void close_held(Closing /*when*/, bool /*ahead*/) {}
+    /// False where nothing did.
+    [[nodiscard]] virtual bool close_held(Closing /*when*/, bool /*ahead*/) { return false; }
 };
 
 } // namespace ductile::ode

@@ -79,7 +79,9 @@ DUCTILE_INLINE IslandSolver::Own* IslandSolver::own_of(dJointID joint) {
         return nullptr;
     }
     const auto found = owns_.find(joint);
-    if (found != owns_.end() && found->second.joint.is_same()) return &found->second;
+    if (found != owns_.end() && (found->second.seen == step_ || found->second.joint.is_same())) {
+        return &found->second;
+    }
     if (!OwnJoint::is_known(joint)) return nullptr;
     if (found == owns_.end()) {
         return &owns_.try_emplace(joint, Own{OwnJoint(joint), owns_seen_++}).first->second;
@@ -112,7 +114,8 @@ DUCTILE_INLINE bool IslandSolver::gather(dBodyID first) {
             } else if (const std::size_t* touch = contact_of_.find(joint)) {
                 touches_.push_back(*touch);
             } else if (Own* own = own_of(joint)) {
-                if (std::exchange(own->seen, step_) != step_) owned_.push_back(own);
+                if (std::exchange(own->seen, step_) == step_) continue; // from its other body
+                owned_.push_back(own);
                 known = known && own->joint.fits();
             } else {
                 known = false;

@@ -65,7 +65,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     DUCTILE_INLINE void begin_blow(double noticed) const override;
     [[nodiscard]] bool look_blow(double dt) override { return look(dt, true); }
     DUCTILE_INLINE void open_found(bool ahead) override;
-    DUCTILE_INLINE void close_held(Closing when, bool ahead) override;
+    [[nodiscard]] DUCTILE_INLINE bool close_held(Closing when, bool ahead) override;
     [[nodiscard]] DUCTILE_INLINE double count_vibration() const override;
 
   private:

@@ -218,7 +218,7 @@ DUCTILE_INLINE double Members::count_vibration() const {
     return sum;
 }
 
-DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
+DUCTILE_INLINE bool Members::close_held(Closing when, bool ahead) {
     bool changed = false;
     for (const Course& course : members_) {
         const std::vector<int> closed = course.of->close_held(when, ahead);
@@ -226,6 +226,7 @@ DUCTILE_INLINE void Members::close_held(Closing when, bool ahead) {
         happened(course, closed, EventKind::fused);
     }
     if (changed) note_bodies();
+    return changed;
 }
 
 } // namespace ductile::ode

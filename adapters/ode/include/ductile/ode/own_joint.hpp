@@ -32,8 +32,9 @@ class OwnJoint {
 
     /// Its bodies lie as it wants them to.
     explicit OwnJoint(dJointID joint);
-    /// It is attached as it was, about the same axis.
-    [[nodiscard]] bool is_same() const;
+    /// It is attached as it was, about the same axis. To be asked before what follows, once the
+    /// bodies have moved.
+    [[nodiscard]] bool is_same();
     /// Its bodies lie nearly as it wants them to.
     [[nodiscard]] bool fits() const;
     [[nodiscard]] dJointID id() const noexcept { return joint_; }
@@ -59,7 +60,7 @@ class OwnJoint {
         double at = 0;     ///< [m | rad]
     };
 
-    [[nodiscard]] static Vector3<double> axis_of(dJointID joint, bool reversed);
+    void ask_axis();
     /// e of a turn, world; of a slider or a fixed joint.
     [[nodiscard]] Vector3<double> turned() const;
     /// e of the same two where bodies' centres are.
@@ -88,7 +89,8 @@ class OwnJoint {
     dJointID joint_;
     dJointType kind_;
     AttachedBodies bodies_;
-    Vector3<double> axis_a_{0, 0, 0}, axis_b_{0, 0, 0};  ///< in A and in B, unit
+    Vector3<double> axis_{0, 0, 0};                      ///< its own, in A, world, unit
+    Vector3<double> axis_a_{0, 0, 0}, axis_b_{0, 0, 0};  ///< in A and in B as it was set
     double angle_ = 0;                                   ///< between the axes of a hinge-2 [rad]
     Matrix3<double> turn_ = Matrix3<double>::Identity(); ///< of B in A
     Vector3<double> place_{0, 0, 0}; ///< of A's centre in B, or of B's in A of a fixed joint [m]

@@ -42,7 +42,6 @@ struct OwnJoint::Step {
     solve::Island& island;
     const IslandSeat &a, &b;
     double dt, rate, cfm; ///< [s], k, [s/kg]
-    Vector3<double> axis; ///< the joint's, in A, world
     std::array<Vector3<double>, 3> world_axes{Vector3<double>(1, 0, 0), Vector3<double>(0, 1, 0),
                                               Vector3<double>(0, 0, 1)};
 };
@@ -69,9 +68,9 @@ DUCTILE_INLINE bool OwnJoint::is_known(dJointID joint) {
 DUCTILE_INLINE OwnJoint::OwnJoint(dJointID joint)
     : joint_(joint), kind_(dJointGetType(joint)), bodies_(attached_bodies(joint)) {
     const BodyState<double> a = body_motion(bodies_.a), b = body_motion(bodies_.b);
-    const Vector3<double> axis = axis_of(joint, bodies_.reversed);
-    axis_a_ = detail::in_body(bodies_.a, axis);
-    axis_b_ = detail::in_body(bodies_.b, axis);
+    ask_axis();
+    axis_a_ = detail::in_body(bodies_.a, axis_);
+    axis_b_ = detail::in_body(bodies_.b, axis_);
     turn_ = transposed_times(a.orientation, b.orientation);
     const Vector3<double> apart = difference(a.position, b.position);
     place_ = kind_ == dJointTypeFixed && bodies_.b != nullptr
@@ -79,14 +78,14 @@ DUCTILE_INLINE OwnJoint::OwnJoint(dJointID joint)
                  : detail::in_body(bodies_.b, apart);
     if (kind_ != dJointTypeHinge2) return;
     const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2);
-    angle_ = std::atan2(norm(cross(axis, wheel)), dot(axis, wheel));
+    angle_ = std::atan2(norm(cross(axis_, wheel)), dot(axis_, wheel));
 }
 
-DUCTILE_INLINE bool OwnJoint::is_same() const {
+DUCTILE_INLINE bool OwnJoint::is_same() {
     constexpr double round_off = 1e-6;
     if (dJointGetType(joint_) != kind_ || attached_bodies(joint_) != bodies_) return false;
-    const Vector3<double> axis = detail::in_body(bodies_.a, axis_of(joint_, bodies_.reversed));
-    return norm(difference(axis, axis_a_)) < round_off;
+    ask_axis();
+    return norm(difference(detail::in_body(bodies_.a, axis_), axis_a_)) < round_off;
 }
 
 DUCTILE_INLINE bool OwnJoint::fits() const {
@@ -95,10 +94,8 @@ DUCTILE_INLINE bool OwnJoint::fits() const {
         case dJointTypeHinge:
         case dJointTypeHinge2:
             return norm(leans()) < nearly;
-        case dJointTypeSlider: {
-            const Vector3<double> axis = axis_of(joint_, bodies_.reversed);
-            return norm(turned()) < nearly && norm(cross(axis, shifted())) < nearly;
-        }
+        case dJointTypeSlider:
+            return norm(turned()) < nearly && norm(cross(axis_, shifted())) < nearly;
         case dJointTypeFixed:
             return norm(turned()) < nearly && norm(shifted()) < nearly;
         default:
@@ -108,18 +105,23 @@ DUCTILE_INLINE bool OwnJoint::fits() const {
 
 // ---- how its bodies lie
 
-DUCTILE_INLINE Vector3<double> OwnJoint::axis_of(dJointID joint, bool reversed) {
-    switch (dJointGetType(joint)) {
+DUCTILE_INLINE void OwnJoint::ask_axis() {
+    switch (kind_) {
         case dJointTypeHinge:
-            return told(joint, dJointGetHingeAxis);
+            axis_ = told(joint_, dJointGetHingeAxis);
+            break;
         case dJointTypeSlider:
-            return told(joint, dJointGetSliderAxis);
+            axis_ = told(joint_, dJointGetSliderAxis);
+            break;
         case dJointTypeUniversal:
-            return told(joint, reversed ? dJointGetUniversalAxis2 : dJointGetUniversalAxis1);
+            axis_ =
+                told(joint_, bodies_.reversed ? dJointGetUniversalAxis2 : dJointGetUniversalAxis1);
+            break;
         case dJointTypeHinge2:
-            return told(joint, dJointGetHinge2Axis1);
+            axis_ = told(joint_, dJointGetHinge2Axis1);
+            break;
         default:
-            return {0, 0, 0};
+            break; // none
     }
 }
 
@@ -137,12 +139,11 @@ DUCTILE_INLINE Vector3<double> OwnJoint::shifted() const {
 }
 
 DUCTILE_INLINE Vector3<double> OwnJoint::leans() const {
-    const Vector3<double> a = axis_of(joint_, bodies_.reversed);
     if (kind_ == dJointTypeHinge) {
-        return cross(a, times(body_motion(bodies_.b).orientation, axis_b_));
+        return cross(axis_, times(body_motion(bodies_.b).orientation, axis_b_));
     }
-    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(a, wheel);
-    const double sine = norm(across), angle = std::atan2(sine, dot(a, wheel));
+    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(axis_, wheel);
+    const double sine = norm(across), angle = std::atan2(sine, dot(axis_, wheel));
     return scaled(std::sin(angle - angle_) / sine, across);
 }
 
@@ -258,7 +259,7 @@ DUCTILE_INLINE void OwnJoint::add_axis(const Step& step, const Axis& axis) {
 
 /// Along, or about, two axes across its own.
 DUCTILE_INLINE void OwnJoint::hold_across(const Step& step, const Vector3<double>& error, Row row) {
-    for (const Vector3<double>& along : plane_across(step.axis)) {
+    for (const Vector3<double>& along : plane_across(axis_)) {
         row.along = along;
         pull(step, row, step.rate * dot(error, along), step.cfm);
     }
@@ -267,7 +268,7 @@ DUCTILE_INLINE void OwnJoint::hold_across(const Step& step, const Vector3<double
 /// `other` stays at its angle to the axis.
 DUCTILE_INLINE void OwnJoint::hold_angle(const Step& step, const Vector3<double>& other,
                                          double error) {
-    const Vector3<double> across = cross(step.axis, other);
+    const Vector3<double> across = cross(axis_, other);
     pull(step, {.along = scaled(1 / norm(across), across), .turns = true}, step.rate * error,
          step.cfm);
 }
@@ -276,13 +277,13 @@ DUCTILE_INLINE void OwnJoint::open_hinge(const Step& step) {
     hold_pin(step, step.world_axes, step.rate, step.cfm);
     hold_across(step, leans(), {.turns = true});
     const auto angle = double(dJointGetHingeAngle(joint_));
-    add_axis(step, {.number = 0, .along = step.axis, .at = bodies_.reversed ? -angle : angle});
+    add_axis(step, {.number = 0, .along = axis_, .at = bodies_.reversed ? -angle : angle});
 }
 DUCTILE_INLINE void OwnJoint::open_slider(const Step& step) {
     hold_turn(step);
     hold_across(step, shifted(), midway());
     add_axis(step, {.number = 0,
-                    .along = scaled(bodies_.reversed ? -1 : 1, step.axis),
+                    .along = scaled(bodies_.reversed ? -1 : 1, axis_),
                     .turns = false,
                     .at = double(dJointGetSliderPosition(joint_))});
 }
@@ -293,18 +294,17 @@ DUCTILE_INLINE void OwnJoint::open_universal(const Step& step) {
                              double(dJointGetUniversalAngle2(joint_))};
     if (bodies_.reversed) at = {-at[1], at[0]};
     hold_pin(step, step.world_axes, step.rate, step.cfm);
-    hold_angle(step, other, -dot(step.axis, other));
-    add_axis(step, {.number = 0, .along = step.axis, .at = at[0]});
+    hold_angle(step, other, -dot(axis_, other));
+    add_axis(step, {.number = 0, .along = axis_, .at = at[0]});
     add_axis(step, {.number = 1, .along = other, .at = at[1]});
 }
 DUCTILE_INLINE void OwnJoint::open_hinge2(const Step& step) {
-    const auto [p, q] = plane_across(step.axis);
-    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2),
-                          across = cross(step.axis, wheel);
-    hold_pin(step, {step.axis, p, q}, parameter(dParamSuspensionERP) / step.dt,
+    const auto [p, q] = plane_across(axis_);
+    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(axis_, wheel);
+    hold_pin(step, {axis_, p, q}, parameter(dParamSuspensionERP) / step.dt,
              parameter(dParamSuspensionCFM));
     hold_angle(step, wheel, dot(leans(), across) / norm(across));
-    add_axis(step, {.number = 0, .along = step.axis, .at = double(dJointGetHinge2Angle1(joint_))});
+    add_axis(step, {.number = 0, .along = axis_, .at = double(dJointGetHinge2Angle1(joint_))});
     add_axis(step, {.number = 1, .along = wheel, .stops = false});
 }
 DUCTILE_INLINE void OwnJoint::open_fixed(const Step& step) {
@@ -330,13 +330,8 @@ DUCTILE_INLINE void OwnJoint::open_motor(const Step& step) {
 DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat& a,
                                         const IslandSeat& b, double dt) {
     const dWorldID world = dBodyGetWorld(bodies_.a);
-    const Step step{island,
-                    a,
-                    b,
-                    dt,
-                    double(dWorldGetERP(world)) / dt,
-                    double(dWorldGetCFM(world)),
-                    axis_of(joint_, bodies_.reversed)};
+    const Step step{
+        island, a, b, dt, double(dWorldGetERP(world)) / dt, double(dWorldGetCFM(world))};
     first_ = int(island.rows.size());
     count_ = 0;
     switch (kind_) {

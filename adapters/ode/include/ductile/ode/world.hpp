@@ -155,9 +155,6 @@ class World final : public SteppedWorld {
     void take_in(PlasticConstraint& joint);
     void forget(PlasticConstraint& joint);
     void step_with_members(double dt);
-    /// Does what changes bodies of members, and tells the ledger.
-    template <class Change>
-    void rearrange(const Change& change);
     /// From the first one on.
     [[nodiscard]] Members& members();
     void tell_of_members();

@@ -226,13 +226,6 @@ DUCTILE_INLINE void World::do_step(double dt) {
     if (maker_) maker_->clear();
 }
 
-template <class Change>
-void World::rearrange(const Change& change) {
-    const double before = meter_ ? meter_->held().total() : 0;
-    change();
-    if (meter_) meter_->bodies_rearranged(before);
-}
-
 /// The step, again with more sections open until none that is closed is beyond its strength.
 DUCTILE_INLINE void World::step_with_members(double dt) {
     forces_.hold(bodies_);
@@ -253,7 +246,7 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
         if (!members_->look(dt)) break;
         snapshot_->put_back();
         if (meter_) meter_->put_back();
-        rearrange([this] { members_->open_found(false); });
+        rearrange(meter_.get(), [this] { members_->open_found(false); });
         forces_.apply();
     }
     let_go_of_broken();
@@ -261,7 +254,8 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
     if (members_->any_open()) {
         const double vibration = members_->count_vibration();
         if (meter_) meter_->rings_down(vibration);
-        rearrange([this] { members_->close_held(Closing::after_step, false); });
+        rearrange(meter_.get(),
+                  [this] { return members_->close_held(Closing::after_step, false); });
     }
     tell_of_members();
     members_->drop_forces();

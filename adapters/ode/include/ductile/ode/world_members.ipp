@@ -33,7 +33,7 @@ DUCTILE_INLINE void World::remove(Divisible& member) {
     auto* const members = dynamic_cast<Members*>(members_.get());
     if (members == nullptr || !members->has(member)) return;
     for (const DivisionReport& one : member.reports({})) supervisor().remove(one.key);
-    rearrange([&] { member.leave(); });
+    rearrange(meter_.get(), [&] { member.leave(); });
     members->remove(member);
 }
 

@@ -310,7 +310,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) try {
 }
 
 DUCTILE_INLINE void WorldParts::close_held(Closing when) {
-    rearrange([this, when] { of_.members->close_held(when, true); });
+    rearrange([this, when] { return of_.members->close_held(when, true); });
 }
 
 DUCTILE_INLINE const PartMotion& WorldParts::blow() {
@@ -334,9 +334,7 @@ DUCTILE_INLINE void WorldParts::do_again() {
 template <class Change>
 void WorldParts::rearrange(const Change& change) {
     leave_bodies(); // pieces behave as the user's body does
-    const double before = of_.meter.held().total();
-    change();
-    of_.meter.bodies_rearranged(before);
+    ductile::rearrange(&of_.meter, change);
     begin_bodies();
     moved();
     see_contacts(); // those that were seen were of other bodies

@@ -54,9 +54,8 @@ DUCTILE_INLINE void WorldParts::tick_out(double h) {
 DUCTILE_INLINE void WorldParts::join(std::vector<dBodyID> met) {
     met = scope_.with_theirs(std::move(met));
     of_.meter.set_scope(nullptr);
-    const double before = of_.meter.held().total();
-    began_.put_back(met);
-    of_.meter.bodies_rearranged(before, Account::integration);
+    ductile::rearrange(
+        &of_.meter, [&] { began_.put_back(met); }, Account::integration);
     moved();
     if (time_ > 0) { // as far as the others are
         joining_.set(of_.bodies, met);
