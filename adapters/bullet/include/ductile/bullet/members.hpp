@@ -117,6 +117,8 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     void forget_doubts();
     /// Bullet makes no contacts of what does not move with what is driven.
     void see_driven();
+    /// One that was not there is where it is.
+    void list_driven();
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);

@@ -195,12 +195,7 @@ DUCTILE_INLINE void Members::before_solve() {
     if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
         for (Course& course : members_) course.of->require_possible();
         objects_ = world_.getNumCollisionObjects();
-        driven_.clear();
-        for (int i = 0; i < objects_; ++i) {
-            btRigidBody* body = btRigidBody::upcast(world_.getCollisionObjectArray()[i]);
-            if (body == nullptr || !body->isKinematicObject()) continue;
-            driven_.emplace_back(body, body->getWorldTransform());
-        }
+        list_driven();
     }
     if (!driven_.empty()) see_driven();
     for (const Course* course : here_) {
