@@ -107,7 +107,7 @@ class DrivenWay {
     [[nodiscard]] const btVector3& high() const noexcept { return high_; }
     /// How often it has to be looked at not to pass `other` unseen.
     [[nodiscard]] int looks(const btCollisionShape& other) const {
-        constexpr btScalar most = 1000, of_both = 0.4;
+        constexpr auto most = btScalar(1000), of_both = btScalar(0.4);
         const btScalar seen = of_both * (thickness(shape_) + thickness(other));
         return int(std::clamp(std::ceil(length_ / seen), btScalar(1), most));
     }
