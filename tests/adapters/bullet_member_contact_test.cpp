@@ -242,6 +242,39 @@ TEST_CASE("a driven body that passes through a whole clamped member is said to d
     }
 }
 
+TEST_CASE("a driven body that is past a whole clamped member within one frame is said to be",
+          "[bullet][member]") {
+    for (const double tolerance : {0.0, 0.01}) {
+        for (const double away : {0.0, 0.5}) { // through it, and past it
+            for (const double frame : {1.0 / 30, 1.0 / 240}) {
+                Rig rig;
+                World world(rig.engine, {.tolerance = tolerance, .warn = {}});
+                bullet::Member post(
+                    rig.body(0, {0, 0, 0}, {0, 0, 0}, rig.post(0.005, 2), usual, everything),
+                    heavy_post(), here, {0.005, 0.005});
+                constexpr double speed = 60, start = -3; // 2 m and 0.25 m in a frame
+                const btVector3 at(btScalar(away), btScalar(start), 1);
+                btRigidBody& plate =
+                    rig.body(0, {0, 0, 0}, at,
+                             rig.shape(std::make_unique<btBoxShape>(btVector3(0.2f, 0.02f, 0.2f))),
+                             usual, everything);
+                plate.setCollisionFlags(plate.getCollisionFlags() |
+                                        btCollisionObject::CF_KINEMATIC_OBJECT);
+                world.add(post);
+                while (world.time() < 0.1 - 1e-9) {
+                    const double y = start + speed * (world.time() + frame);
+                    plate.setWorldTransform(btTransform(btMatrix3x3::getIdentity(),
+                                                        at + btVector3(0, btScalar(y - start), 0)));
+                    world.step(frame);
+                }
+                CAPTURE(tolerance, away, frame);
+                CHECK((world.watch().unreliable_steps(0) > 0) == (away == 0));
+                if (tolerance > 0) CHECK(world.run().believed() == (away > 0));
+            }
+        }
+    }
+}
+
 TEST_CASE("a driven body that passes through a whole structure is said to do so",
           "[bullet][member]") {
     const Rectangle<double> section({.width = 0.1, .height = 0.1});

@@ -1171,6 +1171,31 @@ TEST_CASE("a driven body that passes through what does not move of a member is s
     }
 }
 
+TEST_CASE("a driven body that is past a whole clamped member within one frame is said to be",
+          "[ode][member]") {
+    for (const double away : {0.0, 0.5}) { // through it, and past it
+        for (const double speed : {2.0, 60.0}) {
+            for (const double frame : {1.0 / 30, 1.0 / 240}) {
+                Rig rig;
+                World world(rig.id, {.tolerance = 0.01, .warn = {}});
+                rig.meet(world);
+                const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
+                rig.boxes(body, heavy_post(), 0.005);
+                ode::Member post(body, heavy_post(), here);
+                world.add(post);
+                const dBodyID plate = rig.body(0, {0, 0, 0}, {away, -0.9, 1});
+                rig.box(plate, {0.2, 0.02, 0.2});
+                set_velocity(plate, {0, speed, 0});
+                world.add(plate);
+                while (world.time() < 2 / speed - 1e-9) world.step(frame);
+                CAPTURE(away, speed, frame);
+                CHECK((world.watch().unreliable_steps(0) > 0) == (away == 0));
+                CHECK(world.run().believed() == (away > 0));
+            }
+        }
+    }
+}
+
 TEST_CASE("halves of a member that lie against each other open further", "[ode][member]") {
     MemberParameters p;
     p.segments = lumped_segments(2, 24, 10, {1e-4, 1e-4, 2e-4});

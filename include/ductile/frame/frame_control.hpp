@@ -7,8 +7,8 @@
 //
 //   error   = Σ R e + |work of rigid rows| + 0.3 |work of contacts|, + h/2 Σ R |u + u'|/2 where a
 //             contact was lost in the part (e: part_row.hpp)                               [J]
-//   scale   = plastic work so far + Σ ahead, ahead = R u²/(2 |a|) where a row slows, R |u| h where
-//             it does not, + 0.05 R x travel that nobody misses                            [J]
+//   scale   = plastic work so far of what is not idle + Σ ahead, ahead = R u²/(2 |a|) where a row
+//             slows, R |u| h where it does not, + 0.05 R x travel that nobody misses       [J]
 //             where a spring is beyond 0.3 of its strength no more than what flows would take,
 //             + 10 x what springs hold, + 0.05 of the yield energy of the first one
 //   stands where  error <= κ tolerance scale,  κ = 0.1

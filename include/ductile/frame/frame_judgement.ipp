@@ -50,6 +50,7 @@ DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& moti
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
+    const double work = motion.plastic_work - motion.idle_work;
     double ahead = 0, of_flows = 0, largest = 0;
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
@@ -96,7 +97,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.stop = held;
         }
         const Misplaced off = misplaced(row, h, before(i, motion));
-        const double error = misplaced_energy(row, off, motion.plastic_work);
+        const double error = misplaced_energy(row, off, work);
         judged.error += error;
         judged.ended = judged.ended || off.ended;
         if (off.stop > 0 && error > largest) {
@@ -104,9 +105,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.stop = off.stop;
         }
         judged.moves = true;
-        const double work = work_ahead(row, h);
-        ahead += work;
-        if (!row.elastic || row.flows()) of_flows += work;
+        const double coming = work_ahead(row, h);
+        ahead += coming;
+        if (!row.elastic || row.flows()) of_flows += coming;
         if (row.elastic) nearest = std::max(nearest, row.share);
         judged.of_rows = judged.error;
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
@@ -148,7 +149,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
                                     detail::unmissed * (unmissed + of_springs));
     }
-    judged.tolerated = share * (motion.plastic_work + scale + freed);
+    judged.tolerated = share * (work + scale + freed);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;

@@ -82,6 +82,8 @@ struct OwnForces {
 struct PartMotion {
     std::vector<PartRow> rows; ///< of all plastic joints, in an order that stays
     double plastic_work = 0;   ///< of all plastic joints since they were made [J]
+    double idle_work = 0;      ///< of it, of what has no part in this: whole members, islands that
+                               ///< are left alone [J]
     /// Strength x travel that nobody misses, the least of what has no row as it is closed: sections
     /// of members; 0: there are none.
     double closed_work = 0;

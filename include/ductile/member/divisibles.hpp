@@ -40,6 +40,8 @@ class Divisibles {
     [[nodiscard]] virtual bool any_open() const { return false; }
     /// Of sections that are closed [J]; as PartMotion::closed_work.
     [[nodiscard]] virtual double closed_work() const { return 0; }
+    /// Of those that are whole [J]; as PartMotion::idle_work.
+    [[nodiscard]] virtual double idle_work() const { return 0; }
     [[nodiscard]] virtual double unmissed_work() const { return 0; }
     /// Forces that were applied to members act in the coming solve, too; they do not any more.
     virtual void apply_forces() {}
@@ -79,6 +81,13 @@ class DivisibleList : public None {
     [[nodiscard]] double closed_work() const override {
         double sum = 0;
         for (const Course& course : members_) sum += course.of->closed_work();
+        return sum;
+    }
+    [[nodiscard]] double idle_work() const override {
+        double sum = 0;
+        for (const Course& course : members_) {
+            if (course.of->whole()) sum += course.of->closed_work();
+        }
         return sum;
     }
     [[nodiscard]] double unmissed_work() const override {

@@ -85,6 +85,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
                                                     int& section) const override;
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
+    [[nodiscard]] DUCTILE_INLINE double idle_work() const override;
     [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     [[nodiscard]] bool is_member(const btCollisionObject& object) const override {
         return owners_.contains(&object);
@@ -116,6 +117,8 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     void forget_doubts();
     /// Bullet makes no contacts of what does not move with what is driven.
     void see_driven();
+    /// One that was not there is where it is.
+    void list_driven();
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);
@@ -144,7 +147,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     std::vector<Asleep> asleep_; ///< on clamped members
     /// Length of the last tick in which contacts acted on a clamped member [s].
     std::unordered_map<const btPersistentManifold*, double> acted_;
-    mutable std::optional<double> closed_work_, unmissed_work_; ///< as long as bodies stay
+    mutable std::optional<double> closed_work_, idle_work_, unmissed_work_; ///< while bodies stay
 };
 
 } // namespace ductile::bullet

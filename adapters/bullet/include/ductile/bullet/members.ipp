@@ -39,6 +39,7 @@ DUCTILE_INLINE void Members::remove(std::size_t i) {
     forget(*members_[i].of);
     here_.clear();
     closed_work_.reset();
+    idle_work_.reset();
     unmissed_work_.reset();
     for (Course& course : members_) course.here = false;
     const std::size_t last = members_.size() - 1;
@@ -82,6 +83,7 @@ DUCTILE_INLINE void Members::rearranged(const Divisible& structure) {
 DUCTILE_INLINE void Members::note_bodies(std::size_t i) {
     Course& course = members_[i];
     closed_work_.reset();
+    idle_work_.reset();
     unmissed_work_.reset();
     for (const btCollisionObject* body : course.bodies) owners_.erase(body);
     course.bodies.clear();
@@ -130,6 +132,10 @@ DUCTILE_INLINE const void* Members::key_of(const PlasticConstraint& joint, int& 
 DUCTILE_INLINE double Members::closed_work() const {
     if (!closed_work_) closed_work_ = DivisibleList::closed_work();
     return *closed_work_;
+}
+DUCTILE_INLINE double Members::idle_work() const {
+    if (!idle_work_) idle_work_ = DivisibleList::idle_work();
+    return *idle_work_;
 }
 DUCTILE_INLINE double Members::unmissed_work() const {
     if (!unmissed_work_) unmissed_work_ = DivisibleList::unmissed_work();
@@ -189,12 +195,7 @@ DUCTILE_INLINE void Members::before_solve() {
     if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
         for (Course& course : members_) course.of->require_possible();
         objects_ = world_.getNumCollisionObjects();
-        driven_.clear();
-        for (int i = 0; i < objects_; ++i) {
-            btRigidBody* body = btRigidBody::upcast(world_.getCollisionObjectArray()[i]);
-            if (body == nullptr || !body->isKinematicObject()) continue;
-            driven_.emplace_back(body, body->getWorldTransform());
-        }
+        list_driven();
     }
     if (!driven_.empty()) see_driven();
     for (const Course* course : here_) {

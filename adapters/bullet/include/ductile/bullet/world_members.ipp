@@ -4,6 +4,13 @@
 // of its constraints they bear, and what they met that they cannot be asked. A part of members.ipp.
 #pragma once
 
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <LinearMath/btTransformUtil.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "ductile/bullet/front_solver.hpp"
 
 namespace ductile::bullet {
@@ -62,6 +69,74 @@ DUCTILE_INLINE void Members::forget_doubts() {
     }
 }
 
+namespace detail {
+
+/// The least extent of what a shape is made of [m]: who goes no farther at a time is seen to pass.
+[[nodiscard]] DUCTILE_INLINE btScalar thickness(const btCollisionShape& shape) {
+    if (shape.isCompound()) {
+        const auto& compound = static_cast<const btCompoundShape&>(shape);
+        btScalar least = BT_LARGE_FLOAT;
+        for (int i = 0; i < compound.getNumChildShapes(); ++i) {
+            least = std::min(least, thickness(*compound.getChildShape(i)));
+        }
+        return least;
+    }
+    btVector3 low, high;
+    shape.getAabb(btTransform::getIdentity(), low, high);
+    const btVector3 extent = high - low;
+    return extent[extent.minAxis()];
+}
+
+/// The way of a driven body from one place to another, at one speed.
+class DrivenWay {
+  public:
+    DrivenWay(const btRigidBody& body, const btTransform& from, const btTransform& to)
+        : from_(from), shape_(*body.getCollisionShape()) {
+        btTransformUtil::calculateVelocity(from, to, 1, velocity_, spin_);
+        const btScalar turns = spin_.length() * ShapeReach().of(shape_);
+        length_ = velocity_.length() + turns;
+        btVector3 low, high;
+        shape_.getAabb(from, low_, high_);
+        shape_.getAabb(to, low, high);
+        low_.setMin(low);
+        high_.setMax(high);
+        low_ -= btVector3(turns, turns, turns);
+        high_ += btVector3(turns, turns, turns);
+    }
+    [[nodiscard]] const btVector3& low() const noexcept { return low_; }
+    [[nodiscard]] const btVector3& high() const noexcept { return high_; }
+    /// How often it has to be looked at not to pass `other` unseen.
+    [[nodiscard]] int looks(const btCollisionShape& other) const {
+        constexpr auto most = btScalar(1000), of_both = btScalar(0.4);
+        const btScalar seen = of_both * (thickness(shape_) + thickness(other));
+        return int(std::clamp(std::ceil(length_ / seen), btScalar(1), most));
+    }
+    [[nodiscard]] btTransform at(btScalar share) const {
+        btTransform there;
+        btTransformUtil::integrateTransform(from_, velocity_, spin_, share, there);
+        return there;
+    }
+
+  private:
+    const btTransform& from_;
+    const btCollisionShape& shape_;
+    btVector3 velocity_, spin_, low_, high_;
+    btScalar length_;
+};
+
+} // namespace detail
+
+DUCTILE_INLINE void Members::list_driven() {
+    const auto last = std::exchange(driven_, {});
+    for (int i = 0; i < world_.getNumCollisionObjects(); ++i) {
+        btRigidBody* body = btRigidBody::upcast(world_.getCollisionObjectArray()[i]);
+        if (body == nullptr || !body->isKinematicObject()) continue;
+        const auto known = std::find_if(last.begin(), last.end(),
+                                        [body](const auto& was) { return was.first == body; });
+        driven_.emplace_back(body, known != last.end() ? known->second : body->getWorldTransform());
+    }
+}
+
 DUCTILE_INLINE void Members::see_driven() {
     struct Near final : btBroadphaseAabbCallback {
         std::vector<btCollisionObject*> objects;
@@ -80,10 +155,12 @@ DUCTILE_INLINE void Members::see_driven() {
     };
     for (auto& [body, was] : driven_) {
         const btTransform now = body->getWorldTransform();
-        if (std::exchange(was, now) == now) continue;
+        const btTransform from = std::exchange(was, now);
+        if (from == now) continue;
         const btBroadphaseProxy& proxy = *body->getBroadphaseProxy();
+        const detail::DrivenWay way(*body, from, now);
         Near near;
-        world_.getBroadphase()->aabbTest(proxy.m_aabbMin, proxy.m_aabbMax, near);
+        world_.getBroadphase()->aabbTest(way.low(), way.high(), near);
         for (btCollisionObject* object : near.objects) {
             Course* course = course_of(*object);
             if (course == nullptr || !object->isStaticObject()) continue;
@@ -93,7 +170,12 @@ DUCTILE_INLINE void Members::see_driven() {
                 continue;
             }
             Touch touch;
-            world_.contactPairTest(body, object, touch);
+            const int looks = way.looks(*object->getCollisionShape());
+            for (int i = looks; i > 0 && !touch.any; --i) {
+                if (i < looks) body->setWorldTransform(way.at(btScalar(i) / btScalar(looks)));
+                world_.contactPairTest(body, object, touch);
+            }
+            body->setWorldTransform(now);
             if (!touch.any) continue;
             list(*course);
             course->of->driven_through();

@@ -311,7 +311,7 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
 
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     if (local_ && members_->empty()) { // whose joints come and go
-        motion_.plastic_work = outside_work_;
+        motion_.plastic_work = motion_.idle_work = outside_work_;
         for (const LocalScope::Joint& entry : scope_.joints()) {
             const PlasticConstraint& joint = *entry.joint;
             rows_.clear();
@@ -325,6 +325,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     }
     motion_.rows.clear();
     motion_.plastic_work = members_->closed_work();
+    motion_.idle_work = members_->idle_work() + (local_ ? outside_work_ : 0);
     motion_.closed_work = members_->unmissed_work();
     first_row_.resize(std::size_t(world_.getNumConstraints()));
     for (int i = 0; i < world_.getNumConstraints(); ++i) {

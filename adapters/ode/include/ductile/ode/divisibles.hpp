@@ -33,6 +33,8 @@ class Divisibles : public ductile::Divisibles<PlasticConstraint> {
     /// @throws what a member does.
     virtual void require_possible() const {}
 
+    /// Contacts as they will be within the coming part: what is driven may be past by its end.
+    virtual void see_ahead(std::span<const NamedContact> /*contacts*/) {}
     /// @throws std::logic_error where a contact of a member is none of these.
     virtual void before_solve(std::span<const NamedContact> /*contacts*/) {}
     /// Bodies that can move of contacts with members, after before_solve().

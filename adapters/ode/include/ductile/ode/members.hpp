@@ -57,6 +57,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     DUCTILE_INLINE void require_possible() const override;
     DUCTILE_INLINE void apply_forces() override;
     DUCTILE_INLINE void drop_forces() override;
+    DUCTILE_INLINE void see_ahead(std::span<const NamedContact> contacts) override;
     DUCTILE_INLINE void before_solve(std::span<const NamedContact> contacts) override;
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> touched() const override;
     [[nodiscard]] std::span<const dJointID> held_by() const override { return held_by_; }
@@ -76,10 +77,11 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     void list_contacts(std::span<const NamedContact> contacts);
     static void require_named(const Course& course);
     /// ODE makes nothing of contacts between what does not move and what is driven.
-    static void see_driven(const Course& course);
+    [[nodiscard]] static bool is_passed(const Course& course);
     [[nodiscard]] const dJointFeedback* feedback_of(dJointID joint);
     void take_feedback_back();
 
+    std::vector<const Course*> passed_; ///< in the coming part
     std::vector<dBodyID> bodies_;
     AddressMap<std::size_t> owners_; ///< by body
     std::deque<dJointFeedback> lent_;

@@ -91,6 +91,13 @@ DUCTILE_INLINE void Members::take_feedback_back() {
     for (dJointID joint : std::exchange(borrowers_, {})) dJointSetFeedback(joint, nullptr);
 }
 
+DUCTILE_INLINE void Members::see_ahead(std::span<const NamedContact> contacts) {
+    list_contacts(contacts);
+    for (const Course& course : members_) {
+        if (is_passed(course)) passed_.push_back(&course);
+    }
+}
+
 DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts) {
     if (members_.empty()) return;
     list_contacts(contacts);
@@ -98,9 +105,11 @@ DUCTILE_INLINE void Members::before_solve(std::span<const NamedContact> contacts
     held_by_.clear();
     for (const Course& course : members_) {
         course.of->before_solve(held_by_);
-        see_driven(course);
+        const bool ahead = std::find(passed_.begin(), passed_.end(), &course) != passed_.end();
+        if (ahead || is_passed(course)) course.of->driven_through();
     }
     // of a step that was not looked at joints kept what is another's now; its contacts may be gone
+    passed_.clear();
     for (dJointID joint : held_by_) {
         const bool kept =
             std::find(borrowers_.begin(), borrowers_.end(), joint) != borrowers_.end();
@@ -141,12 +150,11 @@ DUCTILE_INLINE void Members::require_named(const Course& course) {
         "World.step: a contact of a member was not named: World::add_contact each, once");
 }
 
-DUCTILE_INLINE void Members::see_driven(const Course& course) {
+DUCTILE_INLINE bool Members::is_passed(const Course& course) {
     constexpr double noticed = 1e-6; // [m/s]
-    for (const Touch& touch : course.touches) {
-        const bool stand = !can_move(touch.bodies.a) && !can_move(touch.bodies.b);
-        if (stand && touch.closing > noticed) course.of->driven_through();
-    }
+    return std::any_of(course.touches.begin(), course.touches.end(), [](const Touch& touch) {
+        return !can_move(touch.bodies.a) && !can_move(touch.bodies.b) && touch.closing > noticed;
+    });
 }
 
 DUCTILE_INLINE std::vector<dBodyID> Members::touched() const {

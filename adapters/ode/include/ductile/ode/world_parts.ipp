@@ -359,6 +359,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
     standing_.forget_rows();
     motion_.plastic_work = of_.members->closed_work();
+    motion_.idle_work = of_.members->idle_work();
     motion_.closed_work = of_.members->unmissed_work();
     for (const PlasticConstraint* joint : of_.joints) {
         const std::size_t first = motion_.rows.size();

@@ -231,6 +231,7 @@ DUCTILE_INLINE double WorldParts::next_gap(double h, double apart) {
         const double time = std::min(i / lengths, 1.0) * h;
         half_ahead_.move(bodies(), time);
         look(&looked_from_);
+        of_.members->see_ahead(of_.contacts);
         next = closing_.closed(time, 0, apart);
         looked_from_.put_poses_back();
     }
