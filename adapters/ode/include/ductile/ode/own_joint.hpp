@@ -9,6 +9,10 @@
 // joint is first seen here, or attached to others. What is further off than that later on, put
 // elsewhere by hand or set anew, is left to ODE until it fits.
 //
+// Half a step ahead a pin is asked to hold at the end of the part (world/turned_contact.hpp), with
+// the error that it had at its begin, as rows of plastic joints are (joint/any_link.hpp); the
+// suspension of a hinge-2 is as it is in the middle.
+//
 // Symbols
 //   e   how far A is from where B has it, or turned from there  [m | rad]
 //   k   ERP over the step, by which it is pulled back           [1/s]
@@ -38,8 +42,11 @@ class OwnJoint {
     [[nodiscard]] bool fits() const;
     [[nodiscard]] dJointID id() const noexcept { return joint_; }
 
-    /// Adds its rows for a step of `dt` [s].
-    void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b, double dt);
+    /// Adds its rows for a step of `dt` [s]; `ahead`: its bodies are half a step ahead.
+    void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b, double dt,
+                   bool ahead);
+    /// The island is solved: asks its pin for what fits bodies that leave the part so.
+    [[nodiscard]] bool turn_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b, double dt);
     /// The island is solved: the impulses become forces on the bodies, and the joint's feedback.
     void close_rows(const solve::Island& island, double dt) const;
 
@@ -69,6 +76,10 @@ class OwnJoint {
     /// Of B's half of the pin from A's.
     [[nodiscard]] std::array<Vector3<double>, 2> pins() const;
 
+    /// The first row of a hinge-2's pin.
+    [[nodiscard]] bool is_sprung(std::size_t row) const {
+        return row == 0 && kind_ == dJointTypeHinge2;
+    }
     solve::IslandRow& pull(const Step& step, const Row& row, double target, double cfm);
     void hold_pin(const Step& step, const std::array<Vector3<double>, 3>& along, double rate,
                   double cfm);
@@ -94,6 +105,8 @@ class OwnJoint {
     Vector3<double> place_{0, 0, 0}; ///< of A's centre in B, or of B's in A of a fixed joint [m]
     std::array<Row, 8> rows_{};
     int first_ = 0, count_ = 0;
+    int pinned_ = 0;                 ///< of those, the first, that are its pin's
+    Vector3<double> asked_{0, 0, 0}; ///< of the pin by the turning of its bodies, world [m/s]
 };
 
 } // namespace ductile::ode

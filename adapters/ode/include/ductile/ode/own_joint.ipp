@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "ductile/joint/rotation.hpp"
 #include "ductile/ode/joint_calls.hpp"
 #include "ductile/ode/own_joint.hpp"
 
@@ -42,6 +41,7 @@ struct OwnJoint::Step {
     solve::Island& island;
     const IslandSeat &a, &b;
     double dt, rate, cfm; ///< [s], k, [s/kg]
+    bool ahead;
     Vector3<double> axis; ///< the joint's, in A, world
     std::array<Vector3<double>, 3> world_axes{Vector3<double>(1, 0, 0), Vector3<double>(0, 1, 0),
                                               Vector3<double>(0, 0, 1)};
@@ -106,72 +106,6 @@ DUCTILE_INLINE bool OwnJoint::fits() const {
     }
 }
 
-// ---- how its bodies lie
-
-DUCTILE_INLINE Vector3<double> OwnJoint::axis_of(dJointID joint, bool reversed) {
-    switch (dJointGetType(joint)) {
-        case dJointTypeHinge:
-            return told(joint, dJointGetHingeAxis);
-        case dJointTypeSlider:
-            return told(joint, dJointGetSliderAxis);
-        case dJointTypeUniversal:
-            return told(joint, reversed ? dJointGetUniversalAxis2 : dJointGetUniversalAxis1);
-        case dJointTypeHinge2:
-            return told(joint, dJointGetHinge2Axis1);
-        default:
-            return {0, 0, 0};
-    }
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::turned() const {
-    const Matrix3<double> wanted = times(body_motion(bodies_.a).orientation, turn_);
-    return rotation_vector(times_transposed(body_motion(bodies_.b).orientation, wanted));
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::shifted() const {
-    const BodyState<double> a = body_motion(bodies_.a), b = body_motion(bodies_.b);
-    const bool in_a = kind_ == dJointTypeFixed && bodies_.b != nullptr;
-    const Vector3<double> place =
-        in_a ? scaled(-1, times(a.orientation, place_)) : times(b.orientation, place_);
-    return sum(difference(b.position, a.position), place);
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::leans() const {
-    const Vector3<double> a = axis_of(joint_, bodies_.reversed);
-    if (kind_ == dJointTypeHinge) {
-        return cross(a, times(body_motion(bodies_.b).orientation, axis_b_));
-    }
-    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(a, wheel);
-    const double sine = norm(across), angle = std::atan2(sine, dot(a, wheel));
-    return scaled(std::sin(angle - angle_) / sine, across);
-}
-
-DUCTILE_INLINE std::array<Vector3<double>, 2> OwnJoint::pins() const {
-    std::array<Vector3<double>, 2> pins;
-    const auto ask = [&](void (*of_a)(dJointID, dVector3), void (*of_b)(dJointID, dVector3)) {
-        pins = {told(joint_, of_a), told(joint_, of_b)};
-        if (bodies_.reversed) std::swap(pins[0], pins[1]);
-    };
-    switch (kind_) {
-        case dJointTypeHinge:
-            ask(dJointGetHingeAnchor, dJointGetHingeAnchor2);
-            break;
-        case dJointTypeUniversal:
-            ask(dJointGetUniversalAnchor, dJointGetUniversalAnchor2);
-            break;
-        case dJointTypeHinge2:
-            ask(dJointGetHinge2Anchor, dJointGetHinge2Anchor2);
-            break;
-        default:
-            ask(dJointGetBallAnchor, dJointGetBallAnchor2);
-    }
-    return pins;
-}
-
-DUCTILE_INLINE double OwnJoint::parameter(int name, int axis) const {
-    return double(joint_calls(kind_).get(joint_, name + dParamGroup * axis));
-}
-
 // ---- its rows
 
 DUCTILE_INLINE solve::IslandRow& OwnJoint::pull(const Step& step, const Row& row, double target,
@@ -194,11 +128,26 @@ DUCTILE_INLINE void OwnJoint::hold_pin(const Step& step,
     const auto [of_a, of_b] = pins();
     const Vector3<double> error = difference(of_b, of_a);
     Row row{.arm_a = arm_of(bodies_.a, of_a), .arm_b = arm_of(bodies_.b, of_b)};
-    const bool all = kind_ == dJointTypeBall;
+    pinned_ = int(along.size());
+    asked_ = Vector3<double>::Zero();
+    Vector3<double> began = error; // as the part did
+    if (step.ahead) {
+        const double half = step.dt / 2;
+        asked_ = turned_pin(contact_body(bodies_.a), row.arm_a, contact_body(bodies_.b), row.arm_b,
+                            half);
+        const Vector3<double> moves =
+            difference(velocity_at(bodies_.a, of_a), velocity_at(bodies_.b, of_b));
+        began = pin_as_began(error, moves, asked_, half);
+    }
     for (std::size_t i = 0; i < along.size(); ++i) {
         row.along = along[i];
-        const bool own = all || i == 0;
-        pull(step, row, (own ? rate : step.rate) * dot(error, row.along), own ? cfm : step.cfm);
+        if (is_sprung(i)) {
+            pull(step, row, rate * dot(error, row.along), cfm);
+            continue;
+        }
+        const bool own = kind_ == dJointTypeBall || i == 0;
+        pull(step, row, (own ? rate : step.rate) * dot(began, row.along) + dot(asked_, row.along),
+             own ? cfm : step.cfm);
     }
 }
 
@@ -328,7 +277,7 @@ DUCTILE_INLINE void OwnJoint::open_motor(const Step& step) {
 }
 
 DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat& a,
-                                        const IslandSeat& b, double dt) {
+                                        const IslandSeat& b, double dt, bool ahead) {
     const dWorldID world = dBodyGetWorld(bodies_.a);
     const Step step{island,
                     a,
@@ -336,9 +285,10 @@ DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat&
                     dt,
                     double(dWorldGetERP(world)) / dt,
                     double(dWorldGetCFM(world)),
+                    ahead,
                     axis_of(joint_, bodies_.reversed)};
     first_ = int(island.rows.size());
-    count_ = 0;
+    count_ = pinned_ = 0;
     switch (kind_) {
         case dJointTypeBall:
             hold_pin(step, step.world_axes, parameter(dParamERP) / dt, parameter(dParamCFM));
@@ -363,6 +313,25 @@ DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat&
     }
 }
 
+DUCTILE_INLINE bool OwnJoint::turn_rows(solve::Island& island, const IslandSeat& a,
+                                          const IslandSeat& b, double dt) {
+    constexpr double noticed = 1e-4; // [m/s]
+    if (pinned_ == 0) return false;
+    const ContactBody of_a{.spin = leaving(island, a, {}).spin},
+        of_b{.spin = leaving(island, b, {}).spin};
+    if (!(std::max(norm(of_a.spin), norm(of_b.spin)) * dt <= small_turn<double> / 2)) return false;
+    const Row& pin = rows_.front();
+    const Vector3<double> change =
+        difference(turned_pin(of_a, pin.arm_a, of_b, pin.arm_b, dt / 2), asked_);
+    if (!(norm(change) > noticed)) return false;
+    for (int i = 0; i < pinned_; ++i) {
+        if (is_sprung(std::size_t(i))) continue;
+        island.rows[std::size_t(first_ + i)].target +=
+            dot(change, rows_[std::size_t(i)].along);
+    }
+    return true;
+}
+
 DUCTILE_INLINE void OwnJoint::close_rows(const solve::Island& island, double dt) const {
     Vector3<double> force(0, 0, 0), torque_a(0, 0, 0), torque_b(0, 0, 0);
     for (int i = 0; i < count_; ++i) {
@@ -377,3 +346,5 @@ DUCTILE_INLINE void OwnJoint::close_rows(const solve::Island& island, double dt)
 }
 
 } // namespace ductile::ode
+
+#include "ductile/ode/own_joint_pose.ipp" // IWYU pragma: keep
