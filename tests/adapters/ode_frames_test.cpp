@@ -577,7 +577,7 @@ TEST_CASE("Frames: a universal's stops are foreseen whichever way it was attache
         dJointAttach(own, reversed ? nullptr : rotor, reversed ? rotor : nullptr);
         dJointSetUniversalAnchor(own, 0, 0, 0);
         const V3 across(0.6, 0.8, 0), about(0, 0, 1), axis_1 = second ? across : about,
-                                                       axis_2 = second ? about : across;
+                                                      axis_2 = second ? about : across;
         dJointSetUniversalAxis1(own, axis_1.x(), axis_1.y(), axis_1.z());
         dJointSetUniversalAxis2(own, axis_2.x(), axis_2.y(), axis_2.z());
         const int group = second != reversed ? dParamGroup : 0;

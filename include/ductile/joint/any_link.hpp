@@ -32,12 +32,12 @@
 // Turning rows. In a part of a frame a body that spins goes straight on, so that what it holds
 // would end it too far out, by half the turn squared. A row of it is asked to be where it should at
 // the end of the part: it comes to the solve at w, across its arm, and leaves it at -w; o, along
-// its way, is of third order in the turn. Of the rigid ones w is that of the spins with which the
-// bodies leave the part, as a first solve finds them (turn_at_end): with those of its begin they
-// end it at another speed than the next one begins with, which gives h² ω Δω r F/2 in each part in
-// which a body becomes faster, a tenth of the work of an arm on two pins that beat. Joints see u - w - o and u' + w + o: the same sum, and so
-// the same account. (Not in a step as it is, which begins where rows are solved: whoever stops in
-// it had nothing that could be turned round.)
+// its way, is of third order in the turn. Joints see
+// u - w - o and u' + w + o: the same sum, and so the same account. Of rigid rows w may be that of
+// the spins with which the bodies leave the part, as a first solve finds them (turn_at_end): with
+// those of its begin they leave it at another speed than the next one begins with, which gives h² ω
+// Δω r F/2 in each part in which a body becomes faster by Δω. (Not in a step as it is, which begins
+// where rows are solved: whoever stops in it had nothing that could be turned round.)
 //
 // Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
 // does not, `outcome` is unreliable although the plastic rows may look solved. So it is where

@@ -62,11 +62,6 @@ struct SpringRow {
     double stiffness, mass, start; ///< of the row; its velocity as the part began
     LawRow law;
 };
-/// One of Bullet's that is asked to be right at the end of the part.
-struct OwnTurnedRow {
-    std::size_t place, end; ///< among Bullet's rows, and those at the end
-    double leaves;          ///< speed at which it is taken to leave the part beside what it is asked
-};
 /// A contact's that gives way.
 struct SoftRow {
     std::size_t row;
@@ -121,8 +116,6 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void look_ahead(const btContactSolverInfo& info);
     void load_rows();
     void turn_rows();
-    [[nodiscard]] bool turn_own_again(const btContactSolverInfo& info);
-    [[nodiscard]] Vector6<double> leaves(int body) const;
     void load_springs();
     void read_own();
     [[nodiscard]] Vector6<double> began(int body) const;
@@ -157,7 +150,6 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     bool pushes_apart_ = true;
     std::vector<EndRow> at_end_;                 ///< of the others' rows, constraint by constraint
     std::vector<int> count_at_end_;              ///< rows of each
-    std::vector<detail::OwnTurnedRow> own_turned_;
     std::vector<detail::OwnSpring> springs_;     ///< of one of them
     std::vector<detail::SpringRow> spring_rows_; ///< of all
     std::vector<detail::SoftRow> soft_rows_;

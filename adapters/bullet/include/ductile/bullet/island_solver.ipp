@@ -93,13 +93,6 @@ DUCTILE_INLINE void IslandSolver::solve_joints(btCollisionObject** bodies, int b
                            seat_of(plastic->getRigidBodyB()), tick, double(info.m_erp));
     }
     report_ = solver_.solve(island_);
-    bool turned = false;
-    for (PlasticConstraint* plastic : plastic_) {
-        turned = plastic->turn_rows(island_, seat_of(plastic->getRigidBodyA()),
-                                    seat_of(plastic->getRigidBodyB())) ||
-                 turned;
-    }
-    if (turned) report_ = solver_.solve(island_);
     for (int i = 0; i < body_count; ++i) {
         auto& body = static_cast<btRigidBody&>(*bodies[i]);
         const int number = body.getCompanionId();
@@ -145,13 +138,6 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     find_turned(manifolds, manifold_count, double(info.m_timeStep));
     load_contacts();
     report_ = solver_.solve(island_);
-    bool turned = turn_own_again(info);
-    for (PlasticConstraint* plastic : plastic_) {
-        turned = plastic->turn_rows(island_, seat(plastic->getRigidBodyA()),
-                                    seat(plastic->getRigidBodyB())) ||
-                 turned;
-    }
-    if (turned) report_ = solver_.solve(island_);
     read_own();
     store();
     if (info.m_splitImpulse && pushes_apart_) {

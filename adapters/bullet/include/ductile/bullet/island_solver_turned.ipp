@@ -8,7 +8,6 @@
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpringConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -248,51 +247,8 @@ DUCTILE_INLINE void IslandSolver::read_own() {
     }
 }
 
-/// Of a body of a solved island, as the part ends.
-DUCTILE_INLINE Vector6<double> IslandSolver::leaves(int body) const {
-    const int number = number_[std::size_t(body)];
-    if (number == solve::immovable) return began(body);
-    return began(body) + pushed(body) + island_.bodies[std::size_t(number)].velocity;
-}
-
-/// As `turn_rows`, with the velocities that a first solve found in place of those of the begin.
-DUCTILE_INLINE bool IslandSolver::turn_own_again(const btContactSolverInfo& info) {
-    constexpr double noticed = 1e-4; // [m/s | rad/s]
-    if (own_turned_.empty()) return false;
-    for (int i = 0; i < m_tmpSolverBodyPool.size(); ++i) {
-        if (!(norm(angular(leaves(i))) * 2 * half_ <= small_turn<double> / 2)) return false;
-    }
-    const std::vector<int> counts = count_at_end_;
-    const auto set = [this](const auto& velocity) {
-        for (int i = 0; i < m_tmpSolverBodyPool.size(); ++i) {
-            btRigidBody* body = m_tmpSolverBodyPool[i].m_originalBody;
-            if (!detail::moves(body)) continue;
-            const Vector6<double> now = velocity(i);
-            body->setLinearVelocity(to_bullet(linear(now)));
-            body->setAngularVelocity(to_bullet(angular(now)));
-        }
-    };
-    set([this](int i) { return leaves(i); });
-    look_ahead(info);
-    set([this](int i) { return began(i); });
-    if (count_at_end_ != counts) return false; // a stop
-    bool any = false;
-    for (const detail::OwnTurnedRow& own : own_turned_) {
-        const EndRow& end = at_end_[own.end];
-        const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[int(own.place)];
-        const Vector6<double> a = leaves(row.m_solverBodyIdA), b = leaves(row.m_solverBodyIdB);
-        const double leaves = (detail::twist(end.move_a, end.turn_a) - detail::on_a(row)).dot(a) +
-                              (detail::twist(end.move_b, end.turn_b) - detail::on_b(row)).dot(b);
-        const double more = own.leaves - leaves;
-        island_.rows[first_read_ + own.place].target += more;
-        any = any || std::abs(more) > noticed;
-    }
-    return any;
-}
-
 /// Has those of them that hold both ways be right at the end of the part.
 DUCTILE_INLINE void IslandSolver::turn_rows() {
-    own_turned_.clear();
     std::size_t then = 0, now = 0;
     for (std::size_t i = 0; i < count_at_end_.size(); ++i) {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
@@ -307,13 +263,7 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
             const double leaves = detail::twist(end.move_a, end.turn_a).dot(began(a)) +
                                   detail::twist(end.move_b, end.turn_b).dot(began(b));
             const double asked = turned.target + comes + push; // in the middle
-            // beyond a small turn a part is no picture of the motion, and all of it makes it grow
-            const double turn =
-                2 * half_ * std::max(norm(angular(began(a))), norm(angular(began(b))));
-            const double share = std::min(1.0, std::pow(small_turn<double> / turn, 2));
-            const double at_end = share * (leaves - comes);
-            turned.target = (4 * asked - double(end.error)) / 3 - push - comes - at_end;
-            own_turned_.push_back({now + std::size_t(k), then + std::size_t(k), at_end});
+            turned.target = (4 * asked - double(end.error)) / 3 - push - leaves;
         }
         then += std::size_t(count_at_end_[i]);
         now += std::size_t(count);

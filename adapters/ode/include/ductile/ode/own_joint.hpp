@@ -46,7 +46,8 @@ class OwnJoint {
     void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b, double dt,
                    bool ahead);
     /// The island is solved: asks its pin for what fits bodies that leave the part so.
-    [[nodiscard]] bool turn_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b, double dt);
+    [[nodiscard]] bool turn_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
+                                 double dt);
     /// The island is solved: the impulses become forces on the bodies, and the joint's feedback.
     void close_rows(const solve::Island& island, double dt) const;
 

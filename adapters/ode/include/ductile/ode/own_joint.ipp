@@ -314,7 +314,7 @@ DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat&
 }
 
 DUCTILE_INLINE bool OwnJoint::turn_rows(solve::Island& island, const IslandSeat& a,
-                                          const IslandSeat& b, double dt) {
+                                        const IslandSeat& b, double dt) {
     constexpr double noticed = 1e-4; // [m/s]
     if (pinned_ == 0) return false;
     const ContactBody of_a{.spin = leaving(island, a, {}).spin},
@@ -326,8 +326,7 @@ DUCTILE_INLINE bool OwnJoint::turn_rows(solve::Island& island, const IslandSeat&
     if (!(norm(change) > noticed)) return false;
     for (int i = 0; i < pinned_; ++i) {
         if (is_sprung(std::size_t(i))) continue;
-        island.rows[std::size_t(first_ + i)].target +=
-            dot(change, rows_[std::size_t(i)].along);
+        island.rows[std::size_t(first_ + i)].target += dot(change, rows_[std::size_t(i)].along);
     }
     return true;
 }
