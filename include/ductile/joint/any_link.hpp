@@ -32,9 +32,12 @@
 // Turning rows. In a part of a frame a body that spins goes straight on, so that what it holds
 // would end it too far out, by half the turn squared. A row of it is asked to be where it should at
 // the end of the part: it comes to the solve at w, across its arm, and leaves it at -w; o, along
-// its way, is of third order in the turn. Joints see u - w - o and u' + w + o: the same sum, and so
-// the same account. (Not in a step as it is, which begins where rows are solved: whoever stops in
-// it had nothing that could be turned round.)
+// its way, is of third order in the turn. Joints see
+// u - w - o and u' + w + o: the same sum, and so the same account. Of rigid rows w may be that of
+// the spins with which the bodies leave the part, as a first solve finds them (turn_at_end): with
+// those of its begin they leave it at another speed than the next one begins with, which gives h² ω
+// Δω r F/2 in each part in which a body becomes faster by Δω. (Not in a step as it is, which begins
+// where rows are solved: whoever stops in it had nothing that could be turned round.)
 //
 // Certificate. A solved rigid row moves at its target velocity, whatever else happens; where one
 // does not, `outcome` is unreliable although the plastic rows may look solved. So it is where
@@ -100,6 +103,11 @@ class AnyLink {
     /// all, nor does one of a body that is not at a finite place.
     const Limits& prepare(const BodyState<S>& a, const BodyState<S>& b, S dt, S rate,
                           bool ahead = false) noexcept;
+
+    /// The rows were solved, and the bodies leave the part of `dt` [s] as they are shown: by how
+    /// much more the rigid force rows ask for from now on, in the order of JointAxis, so that they
+    /// are right for these velocities [m/s]; zero: the answer stands. Once a step.
+    Vector3<S> turn_at_end(const BodyState<S>& a, const BodyState<S>& b, S dt) noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
     /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it. Input
@@ -362,6 +370,7 @@ class AnyLink {
     S unfit_ = 0;                                 ///< [J]
     Vector6<S> before_blow_ = Vector6<S>::Zero(); ///< u' of the last step in which time passed
     RowTurning<S> turning_;                       ///< between prepare and commit
+    Vector3<S> asked_ = Vector3<S>::Zero();       ///< of force rows, by it alone
     bool ahead_ = false;                          ///< they were half a step ahead in it
     bool sound_ = true;                           ///< the bodies of the last prepare were somewhere
     BorneBlow<S> blow_;

@@ -59,6 +59,7 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
         swing_.kick();
     }
     const Vector6<S> turned = turning_.target();
+    asked_ = linear(turned);
     const bool whole = !broken() && sound_;
     for (std::size_t i = 0; i < limits_.size(); ++i) {
         const auto k = Eigen::Index(i);
@@ -73,6 +74,23 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
     }
     prepare_joint({now - turning_.across * (dt / 4), before, start_, turning_}, dt, ahead);
     return limits_;
+}
+
+template <std::floating_point S>
+Vector3<S> AnyLink<S>::turn_at_end(const BodyState<S>& a, const BodyState<S>& b, S dt) noexcept {
+    constexpr S noticed = S(0.1);
+    const Vector3<S> none = Vector3<S>::Zero();
+    const S spin = std::sqrt(std::max(dot(a.spin, a.spin), dot(b.spin, b.spin)));
+    if (!ahead_ || !sound_ || broken() || !(spin * dt <= small_turn<S> / 2)) return none;
+    const Vector3<S> asked =
+        linear(pose_.turning(a, b, linear(offset()), dt, totals().flowing).target());
+    Vector3<S> change = difference(asked, asked_);
+    for (int i = 0; i < 3; ++i) {
+        if (plastic_[std::size_t(i)]) change[i] = 0;
+    }
+    if (!(norm(change) > noticed * allowed_.absolute_residual)) return none;
+    for (std::size_t i = 0; i < 3; ++i) limits_[i].bias += change[Eigen::Index(i)];
+    return change;
 }
 
 template <std::floating_point S>

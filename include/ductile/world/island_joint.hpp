@@ -11,6 +11,7 @@
 #pragma once
 
 #include "ductile/joint/any_link.hpp"
+#include "ductile/joint/link_types.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -37,6 +38,15 @@ solve::IslandRow& add_moment_row(solve::Island& island, const IslandSeat& a, con
 /// they share; `dt`: for which their forces act [s]. Returns the first.
 int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a, const IslandSeat& b,
              double dt);
+
+/// The body as it leaves the step, with the velocities that the rows of a solved island gave it.
+[[nodiscard]] BodyState<double> leaving(const solve::Island& island, const IslandSeat& seat,
+                                        BodyState<double> body);
+
+/// The island is solved: its rigid rows are asked for what fits bodies that leave a part of `dt`
+/// [s] so (AnyLink::turn_at_end). True where that is something else: it has to be solved again.
+[[nodiscard]] bool turn_rows(solve::Island& island, AnyLink<double>& link, int first,
+                             const BodyState<double>& a, const BodyState<double>& b, double dt);
 
 /// Adds six rows that give `impulse` to A at the joint where it is `pose`, and the opposite to B.
 void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,

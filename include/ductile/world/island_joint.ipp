@@ -156,6 +156,28 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
     return first;
 }
 
+DUCTILE_INLINE BodyState<double> leaving(const solve::Island& island, const IslandSeat& seat,
+                                         BodyState<double> body) {
+    body.velocity = seat.velocity;
+    body.spin = seat.spin;
+    if (seat.number == solve::immovable) return body;
+    const Vector6<double>& change = island.bodies[std::size_t(seat.number)].velocity;
+    body.velocity = sum(body.velocity, linear(change));
+    body.spin = sum(body.spin, angular(change));
+    return body;
+}
+
+DUCTILE_INLINE bool turn_rows(solve::Island& island, AnyLink<double>& link, int first,
+                              const BodyState<double>& a, const BodyState<double>& b, double dt) {
+    const Vector3<double> change = link.turn_at_end(a, b, dt);
+    if (is_zero(change)) return false;
+    const detail::RowOrder order = detail::row_order(link);
+    for (int i = 0; i < 3; ++i) {
+        island.rows[std::size_t(first + order.place[std::size_t(i)])].target += change[i];
+    }
+    return true;
+}
+
 DUCTILE_INLINE void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                                    const LinkPose<double>& pose,
                                    const JointImpulse<double>& impulse) {

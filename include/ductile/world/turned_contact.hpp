@@ -98,6 +98,21 @@ template <class Bodies, class Seen>
     return difference(cross(a.spin, cross(a.spin, arm_a)), cross(b.spin, cross(b.spin, arm_b)));
 }
 
+/// What a pin is asked for, A over B, so that it holds at the end of a part that its bodies leave
+/// so; half: h/2 [s] [m/s].
+[[nodiscard]] inline Vector3<double> turned_pin(const ContactBody& a, const Vector3<double>& arm_a,
+                                                const ContactBody& b, const Vector3<double>& arm_b,
+                                                double half) {
+    return scaled(-half, turning_arms(a, arm_a, b, arm_b));
+}
+/// By how much B's end of it was off A's as the part began, where it is `error` off in the middle,
+/// A's moves by `moves` over B's, and turns as `turned`, what it is asked for, says [m].
+[[nodiscard]] inline Vector3<double> pin_as_began(const Vector3<double>& error,
+                                                  const Vector3<double>& moves,
+                                                  const Vector3<double>& turned, double half) {
+    return sum(error, scaled(half, sum(moves, scaled(0.5, turned))));
+}
+
 /// When a gap of `way` [m] is closed that closes at `speed` [m/s] and gains `gain` [m/s²] on that;
 /// infinite: never [s].
 [[nodiscard]] inline double time_to_close(double way, double speed, double gain) {

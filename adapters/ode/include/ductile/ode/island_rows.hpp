@@ -19,6 +19,10 @@ class IslandRows {
     /// Adds the rows of a step of `dt` [s] between its bodies A and B.
     virtual void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                            double dt) = 0;
+    /// The island is solved: asks for what fits bodies that leave the part so (turn_rows). True
+    /// where that is something else.
+    [[nodiscard]] virtual bool turn_rows(solve::Island& island, const IslandSeat& a,
+                                         const IslandSeat& b, double dt) = 0;
     /// The island is solved: the impulses of those rows become forces on the bodies.
     virtual void close_rows(const solve::Island& island, double dt) = 0;
     /// Gives the rows to ODE.

@@ -88,6 +88,7 @@ class IslandSolver {
     [[nodiscard]] bool gather(dBodyID first);
     [[nodiscard]] bool falls_asleep(Kept& kept, double dt) const;
     void solve(solve::IslandSolver& solver, const std::vector<NamedContact>& contacts, double dt);
+    [[nodiscard]] bool turns(double dt);
     void take_seat(dBodyID body, double dt);
     [[nodiscard]] IslandSeat seat(dBodyID body) const;
     void set_aside(const std::vector<NamedContact>& contacts);
@@ -112,6 +113,7 @@ class IslandSolver {
     solve::Island island_;
     std::vector<ContactRows> contact_rows_;
     bool awake_ = false;
+    bool ahead_ = false;
 
     // ---- until the end of the step
     std::vector<dJointID> disabled_; ///< contacts, ODE's own joints

@@ -33,6 +33,7 @@ DUCTILE_INLINE void IslandSolver::before_step(const std::vector<NamedContact>& c
                                               bool may_sleep, std::span<const dBodyID> others,
                                               std::span<const dJointID> of_members) {
     of_members_ = of_members;
+    ahead_ = !may_sleep;
     if (members_.empty() && others.empty()) return;
     if (!indexed_) index_members();
     ++step_;
@@ -185,17 +186,33 @@ DUCTILE_INLINE void IslandSolver::solve(solve::IslandSolver& solver,
     }
     for (Own* own : owned_) {
         const AttachedBodies bodies = attached_bodies(own->joint.id());
-        own->joint.open_rows(island_, seat(bodies.a), seat(bodies.b), dt);
+        own->joint.open_rows(island_, seat(bodies.a), seat(bodies.b), dt, ahead_);
     }
     for (const std::size_t i : touches_) {
         const AttachedBodies bodies = attached_bodies(contacts[i].joint);
         contact_rows_.emplace_back(contacts[i], island_, seat(bodies.a), seat(bodies.b), dt);
     }
     solver.solve(island_);
+    if (ahead_ && turns(dt)) solver.solve(island_);
     for (const std::size_t i : joints_) members_[i].rows->close_rows(island_, dt);
     for (const Own* own : owned_) own->joint.close_rows(island_, dt);
     for (const ContactRows& rows : contact_rows_) rows.close(island_, dt);
     set_aside(contacts);
+}
+
+/// Asks the rows of a solved island for what fits the velocities with which its bodies leave the
+/// part; true where that is something else.
+DUCTILE_INLINE bool IslandSolver::turns(double dt) {
+    bool any = false;
+    for (const std::size_t i : joints_) {
+        const AttachedBodies bodies = members_[i].joint->bodies();
+        any = members_[i].rows->turn_rows(island_, seat(bodies.a), seat(bodies.b), dt) || any;
+    }
+    for (Own* own : owned_) {
+        const AttachedBodies bodies = attached_bodies(own->joint.id());
+        any = own->joint.turn_rows(island_, seat(bodies.a), seat(bodies.b), dt) || any;
+    }
+    return any;
 }
 
 /// For ODE's step.

@@ -132,6 +132,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
     [[nodiscard]] bool rests() const override { return link_.swing().rests(); }
     DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                                   double dt) override;
+    [[nodiscard]] DUCTILE_INLINE bool turn_rows(solve::Island& island, const IslandSeat& a,
+                                                const IslandSeat& b, double dt) override;
     DUCTILE_INLINE void close_rows(const solve::Island& island, double dt) override;
     DUCTILE_INLINE void make_rows(double dt) override;
 

@@ -174,6 +174,12 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
     first_row_ = add_rows(island, link_, a, b, dt);
 }
 
+DUCTILE_INLINE bool JointConstraint::turn_rows(solve::Island& island, const IslandSeat& a,
+                                               const IslandSeat& b, double dt) {
+    return ductile::turn_rows(island, link_, first_row_, leaving(island, a, body_motion(a_)),
+                              leaving(island, b, body_motion(b_)), dt);
+}
+
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
     const Vector6<double> forces = take_forces(island, link_, first_row_, dt);
     solved_rows_ = forces;

@@ -51,6 +51,7 @@ struct AxisCalls {
     dReal (*rate)(dJointID);
     void (*axis)(dJointID, dVector3);
     bool turns;
+    double way = 1, rate_way = 1; ///< -1: its stops count the other way round
 };
 
 [[nodiscard]] inline double yields_along(dJointID joint, const Vector3<double>& axis, bool turns) {
@@ -67,14 +68,11 @@ struct AxisCalls {
 inline void add_axis(dJointID joint, const AxisCalls& calls, StoppedAxes& axes) {
     const dJointType type = dJointGetType(joint);
     const auto parameter = joint_calls(type).get;
-    // of a hinge that was attached as (null, body) ODE tells the angle the other way round
-    const bool other_way = type == dJointTypeHinge && attached_bodies(joint).reversed;
-    const double way = other_way ? -1 : 1;
     axes.axes[axes.count++] = {calls.group,
                                double(parameter(joint, dParamLoStop + calls.group)),
                                double(parameter(joint, dParamHiStop + calls.group)),
-                               way * double(calls.at(joint)),
-                               way * double(calls.rate(joint)),
+                               calls.way * double(calls.at(joint)),
+                               calls.rate_way * double(calls.rate(joint)),
                                yields_along(joint, told(joint, calls.axis), calls.turns)};
 }
 
@@ -83,19 +81,25 @@ inline void add_axis(dJointID joint, const AxisCalls& calls, StoppedAxes& axes) 
 [[nodiscard]] inline StoppedAxes stopped_axes(dJointID joint) {
     StoppedAxes axes;
     const auto add = [&](const detail::AxisCalls& calls) { detail::add_axis(joint, calls, axes); };
+    // attached as (null, body): of a hinge ODE tells the angle the other way round, of a universal
+    // the axes, and the second's angle but not its rate
+    const bool reversed = attached_bodies(joint).reversed;
+    const int first = reversed ? dParamGroup : 0, second = dParamGroup - first;
+    const double way = reversed ? -1 : 1;
     switch (dJointGetType(joint)) {
         case dJointTypeHinge:
-            add({0, dJointGetHingeAngle, dJointGetHingeAngleRate, dJointGetHingeAxis, true});
+            add({0, dJointGetHingeAngle, dJointGetHingeAngleRate, dJointGetHingeAxis, true, way,
+                 way});
             break;
         case dJointTypeSlider:
             add({0, dJointGetSliderPosition, dJointGetSliderPositionRate, dJointGetSliderAxis,
                  false});
             break;
         case dJointTypeUniversal:
-            add({0, dJointGetUniversalAngle1, dJointGetUniversalAngle1Rate, dJointGetUniversalAxis1,
-                 true});
-            add({dParamGroup, dJointGetUniversalAngle2, dJointGetUniversalAngle2Rate,
-                 dJointGetUniversalAxis2, true});
+            add({first, dJointGetUniversalAngle1, dJointGetUniversalAngle1Rate,
+                 dJointGetUniversalAxis1, true});
+            add({second, dJointGetUniversalAngle2, dJointGetUniversalAngle2Rate,
+                 dJointGetUniversalAxis2, true, way});
             break;
         case dJointTypeHinge2:
             add({0, dJointGetHinge2Angle1, dJointGetHinge2Angle1Rate, dJointGetHinge2Axis1, true});

@@ -9,7 +9,6 @@
 #include <numbers>
 #include <utility>
 
-#include "ductile/joint/rotation.hpp"
 #include "ductile/ode/joint_calls.hpp"
 #include "ductile/ode/own_joint.hpp"
 
@@ -42,6 +41,8 @@ struct OwnJoint::Step {
     solve::Island& island;
     const IslandSeat &a, &b;
     double dt, rate, cfm; ///< [s], k, [s/kg]
+    bool ahead;
+    Vector3<double> axis; ///< the joint's, in A, world
     std::array<Vector3<double>, 3> world_axes{Vector3<double>(1, 0, 0), Vector3<double>(0, 1, 0),
                                               Vector3<double>(0, 0, 1)};
 };
@@ -68,9 +69,9 @@ DUCTILE_INLINE bool OwnJoint::is_known(dJointID joint) {
 DUCTILE_INLINE OwnJoint::OwnJoint(dJointID joint)
     : joint_(joint), kind_(dJointGetType(joint)), bodies_(attached_bodies(joint)) {
     const BodyState<double> a = body_motion(bodies_.a), b = body_motion(bodies_.b);
-    ask_axis();
-    axis_a_ = detail::in_body(bodies_.a, axis_);
-    axis_b_ = detail::in_body(bodies_.b, axis_);
+    const Vector3<double> axis = axis_of(joint, bodies_.reversed);
+    axis_a_ = detail::in_body(bodies_.a, axis);
+    axis_b_ = detail::in_body(bodies_.b, axis);
     turn_ = transposed_times(a.orientation, b.orientation);
     const Vector3<double> apart = difference(a.position, b.position);
     place_ = kind_ == dJointTypeFixed && bodies_.b != nullptr
@@ -78,14 +79,14 @@ DUCTILE_INLINE OwnJoint::OwnJoint(dJointID joint)
                  : detail::in_body(bodies_.b, apart);
     if (kind_ != dJointTypeHinge2) return;
     const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2);
-    angle_ = std::atan2(norm(cross(axis_, wheel)), dot(axis_, wheel));
+    angle_ = std::atan2(norm(cross(axis, wheel)), dot(axis, wheel));
 }
 
-DUCTILE_INLINE bool OwnJoint::is_same() {
+DUCTILE_INLINE bool OwnJoint::is_same() const {
     constexpr double round_off = 1e-6;
     if (dJointGetType(joint_) != kind_ || attached_bodies(joint_) != bodies_) return false;
-    ask_axis();
-    return norm(difference(detail::in_body(bodies_.a, axis_), axis_a_)) < round_off;
+    const Vector3<double> axis = detail::in_body(bodies_.a, axis_of(joint_, bodies_.reversed));
+    return norm(difference(axis, axis_a_)) < round_off;
 }
 
 DUCTILE_INLINE bool OwnJoint::fits() const {
@@ -94,83 +95,15 @@ DUCTILE_INLINE bool OwnJoint::fits() const {
         case dJointTypeHinge:
         case dJointTypeHinge2:
             return norm(leans()) < nearly;
-        case dJointTypeSlider:
-            return norm(turned()) < nearly && norm(cross(axis_, shifted())) < nearly;
+        case dJointTypeSlider: {
+            const Vector3<double> axis = axis_of(joint_, bodies_.reversed);
+            return norm(turned()) < nearly && norm(cross(axis, shifted())) < nearly;
+        }
         case dJointTypeFixed:
             return norm(turned()) < nearly && norm(shifted()) < nearly;
         default:
             return true; // ODE tells all
     }
-}
-
-// ---- how its bodies lie
-
-DUCTILE_INLINE void OwnJoint::ask_axis() {
-    switch (kind_) {
-        case dJointTypeHinge:
-            axis_ = told(joint_, dJointGetHingeAxis);
-            break;
-        case dJointTypeSlider:
-            axis_ = told(joint_, dJointGetSliderAxis);
-            break;
-        case dJointTypeUniversal:
-            axis_ =
-                told(joint_, bodies_.reversed ? dJointGetUniversalAxis2 : dJointGetUniversalAxis1);
-            break;
-        case dJointTypeHinge2:
-            axis_ = told(joint_, dJointGetHinge2Axis1);
-            break;
-        default:
-            break; // none
-    }
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::turned() const {
-    const Matrix3<double> wanted = times(body_motion(bodies_.a).orientation, turn_);
-    return rotation_vector(times_transposed(body_motion(bodies_.b).orientation, wanted));
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::shifted() const {
-    const BodyState<double> a = body_motion(bodies_.a), b = body_motion(bodies_.b);
-    const bool in_a = kind_ == dJointTypeFixed && bodies_.b != nullptr;
-    const Vector3<double> place =
-        in_a ? scaled(-1, times(a.orientation, place_)) : times(b.orientation, place_);
-    return sum(difference(b.position, a.position), place);
-}
-
-DUCTILE_INLINE Vector3<double> OwnJoint::leans() const {
-    if (kind_ == dJointTypeHinge) {
-        return cross(axis_, times(body_motion(bodies_.b).orientation, axis_b_));
-    }
-    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(axis_, wheel);
-    const double sine = norm(across), angle = std::atan2(sine, dot(axis_, wheel));
-    return scaled(std::sin(angle - angle_) / sine, across);
-}
-
-DUCTILE_INLINE std::array<Vector3<double>, 2> OwnJoint::pins() const {
-    std::array<Vector3<double>, 2> pins;
-    const auto ask = [&](void (*of_a)(dJointID, dVector3), void (*of_b)(dJointID, dVector3)) {
-        pins = {told(joint_, of_a), told(joint_, of_b)};
-        if (bodies_.reversed) std::swap(pins[0], pins[1]);
-    };
-    switch (kind_) {
-        case dJointTypeHinge:
-            ask(dJointGetHingeAnchor, dJointGetHingeAnchor2);
-            break;
-        case dJointTypeUniversal:
-            ask(dJointGetUniversalAnchor, dJointGetUniversalAnchor2);
-            break;
-        case dJointTypeHinge2:
-            ask(dJointGetHinge2Anchor, dJointGetHinge2Anchor2);
-            break;
-        default:
-            ask(dJointGetBallAnchor, dJointGetBallAnchor2);
-    }
-    return pins;
-}
-
-DUCTILE_INLINE double OwnJoint::parameter(int name, int axis) const {
-    return double(joint_calls(kind_).get(joint_, name + dParamGroup * axis));
 }
 
 // ---- its rows
@@ -195,11 +128,26 @@ DUCTILE_INLINE void OwnJoint::hold_pin(const Step& step,
     const auto [of_a, of_b] = pins();
     const Vector3<double> error = difference(of_b, of_a);
     Row row{.arm_a = arm_of(bodies_.a, of_a), .arm_b = arm_of(bodies_.b, of_b)};
-    const bool all = kind_ == dJointTypeBall;
+    pinned_ = int(along.size());
+    asked_ = Vector3<double>::Zero();
+    Vector3<double> began = error; // as the part did
+    if (step.ahead) {
+        const double half = step.dt / 2;
+        asked_ = turned_pin(contact_body(bodies_.a), row.arm_a, contact_body(bodies_.b), row.arm_b,
+                            half);
+        const Vector3<double> moves =
+            difference(velocity_at(bodies_.a, of_a), velocity_at(bodies_.b, of_b));
+        began = pin_as_began(error, moves, asked_, half);
+    }
     for (std::size_t i = 0; i < along.size(); ++i) {
         row.along = along[i];
-        const bool own = all || i == 0;
-        pull(step, row, (own ? rate : step.rate) * dot(error, row.along), own ? cfm : step.cfm);
+        if (is_sprung(i)) {
+            pull(step, row, rate * dot(error, row.along), cfm);
+            continue;
+        }
+        const bool own = kind_ == dJointTypeBall || i == 0;
+        pull(step, row, (own ? rate : step.rate) * dot(began, row.along) + dot(asked_, row.along),
+             own ? cfm : step.cfm);
     }
 }
 
@@ -259,7 +207,7 @@ DUCTILE_INLINE void OwnJoint::add_axis(const Step& step, const Axis& axis) {
 
 /// Along, or about, two axes across its own.
 DUCTILE_INLINE void OwnJoint::hold_across(const Step& step, const Vector3<double>& error, Row row) {
-    for (const Vector3<double>& along : plane_across(axis_)) {
+    for (const Vector3<double>& along : plane_across(step.axis)) {
         row.along = along;
         pull(step, row, step.rate * dot(error, along), step.cfm);
     }
@@ -268,7 +216,7 @@ DUCTILE_INLINE void OwnJoint::hold_across(const Step& step, const Vector3<double
 /// `other` stays at its angle to the axis.
 DUCTILE_INLINE void OwnJoint::hold_angle(const Step& step, const Vector3<double>& other,
                                          double error) {
-    const Vector3<double> across = cross(axis_, other);
+    const Vector3<double> across = cross(step.axis, other);
     pull(step, {.along = scaled(1 / norm(across), across), .turns = true}, step.rate * error,
          step.cfm);
 }
@@ -277,13 +225,13 @@ DUCTILE_INLINE void OwnJoint::open_hinge(const Step& step) {
     hold_pin(step, step.world_axes, step.rate, step.cfm);
     hold_across(step, leans(), {.turns = true});
     const auto angle = double(dJointGetHingeAngle(joint_));
-    add_axis(step, {.number = 0, .along = axis_, .at = bodies_.reversed ? -angle : angle});
+    add_axis(step, {.number = 0, .along = step.axis, .at = bodies_.reversed ? -angle : angle});
 }
 DUCTILE_INLINE void OwnJoint::open_slider(const Step& step) {
     hold_turn(step);
     hold_across(step, shifted(), midway());
     add_axis(step, {.number = 0,
-                    .along = scaled(bodies_.reversed ? -1 : 1, axis_),
+                    .along = scaled(bodies_.reversed ? -1 : 1, step.axis),
                     .turns = false,
                     .at = double(dJointGetSliderPosition(joint_))});
 }
@@ -294,17 +242,18 @@ DUCTILE_INLINE void OwnJoint::open_universal(const Step& step) {
                              double(dJointGetUniversalAngle2(joint_))};
     if (bodies_.reversed) at = {-at[1], at[0]};
     hold_pin(step, step.world_axes, step.rate, step.cfm);
-    hold_angle(step, other, -dot(axis_, other));
-    add_axis(step, {.number = 0, .along = axis_, .at = at[0]});
+    hold_angle(step, other, -dot(step.axis, other));
+    add_axis(step, {.number = 0, .along = step.axis, .at = at[0]});
     add_axis(step, {.number = 1, .along = other, .at = at[1]});
 }
 DUCTILE_INLINE void OwnJoint::open_hinge2(const Step& step) {
-    const auto [p, q] = plane_across(axis_);
-    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2), across = cross(axis_, wheel);
-    hold_pin(step, {axis_, p, q}, parameter(dParamSuspensionERP) / step.dt,
+    const auto [p, q] = plane_across(step.axis);
+    const Vector3<double> wheel = told(joint_, dJointGetHinge2Axis2),
+                          across = cross(step.axis, wheel);
+    hold_pin(step, {step.axis, p, q}, parameter(dParamSuspensionERP) / step.dt,
              parameter(dParamSuspensionCFM));
     hold_angle(step, wheel, dot(leans(), across) / norm(across));
-    add_axis(step, {.number = 0, .along = axis_, .at = double(dJointGetHinge2Angle1(joint_))});
+    add_axis(step, {.number = 0, .along = step.axis, .at = double(dJointGetHinge2Angle1(joint_))});
     add_axis(step, {.number = 1, .along = wheel, .stops = false});
 }
 DUCTILE_INLINE void OwnJoint::open_fixed(const Step& step) {
@@ -328,12 +277,18 @@ DUCTILE_INLINE void OwnJoint::open_motor(const Step& step) {
 }
 
 DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat& a,
-                                        const IslandSeat& b, double dt) {
+                                        const IslandSeat& b, double dt, bool ahead) {
     const dWorldID world = dBodyGetWorld(bodies_.a);
-    const Step step{
-        island, a, b, dt, double(dWorldGetERP(world)) / dt, double(dWorldGetCFM(world))};
+    const Step step{island,
+                    a,
+                    b,
+                    dt,
+                    double(dWorldGetERP(world)) / dt,
+                    double(dWorldGetCFM(world)),
+                    ahead,
+                    axis_of(joint_, bodies_.reversed)};
     first_ = int(island.rows.size());
-    count_ = 0;
+    count_ = pinned_ = 0;
     switch (kind_) {
         case dJointTypeBall:
             hold_pin(step, step.world_axes, parameter(dParamERP) / dt, parameter(dParamCFM));
@@ -358,6 +313,24 @@ DUCTILE_INLINE void OwnJoint::open_rows(solve::Island& island, const IslandSeat&
     }
 }
 
+DUCTILE_INLINE bool OwnJoint::turn_rows(solve::Island& island, const IslandSeat& a,
+                                        const IslandSeat& b, double dt) {
+    constexpr double noticed = 1e-4; // [m/s]
+    if (pinned_ == 0) return false;
+    const ContactBody of_a{.spin = leaving(island, a, {}).spin},
+        of_b{.spin = leaving(island, b, {}).spin};
+    if (!(std::max(norm(of_a.spin), norm(of_b.spin)) * dt <= small_turn<double> / 2)) return false;
+    const Row& pin = rows_.front();
+    const Vector3<double> change =
+        difference(turned_pin(of_a, pin.arm_a, of_b, pin.arm_b, dt / 2), asked_);
+    if (!(norm(change) > noticed)) return false;
+    for (int i = 0; i < pinned_; ++i) {
+        if (is_sprung(std::size_t(i))) continue;
+        island.rows[std::size_t(first_ + i)].target += dot(change, rows_[std::size_t(i)].along);
+    }
+    return true;
+}
+
 DUCTILE_INLINE void OwnJoint::close_rows(const solve::Island& island, double dt) const {
     Vector3<double> force(0, 0, 0), torque_a(0, 0, 0), torque_b(0, 0, 0);
     for (int i = 0; i < count_; ++i) {
@@ -372,3 +345,5 @@ DUCTILE_INLINE void OwnJoint::close_rows(const solve::Island& island, double dt)
 }
 
 } // namespace ductile::ode
+
+#include "ductile/ode/own_joint_pose.ipp" // IWYU pragma: keep

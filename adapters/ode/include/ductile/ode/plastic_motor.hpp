@@ -162,7 +162,8 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     void add_outside(double sign);
     /// A solved rigid row moves at its target velocity, whatever else happens. `apart`: velocity of
     /// A at the pin less that of B, after the solve [m/s].
-    void certify_pin(const Vector3<double>& apart);
+    void certify_pin(const Vector3<double>& apart, double dt);
+    [[nodiscard]] Vector3<double> pin_turning(double dt) const;
     /// Of the plastic row: its impulse over the time for which it acted.
     [[nodiscard]] double row_force() const;
     /// Gives the energy that the breaking step took in excess back to the motion along the axis.
@@ -175,6 +176,7 @@ class MotorConstraint : public PlasticConstraint, public AxisQueries {
     dJointFeedback feedback_{};
     MotorPose pose_;                      ///< at the start of the step, from commit on at its end
     Vector3<double> pin_target_{0, 0, 0}; ///< NaN where it is not known [m/s]
+    Vector3<double> turned_pin_{0, 0, 0}; ///< the same at the end of a part, less its turning
     double rigid_residual_ = 0;           ///< largest component [m/s]
     bool rigid_unsolved_ = false;
     OutsideForce outside_;
