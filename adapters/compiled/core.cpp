@@ -9,6 +9,7 @@
 #include <ductile/solve/active_set.ipp>
 #include <ductile/solve/certificate.ipp>
 #include <ductile/solve/fixed_sides.ipp>
+#include <ductile/solve/interior_point.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>

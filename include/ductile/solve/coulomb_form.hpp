@@ -58,6 +58,7 @@ struct CoulombForm : ContactForm {
         return std::abs(gap) * v.work[0].metric;
     }
 
+    /// False where it left the range; against its slip it holds, to begin from where it would go.
     static bool take(const BlockView& v) noexcept {
         if (!v.on_surface()) return true;
         double along = 0; // ŷ·q_y with the direction of the tangent
@@ -67,7 +68,10 @@ struct CoulombForm : ContactForm {
         const double longer = v.tangent.coupling * v.work[0].rest - v.tangent.gap;
         v.block.multiplier += along - compliance(v) * longer;
         if (v.block.multiplier > 0 && v.row[0].impulse > 0) return true;
-        v.block.multiplier = BlockView::known(v.block.multiplier);
+        if (!(v.block.multiplier > 0)) {
+            v.block.state = BlockState::inside;
+            v.block.multiplier = 0;
+        }
         return false;
     }
 
