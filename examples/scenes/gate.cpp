@@ -152,8 +152,8 @@ class Gate final : public Scene {
         run.tell(of + "still moving", now.held().kinetic / before);
         run.expect(of + "unexplained", (now.unexplained() - held.unexplained()) / before, 0, 0.01);
         run.tell(of + "speed of the vehicle", stage.velocity(vehicle).y(), "m/s");
-        // what is left of the gate presses it into the floor: of 45 frames that differ from 1/30 s by
-        // less than 0.05 % it ends at 0.984 to 0.999 m
+        // what is left of the gate presses it into the floor: of 45 frames that differ from 1/30 s
+        // by less than 0.05 % it ends at 0.984 to 0.999 m
         const double near = take.frame() > 0.02 ? 0.02 : 0.01;
         run.expect(of + "height of its middle", stage.place(vehicle).z(), 1, near, "m");
         run.expect(of + "the first hinge breaks", hinges[0]->broken() ? 1 : 0, 1, 0);
