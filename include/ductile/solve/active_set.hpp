@@ -34,11 +34,13 @@ namespace ductile::solve {
 /// Not thread-safe. Keeps room between solves.
 class ActiveSet {
   public:
+    /// Rounds without fewer rows in the wrong place; `brief`: where the way that follows is short.
+    static constexpr int usual = 6, brief = 3;
+
     /// From the sides, impulses and multipliers in the island. True where each row is where it
     /// belongs; the impulses are then those of the answer, and velocities and residuals belong to
-    /// them. `near`: all but a few are there already. `patience`: rounds without fewer rows in the
-    /// wrong place; few where the way that follows is a short one.
-    [[nodiscard]] bool solve(IslandSystem& system, bool near = false, int patience = 6);
+    /// them. `near`: all but a few are there already.
+    [[nodiscard]] bool solve(IslandSystem& system, bool near = false, int patience = usual);
 
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 

@@ -88,9 +88,9 @@ DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
 }
 
 DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
-    constexpr int usual = 6, short_way = 3; // the interior point takes no more than a few rounds
-    const int patience = InteriorPoint::serves(system_.island()) ? short_way : usual;
-    const bool settled = active_set_.solve(system_, false, patience);
+    const bool brief = InteriorPoint::serves(system_.island());
+    const bool settled =
+        active_set_.solve(system_, false, brief ? ActiveSet::brief : ActiveSet::usual);
     report.rounds += active_set_.rounds();
     return settled;
 }
