@@ -110,6 +110,8 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void solve_joints(btCollisionObject** bodies, int body_count, btTypedConstraint** constraints,
                       int constraint_count, const btContactSolverInfo& info);
     void add_body(const btRigidBody& body);
+    template <class Seat>
+    void solve_island(const Seat& seat_of);
     [[nodiscard]] static IslandSeat still_seat(const btRigidBody& body);
     void load_bodies();
     void load_plastic_joints(const btContactSolverInfo& info);

@@ -61,6 +61,19 @@ DUCTILE_INLINE bool IslandSolver::has_only_joints(btCollisionObject** bodies, in
            });
 }
 
+/// Once more where plastic joints ask for something else as bodies leave the part (turn_rows).
+template <class Seat>
+void IslandSolver::solve_island(const Seat& seat_of) {
+    report_ = solver_.solve(island_);
+    bool turned = false;
+    for (PlasticConstraint* plastic : plastic_) {
+        turned = plastic->turn_rows(island_, seat_of(plastic->getRigidBodyA()),
+                                    seat_of(plastic->getRigidBodyB())) ||
+                 turned;
+    }
+    if (turned) report_ = solver_.solve(island_);
+}
+
 /// Straight from bodies and joints, without Bullet's rows and solver bodies.
 DUCTILE_INLINE void IslandSolver::solve_joints(btCollisionObject** bodies, int body_count,
                                                btTypedConstraint** constraints,
@@ -92,7 +105,7 @@ DUCTILE_INLINE void IslandSolver::solve_joints(btCollisionObject** bodies, int b
         plastic->open_rows(island_, seat_of(plastic->getRigidBodyA()),
                            seat_of(plastic->getRigidBodyB()), tick, double(info.m_erp));
     }
-    report_ = solver_.solve(island_);
+    solve_island(seat_of);
     for (int i = 0; i < body_count; ++i) {
         auto& body = static_cast<btRigidBody&>(*bodies[i]);
         const int number = body.getCompanionId();
@@ -137,7 +150,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     load_rows();
     find_turned(manifolds, manifold_count, double(info.m_timeStep));
     load_contacts();
-    report_ = solver_.solve(island_);
+    solve_island([this](btRigidBody& body) { return seat(body); });
     read_own();
     store();
     if (info.m_splitImpulse && pushes_apart_) {

@@ -51,6 +51,8 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
 
     DUCTILE_INLINE void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                                   double tick, double erp) override;
+    [[nodiscard]] DUCTILE_INLINE bool turn_rows(solve::Island& island, const IslandSeat& a,
+                                                const IslandSeat& b) override;
     DUCTILE_INLINE void close_rows(const solve::Island& island) override;
 
     DUCTILE_INLINE void begin_part() override;

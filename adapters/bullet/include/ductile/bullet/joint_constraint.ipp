@@ -89,6 +89,13 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
     first_row_ = add_rows(island, link_, a, b, dt_);
 }
 
+DUCTILE_INLINE bool JointConstraint::turn_rows(solve::Island& island, const IslandSeat& a,
+                                               const IslandSeat& b) {
+    if (first_row_ == no_rows) return false;
+    return ductile::turn_rows(island, link_, first_row_, leaving(island, a, body_motion(m_rbA)),
+                              leaving(island, b, body_motion(m_rbB)), dt_);
+}
+
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island) {
     if (first_row_ == no_rows) return;
     forces_ = take_forces(island, link_, first_row_, dt_);
