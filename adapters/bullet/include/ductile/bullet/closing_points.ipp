@@ -25,8 +25,8 @@
 #include <limits>
 #include <vector>
 
+#include "ductile/bullet/face_points.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
-#include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet::detail {
 
@@ -50,6 +50,12 @@ namespace ductile::bullet::detail {
     const btVector3 parts =
         velocity_at(a, point.getPositionWorldOnA()) - velocity_at(b, point.getPositionWorldOnB());
     return double(normal.dot(parts));
+}
+
+/// How fast a gap closes [m/s].
+[[nodiscard]] DUCTILE_INLINE double closing_speed(const btCollisionObject& a,
+                                                  const btCollisionObject& b, const Gap& gap) {
+    return -double(gap.normal.dot(velocity_at(a, gap.on_a) - velocity_at(b, gap.on_b)));
 }
 
 [[nodiscard]] DUCTILE_INLINE btVector3 spin(const btCollisionObject& object) {
@@ -105,31 +111,42 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
-        const auto [away, normal, on_a, on_b] = gap_at(point, *a, *b);
-        const double speed = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
+        const std::vector<Gap> gaps = gaps_at(point, *a, *b);
+        for (const Gap& gap : gaps) see(gap, gaps, *a, *b);
+        return 0;
+    }
+
+  private:
+    void see(const Gap& there, const std::vector<Gap>& all, const btCollisionObjectWrapper& a,
+             const btCollisionObjectWrapper& b) {
+        const btCollisionObject &of_a = *a.getCollisionObject(), &of_b = *b.getCollisionObject();
+        const auto& [away, normal, on_a, on_b] = there;
+        const double speed = closing_speed(of_a, of_b, there);
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const double faster = gain(of_a, normal);
         const double taken = speed > 0 && yields > 0 ? speed * speed / (2 * yields) : 0;
         const double gap = std::max(away, 0.0);
-        const btVector3 turns =
-            speed > 0 ? btScalar(gap / speed) * (spin(of_a) - spin(of_b)) : btVector3(0, 0, 0);
-        const double way = gap + closed_gap / 2 + flush_depth(normal, *a, *b, turns);
+        const double time = speed > 0 ? gap / speed : 0;
+        double depth = flush_depth(normal, a, b, btScalar(time) * (spin(of_a) - spin(of_b)));
+        for (const Gap& other : all) { // corners that are as good as flush then
+            const double rise = other.away - closing_speed(of_a, of_b, other) * time;
+            if (rise < double(flush * other.on_b.distance(on_b))) depth = std::max(depth, rise);
+        }
+        const double way = gap + closed_gap / 2 + depth;
         if (away < nearest.away) nearest = {away, speed, taken, way, on_b, normal};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
-            if (!(end * end > 2 * yields * apart)) return 0;
+            if (!(end * end > 2 * yields * apart)) return;
             found.time = std::min(found.time, time_to_close(way, speed, faster));
-            return 0;
+            return;
         }
-        if (!(speed > 0) || !(yields > 0)) return 0;
+        if (!(speed > 0) || !(yields > 0)) return;
         const bool touches = away < closed_gap;
         found.strikes = found.strikes || (touches && taken > touching);
         // what a blow does not know is not closed for Bullet
         const bool counts = touches ? away > -closed_gap / 4 && taken > touching
                                     : taken > apart || speed * h / 2 - away > unseen;
         if (counts) found.time = std::min(found.time, way / speed);
-        return 0;
     }
 };
 
@@ -177,43 +194,47 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        const btCollisionObject &of_a = *a->getCollisionObject(), &of_b = *b->getCollisionObject();
-        const Gap there = gap_at(point, *a, *b);
+        const std::vector<Gap> gaps = gaps_at(point, *a, *b);
+        const bool known = are_all_known(gaps, *a, *b);
+        for (const Gap& gap : gaps)
+            see(gap, known, *a->getCollisionObject(), *b->getCollisionObject());
+        return 0;
+    }
+
+  private:
+    void see(const Gap& there, bool known, const btCollisionObject& of_a,
+             const btCollisionObject& of_b) {
         const auto& [away, normal, on_a, on_b] = there;
-        if (!(away < -closed_gap)) return 0;
+        if (!(away < -closed_gap)) return;
         const Point now_a = now(of_a, on_a), now_b = now(of_b, on_b);
         const double gap = away + double(normal.dot((now_a.at - on_a) - (now_b.at - on_b)));
-        const bool boxes = are_boxes(*a, *b); // Bullet knows all their corners that overlap
         const auto note = [&] {
-            if (boxes) return;
+            if (known) return;
             struck_.push_back({&of_a, &of_b, there.normal, now_b.at, gap});
         };
         if (!(time_ > 0)) {
             const btScalar lever = now_b.at.distance(touches_);
             if (gap < closed_gap + double(flush * lever)) note();
-            return 0;
+            return;
         }
         const double yields = yield_at(of_a, on_a, normal) + yield_at(of_b, on_b, normal);
         const auto counts = [yields](double speed, double energy) {
             return speed > 0 && speed * speed > 2 * yields * energy;
         };
-        const double then = -double(normal.dot(velocity_at(of_a, on_a) - velocity_at(of_b, on_b)));
-        if (!counts(then, apart_)) return 0;
+        if (!counts(closing_speed(of_a, of_b, there), apart_)) return;
         const double speed = -double(normal.dot(now_a.velocity - now_b.velocity));
         if (gap < closed_gap) {
-            if (!counts(speed, touching_)) return 0;
+            if (!counts(speed, touching_)) return;
             const bool overlaps = !(gap > -closed_gap / 4);
-            found_.strikes = found_.strikes || overlaps || !boxes;
+            found_.strikes = found_.strikes || overlaps || !known;
             note();
-            if (overlaps) return 0;
+            if (overlaps) return;
         }
         const double gain = 2 * ((gap - away) / time_ - speed) / time_;
         const double way = std::max(gap, 0.0) + closed_gap / 2;
         found_.time = std::min(found_.time, time_to_close(way, speed, gain));
-        return 0;
     }
 
-  private:
     struct Point {
         btVector3 at, velocity;
     };

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "ductile/bullet/closing_contacts.hpp"
+#include "ductile/bullet/face_points.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/lent.hpp"
 
@@ -216,17 +217,25 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     // Bullet flushes an empty group after an island above its batch size
     if (handed_over_ || (body_count == 0 && manifold_count == 0 && constraint_count == 0)) return 0;
     Lent<btScalar> lent;
-    if (kind_ == TickKind::part) detail::double_gaps(manifolds, manifold_count, lent);
+    const auto double_gaps = [&] {
+        if (kind_ == TickKind::part) detail::double_gaps(manifolds, manifold_count, lent);
+    };
     static const DirectBodies none;
     const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
     if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic) &&
         !direct.any) {
+        double_gaps();
         return solve_usual(bodies, body_count, manifolds, manifold_count, constraints,
                            constraint_count, info, drawer, dispatcher);
     }
     std::unique_ptr<Room> room = borrow();
     room->islands.find(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
                        detail::is_plastic, direct);
+    for (IslandParts& island : room->islands.chosen()) {
+        if (kind_ == TickKind::step) break;
+        for (btPersistentManifold* manifold : island.manifolds) see_corners(*manifold);
+    }
+    double_gaps();
     for (IslandParts& island : room->islands.chosen()) {
         solve_plastic(island, info, drawer, dispatcher);
     }

@@ -11,8 +11,8 @@
 
 #include "ductile/bullet/closing_contacts.hpp"
 #include "ductile/bullet/convert.hpp"
+#include "ductile/bullet/face_points.hpp"
 #include "ductile/bullet/held_contacts.hpp"
-#include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet {
 
@@ -92,7 +92,7 @@ struct AnyContact final : btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        found = found || gap_at(point, *a, *b).away <= reach;
+        found = found || gaps_at(point, *a, *b).front().away <= reach;
         return 0;
     }
 };
