@@ -3,8 +3,8 @@
 // Where corners of a convex shape meet a flat face. Of two convex shapes Bullet tells one point a
 // tick, by an iteration (GJK) that in single precision is up to 10 µm and 0.1 mrad off, other ones
 // for the same pose. So a bar that lies down has a contact at one end of its edge, or in the
-// middle of it, and what a blow closes is not what was seen to close. On the face of a box, or a
-// plane, all corners are known:
+// middle of it, and what a blow closes is not what was seen to close. On the face of a box, the end
+// of a cylinder, or a plane, all corners are known:
 //
 //   height of a corner x, a rounding r:   n·x - r - level,   n the normal of the face
 //
@@ -14,7 +14,8 @@
 //
 //   corners   hulls and other polyhedra: all; capsules: both centres; cylinders: of each rim the
 //             lowest, and of the lower one what is a quarter of a turn from it, too; boxes over a
-//             plane: all. Rounded by their margin, as Bullet does it, but boxes, which are sharp.
+//             plane or the end of a cylinder: all. Rounded by their margin, as Bullet does it, but
+//             boxes, which are sharp.
 //
 // Two boxes are Bullet's own matter (sharp_boxes.hpp), as are spheres, which have one point.
 #pragma once
@@ -121,14 +122,27 @@ class FaceView {
                          other.shape->getShapeType() != BOX_SHAPE_PROXYTYPE;
         if (plane) {
             const auto& shape = static_cast<const btStaticPlaneShape&>(*owner.shape);
-            look(shape.getPlaneNormal(), shape.getPlaneConstant(), nullptr);
+            look(shape.getPlaneNormal(), shape.getPlaneConstant(),
+                 [](const btVector3&) { return false; });
         } else if (box) {
             const btVector3 half =
                 static_cast<const btBoxShape&>(*owner.shape).getHalfExtentsWithMargin();
             for (int i = 0; i < 6; ++i) {
-                btVector3 normal(0, 0, 0);
-                normal[i / 2] = btScalar(i % 2 == 0 ? 1 : -1);
-                look(normal, half[i / 2], &half);
+                look(along(i / 2, i % 2 == 0), half[i / 2], [&half, i](const btVector3& at) {
+                    const int j = (i / 2 + 1) % 3, k = (i / 2 + 2) % 3;
+                    return btFabs(at[j]) > half[j] || btFabs(at[k]) > half[k];
+                });
+            }
+        } else if (owner.shape->getShapeType() == CYLINDER_SHAPE_PROXYTYPE) {
+            const auto& shape = static_cast<const btCylinderShape&>(*owner.shape);
+            const int up = shape.getUpAxis();
+            const btVector3 half = shape.getHalfExtentsWithMargin();
+            const btScalar radius = half[up == 0 ? 1 : 0];
+            for (const bool top : {true, false}) {
+                look(along(up, top), half[up], [up, radius](btVector3 at) {
+                    at[up] = 0;
+                    return at.length2() > radius * radius;
+                });
             }
         }
         if (!inside_) corners_.clear();
@@ -139,8 +153,14 @@ class FaceView {
     [[nodiscard]] std::span<const Corner> corners() const noexcept { return corners_; }
 
   private:
-    /// At a face whose normal is in the axes of its owner; null `half`: it has no edges.
-    void look(const btVector3& normal, btScalar level, const btVector3* half) {
+    [[nodiscard]] static btVector3 along(int axis, bool forwards) {
+        btVector3 normal(0, 0, 0);
+        normal[axis] = btScalar(forwards ? 1 : -1);
+        return normal;
+    }
+    /// At a face whose normal is in the axes of its owner, and so is what `is_beyond` its edges.
+    template <class Beyond>
+    void look(const btVector3& normal, btScalar level, const Beyond& is_beyond) {
         const btMatrix3x3 &axes = owner_.at.getBasis(), &turned = other_.at.getBasis();
         const btVector3 out = axes * normal;
         const btVector3 between = other_.at.getOrigin() - owner_.at.getOrigin();
@@ -161,12 +181,7 @@ class FaceView {
         normal_ = out;
         inside_ = true;
         const auto is_beside = [&](const Corner& corner) {
-            if (half == nullptr) return false;
-            const btVector3 local = (between + corner.at) * axes;
-            bool beside = false;
-            for (int k = 0; k < 3; ++k) {
-                beside = beside || (normal[k] == 0 && btFabs(local[k]) > (*half)[k]);
-            }
+            const bool beside = is_beyond((between + corner.at) * axes);
             if (beside && corner.away < nearest + near_) inside_ = false;
             return beside;
         };
