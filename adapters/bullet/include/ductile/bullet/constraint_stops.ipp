@@ -326,14 +326,16 @@ DUCTILE_INLINE void PartStops::hold(btTypedConstraint& constraint, const Stopped
     const bool at_least = began.gap(false) <= detail::at_stop,
                at_most = began.gap(true) <= detail::at_stop;
     const bool open = !at_least && !at_most;
-    constexpr auto nothing = btScalar(0.01 * detail::at_stop); // but more than Bullet rounds
+    const bool cone = constraint.getConstraintType() == CONETWIST_CONSTRAINT_TYPE;
+    // but more than Bullet rounds: of a cone's angle 1 µrad in single precision
+    const auto nothing = btScalar((cone ? 0.3 : 0.01) * detail::at_stop);
     const btScalar far_off = now.moves() ? btScalar(1e6) : btScalar(3);
     const auto beyond = [&](bool upper) {
         return std::max(nothing, slowly_ * btScalar(-began.gap(upper)));
     };
     const btScalar least = open ? btScalar(1) : now.at + (at_least ? beyond(false) : -far_off),
                    most = open ? btScalar(-1) : now.at - (at_most ? beyond(true) : -far_off);
-    if (constraint.getConstraintType() == CONETWIST_CONSTRAINT_TYPE) {
+    if (cone) {
         detail::set_span(static_cast<btConeTwistConstraint&>(constraint), now, most);
     } else {
         limits_.push_back({&constraint, now.number, now.least, now.most});
