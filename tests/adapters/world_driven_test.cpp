@@ -15,6 +15,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 using namespace ductile;
 using namespace ductile::test;
@@ -140,54 +141,95 @@ TEST_CASE("a hinge to a swaying base breaks at its travel", "[world][driven]") {
     }
 }
 
-TEST_CASE("Frames: an arm on a turntable that starts smoothly", "[frame][driven]") {
-    if (rough) return;
-    // 2 kg, 0.05 kg m², 0.3 m from its hinge, which is 0.2 m from the table's axis. That turns by
-    // θ = 6 t⁴/(0.05 + t²), at up to 11 rad/s
-    constexpr double mass = 2, own = 0.05, length = 0.3, radius = 0.2, moment = 2;
-    const auto angle = [](double t) { return 6 * std::pow(t, 4) / (0.05 + t * t); };
-    // (I + m l²)(θ'' + φ'') + m l r (θ'' cos φ + θ'² sin φ) = -M, |M| <= moment
-    double phi = 0, rate = 0, exact = 0;
-    constexpr double h = 1e-5, until = 1, about = own + mass * length * length;
-    for (double t = 0; t < until - h / 2; t += h) {
-        const double before = angle(t - h), now = angle(t), after = angle(t + h);
-        const double speed = (after - before) / (2 * h),
-                     gain = (after - 2 * now + before) / (h * h);
-        const double arm = mass * length * radius;
-        const double load =
-            about * gain + arm * (gain * std::cos(phi) + speed * speed * std::sin(phi));
-        const double stop = std::clamp(about * rate / h - load, -moment, moment);
-        const double next = rate - h * (load + stop) / about;
-        phi += h * (rate + next) / 2;
-        exact += std::abs(stop * h * (rate + next) / 2);
-        rate = next;
+namespace {
+
+/// An arm on a hinge that is `radius` from the axis of a table, which it leaves at `turned`.
+struct TableArm {
+    double mass, own, length, radius, moment, turned = 0;
+
+    /// What the hinge takes in a second as the table turns by `angle`(time).
+    template <class Angle>
+    [[nodiscard]] double work(const Angle& angle) const {
+        // (I + m l²)(θ'' + φ'') + m l r (θ'' cos φ + θ'² sin φ) = -M, |M| <= moment
+        double phi = turned, rate = 0, result = 0;
+        constexpr double h = 1e-5;
+        const double about = own + mass * length * length, arm = mass * length * radius;
+        for (double t = 0; t < 1 - h / 2; t += h) {
+            const double before = angle(t - h), now = angle(t), after = angle(t + h);
+            const double speed = (after - before) / (2 * h),
+                         gain = (after - 2 * now + before) / (h * h);
+            const double load =
+                about * gain + arm * (gain * std::cos(phi) + speed * speed * std::sin(phi));
+            const double stop = std::clamp(about * rate / h - load, -moment, moment);
+            const double next = rate - h * (load + stop) / about;
+            phi += h * (rate + next) / 2;
+            result += std::abs(stop * h * (rate + next) / 2);
+            rate = next;
+        }
+        return result;
     }
-    const bool of_engine = GENERATE(false, true); // the hinge
-    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
-        CAPTURE(frame, of_engine);
+    /// The same in a world, by a hinge of the engine's where that is so; and whether it is
+    /// believed.
+    template <class Angle>
+    [[nodiscard]] std::pair<double, bool> run(const Angle& angle, double frame,
+                                              bool of_engine) const {
         WorldRig rig(false, 0.01, 256);
         const auto table = rig.body(1, V3::Constant(1), V3::Zero());
-        const auto arm = rig.body(mass, V3::Constant(own), V3(radius + length, 0, 0));
+        const auto body =
+            rig.body(mass, V3::Constant(own),
+                     V3(radius + length * std::cos(turned), length * std::sin(turned), 0));
         WorldRig::prescribe(table);
         const V3 at(radius, 0, 0);
         const Joint law(Perfect<double>({.strength = moment}));
-        const auto taken = [&]() -> std::function<double()> {
-            if (of_engine) {
-                return
-                    [&hinge = rig.motor(arm, table, at, law)] { return hinge.absorbed_energy(); };
+        const auto go = [&](const auto& hinge) {
+            const int frames = int(std::lround(1 / frame));
+            for (int i = 1; i <= frames; ++i) {
+                const double t = i * frame;
+                WorldRig::drive(table, angle(t), (angle(t) - angle(t - frame)) / frame);
+                rig.world().step(frame);
             }
-            return [&hinge = rig.hinge(arm, table, at, law, "hinge")] {
-                return hinge.absorbed_energy();
-            };
-        }();
-        const int frames = int(std::lround(until / frame));
-        for (int i = 1; i <= frames; ++i) {
-            const double t = i * frame;
-            WorldRig::drive(table, angle(t), (angle(t) - angle(t - frame)) / frame);
-            rig.world().step(frame);
-        }
-        CHECK(taken() == Approx(exact).epsilon(0.02));
-        CHECK(rig.world().run().believed());
+            return std::pair(hinge.absorbed_energy(), rig.world().run().believed());
+        };
+        return of_engine ? go(rig.motor(body, table, at, law))
+                         : go(rig.hinge(body, table, at, law, "hinge"));
+    }
+};
+
+} // namespace
+
+TEST_CASE("Frames: an arm on a turntable that starts smoothly", "[frame][driven]") {
+    if (rough) return;
+    const TableArm arm{.mass = 2, .own = 0.05, .length = 0.3, .radius = 0.2, .moment = 2};
+    const auto angle = [](double t) { // at up to 11 rad/s
+        return 6 * std::pow(t, 4) / (0.05 + t * t);
+    };
+    const double exact = arm.work(angle);
+    const bool of_engine = GENERATE(false, true); // the hinge
+    for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        CAPTURE(frame, of_engine);
+        const auto [taken, believed] = arm.run(angle, frame, of_engine);
+        CHECK(taken == Approx(exact).epsilon(0.02));
+        CHECK(believed);
+    }
+}
+
+TEST_CASE("Frames: an arm that the begin of a motion breaks loose is doubted while it goes on",
+          "[frame][driven]") {
+    if (rough) return;
+    // the table goes to and fro, from an acceleration of 30 rad/s² which the hinge hardly follows:
+    // taken for a jump that is caught up with by thrice as much, and lost for many frames
+    const TableArm arm{.mass = 3.098195,
+                       .own = 0.04756,
+                       .length = 0.214598,
+                       .radius = 0.104843,
+                       .moment = 5.495499,
+                       .turned = -1.094045};
+    const auto angle = [](double t) { return t > 0 ? 3.3687 * (1 - std::cos(3 * t)) : 0; };
+    const double exact = arm.work(angle);
+    for (const double frame : {1.0 / 60, 1.0 / 1000}) {
+        const auto [taken, believed] = arm.run(angle, frame, false);
+        CAPTURE(frame, taken, exact);
+        CHECK(believed == (std::abs(taken / exact - 1) < 0.02));
     }
 }
 

@@ -124,6 +124,15 @@ class FrameControl {
         bool fast = false;       ///< it swings faster than a frame's parts can follow
     };
 
+    /// Of a row in a frame in which a driven body's motion began, and after it.
+    struct Kicked {
+        bool rests = true;                   ///< as the frame began
+        double speed = 0;                    ///< the fastest in that frame [m/s | rad/s]
+        double peak = 0, time = 0, work = 0; ///< since then [m/s | rad/s], [s], [J]
+        double doubted = 0;                  ///< of that [J]
+        bool misread = false;                ///< the motion went on; until the row rests
+    };
+
     /// How a part is done again.
     struct Shorter {
         double length; ///< [s]
@@ -147,6 +156,8 @@ class FrameControl {
     [[nodiscard]] double strike(PartEngine& engine, double h);
     void remember(const PartMotion& motion, double h);
     void forget_accelerations() noexcept;
+    void begin_kicks(bool misread);
+    void doubt_kicks(const PartMotion& motion, double h);
     [[nodiscard]] double attempt(PartEngine& engine, double h, double gap, double left);
     void stand(PartEngine& engine, const PartMotion& motion, const Judgement& judged, double h,
                bool at_event, bool jump);
@@ -156,6 +167,7 @@ class FrameControl {
     FrameReport report_;
     RunReport run_;
     std::vector<Past> past_;
+    std::vector<Kicked> kicked_;
     double before_ = 0;        ///< h₋ [s]
     bool starts_ = false;      ///< the part is a first short one
     bool stop_failed_ = false; ///< in this frame

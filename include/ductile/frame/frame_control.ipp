@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "ductile/frame/frame_control.hpp"
 #include "ductile/frame/frame_judgement.ipp" // IWYU pragma: keep
@@ -41,7 +42,9 @@ DUCTILE_INLINE double FrameControl::tolerated_share() const noexcept {
 DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double length) {
     check::positive("FrameControl.frame.length", length, "s");
     report_ = {};
-    if (engine.was_misread()) report_.left.energy += last_work_;
+    const bool misread = engine.was_misread();
+    if (misread) report_.left.energy += last_work_;
+    begin_kicks(misread);
     const double before = work_;
     length_ = length;
     solves_ = 0;
@@ -233,6 +236,7 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     report_.error += error;
     if (!(judged.error <= judged.tolerated)) say_unresolved(motion, error, h);
     remember(motion, h);
+    doubt_kicks(motion, h);
     // a kick, or what closes the rest of a gap: it says nothing of the forces that follow
     const double shortest = engine.shortest_part();
     const bool closes = at_event && h < shortest;
@@ -247,6 +251,55 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
     spin_ = detail::turn_of(motion) / h;
     fitted_ = judged.fitted;
     engine.accept(h);
+}
+
+/// A frame begins; `misread`: as PartEngine::was_misread.
+DUCTILE_INLINE void FrameControl::begin_kicks(bool misread) {
+    constexpr double at_most = 0.8; // of the frame: who flows longer by it would flow anyhow
+    if (kicked_.size() != past_.size()) kicked_.assign(past_.size(), {});
+    for (std::size_t i = 0; i < kicked_.size(); ++i) {
+        Kicked& kicked = kicked_[i];
+        if (misread && kicked.speed > 0 && kicked.time <= at_most * length_) {
+            kicked.misread = true;
+            kicked.time = 0;
+        }
+        const PartRow& row = past_[i].row;
+        if (!kicked.misread) kicked = {.rests = std::abs(row.end) <= row.noise};
+    }
+}
+
+/// What flows since it was kicked, as if a motion had begun at once that did not, should perhaps
+/// not: the kick v is gone after v/d where the row becomes slower by d, and has taken R v²/(2 d). d
+/// is that of the whole flow, its peak by its time.
+DUCTILE_INLINE void FrameControl::doubt_kicks(const PartMotion& motion, double h) {
+    if (kicked_.size() != motion.rows.size()) kicked_.assign(motion.rows.size(), {});
+    for (std::size_t i = 0; i < kicked_.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        Kicked& kicked = kicked_[i];
+        if (!kicked.misread) {
+            if (kicked.rests && row.moves()) {
+                kicked.speed = std::max(kicked.speed, row.speed());
+                kicked.time += h;
+            }
+            continue;
+        }
+        kicked.time += h;
+        if (row.moves()) {
+            kicked.peak = std::max(kicked.peak, row.speed());
+            kicked.work += row.strength * std::abs(row.start + row.end) / 2 * h;
+        } else if (kicked.time > length_) {
+            kicked = {};
+            continue;
+        }
+        if (!(kicked.peak > 0)) continue;
+        const double square = kicked.speed * kicked.speed;
+        const double taken =
+            std::min(kicked.work, row.strength * square * kicked.time / kicked.peak);
+        if (!(taken > kicked.doubted)) continue;
+        const double energy = taken - std::exchange(kicked.doubted, taken);
+        report_.left.energy += energy;
+        add_unresolved(report_.joints, row.joint, {energy, 0, 0});
+    }
 }
 
 DUCTILE_INLINE void FrameControl::say_unresolved(const PartMotion& motion, double error, double h) {

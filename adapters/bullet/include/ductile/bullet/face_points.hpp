@@ -206,6 +206,12 @@ class FaceView {
 /// Where corners of one are over a face of the other, the nearest first; none: they meet otherwise.
 [[nodiscard]] inline std::vector<Gap> face_gaps(const Placed& a, const Placed& b) {
     std::vector<Gap> gaps;
+    const auto is = [](const Placed& placed, int type) {
+        return placed.shape->getShapeType() == type;
+    };
+    const bool box_a = is(a, BOX_SHAPE_PROXYTYPE), box_b = is(b, BOX_SHAPE_PROXYTYPE);
+    const bool plane = is(a, STATIC_PLANE_PROXYTYPE) || is(b, STATIC_PLANE_PROXYTYPE);
+    if (!plane && box_a == box_b) return gaps;
     const btScalar near = contact_reach(*a.shape, *b.shape);
     for (const bool on_b : {true, false}) { // whose face it is
         const Placed &owner = on_b ? b : a, &other = on_b ? a : b;
@@ -273,20 +279,20 @@ inline void keep_spread(std::vector<Gap>& gaps) {
 inline void see_corners(btPersistentManifold& manifold) {
     const int count = manifold.getNumContacts();
     if (count == 0) return;
-    std::array<btManifoldPoint, MANIFOLD_CACHE_SIZE> known;
-    for (int k = 0; k < count; ++k) {
-        known[std::size_t(k)] = manifold.getContactPoint(k);
-        if (known[std::size_t(k)].m_userPersistentData != nullptr) return;
-    }
     const btCollisionObject &a = *manifold.getBody0(), &b = *manifold.getBody1();
-    const detail::Placed of_a = detail::placed(a, known[0].m_index0),
-                         of_b = detail::placed(b, known[0].m_index1);
+    const detail::Placed of_a = detail::placed(a, manifold.getContactPoint(0).m_index0),
+                         of_b = detail::placed(b, manifold.getContactPoint(0).m_index1);
     if (of_a.shape == nullptr || of_b.shape == nullptr) return;
     std::vector<Gap> gaps = detail::face_gaps(of_a, of_b);
     std::erase_if(gaps, [&manifold](const Gap& gap) {
         return gap.away > double(manifold.getContactBreakingThreshold());
     });
     if (gaps.empty()) return;
+    std::array<btManifoldPoint, MANIFOLD_CACHE_SIZE> known;
+    for (int k = 0; k < count; ++k) {
+        known[std::size_t(k)] = manifold.getContactPoint(k);
+        if (known[std::size_t(k)].m_userPersistentData != nullptr) return;
+    }
     detail::keep_spread(gaps);
     manifold.setNumContacts(0);
     for (const Gap& gap : gaps) {
