@@ -127,8 +127,8 @@ struct Row {
 Row row(const Model& model, const Trial& trial, bool chosen, const Plan& plan) {
     if (!std::isfinite(trial.error))
         return {model.detail, chosen, model.joints, trial, infinity, infinity};
-    const Cost spent = cost<World>(model.scene, settings(model, trial.dt), trial.steps,
-                                   plan.repeats, plan.at_least);
+    const Cost spent = cost_of<World>(model.scene, settings(model, trial.dt), trial.steps,
+                                      plan.repeats, plan.at_least);
     return {model.detail,           chosen,
             model.joints,           trial,
             spent.cpu / trial.time, spent.steps() / trial.time};

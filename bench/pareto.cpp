@@ -163,7 +163,7 @@ void run(const Scene& scene, const Plan& plan) {
     for (int pass = 0; pass < plan.passes; ++pass) {
         for (Measured& one : all) {
             if (pass == 0) one.result = observe<World>(scene, one.row);
-            one.costs.push_back(cost<World>(scene, one.row, one.result.steps, 1, plan.at_least));
+            one.costs.push_back(cost_of<World>(scene, one.row, one.result.steps, 1, plan.at_least));
             fmt::print(". {}\n", plan.passes);
             std::fflush(stdout);
         }

@@ -169,7 +169,8 @@ struct Cost {
 /// `repeats` runs and of as many as take `at_least` seconds together. An absurdly long run is not
 /// repeated.
 template <class World>
-Cost cost(const Scene& scene, const Settings& settings, long steps, int repeats, double at_least) {
+Cost cost_of(const Scene& scene, const Settings& settings, long steps, int repeats,
+             double at_least) {
     static Yardstick<World> yardstick;
     constexpr double shortest = 1e-4, share = 0.1; // of the yardstick's runs, of a run's length
     std::vector<double> costs, paces;

@@ -184,7 +184,7 @@ TEST_CASE("the timed run is the observed one", "[bench]") {
     bench_steps(world, stepping, seen.steps);
     CHECK(world.state(1).rotation == seen.end.bodies[1].rotation);
     CHECK(world.state(1).spin == seen.end.bodies[1].spin);
-    const Cost spent = cost<World>(scene, settings, seen.steps, 1, 0);
+    const Cost spent = cost_of<World>(scene, settings, seen.steps, 1, 0);
     CHECK(spent.cpu > 0);
     CHECK(spent.yardstick > 0);
 }

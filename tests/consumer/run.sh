@@ -146,7 +146,7 @@ refusals() {
         'INTERFACE_DUCTILE_BULLET_PRECISION' refused find_component "bullet;bullet_float64" \
         "$here/bullet.cpp" -DTARGET="ductile::bullet;ductile::bullet_float64"
     for flag in -ffast-math -ffinite-math-only; do
-        step "$flag" "ductile: $flag .*removes the checks" refused compile "$here/core.cpp" $core $flag
+        step "$flag" "ductile: $flag .*removes the checks" refused compile "$here/core.cpp" $core $flag -Wfatal-errors
     done
     if has bullet && has bullet_float64; then
         step "single precision with the macro of double" 'ductile::bullet with BT_USE_DOUBLE_PRECISION' \

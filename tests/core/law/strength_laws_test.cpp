@@ -9,13 +9,13 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/law/travel_after.hpp"
 #include "ductile/law/linear.hpp"
 #include "ductile/law/multilinear.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/law/softening.hpp"
 #include "ductile/law/voce.hpp"
 #include "support/throws.hpp"
-#include "travel_after.hpp"
 
 using namespace ductile;
 using ductile::test::message_of;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "cases.hpp"
-#include "closest_point_return.hpp"
+#include "core/surface/cases.hpp"
+#include "core/surface/closest_point_return.hpp"
 
 using namespace ductile;
 using namespace ductile::test;

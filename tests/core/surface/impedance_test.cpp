@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "cases.hpp"
+#include "core/surface/cases.hpp"
 #include "ductile/surface/impedance.hpp"
 
 using namespace ductile;

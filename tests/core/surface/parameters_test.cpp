@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "cases.hpp"
+#include "core/surface/cases.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;

@@ -12,7 +12,7 @@
 #include <string>
 #include <type_traits>
 
-#include "cases.hpp"
+#include "core/surface/cases.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <type_traits>
 
-#include "cases.hpp"
-#include "properties.hpp"
+#include "core/surface/cases.hpp"
+#include "core/surface/properties.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
 

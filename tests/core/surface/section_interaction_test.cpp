@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "cases.hpp"
+#include "core/surface/cases.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
