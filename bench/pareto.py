@@ -42,10 +42,8 @@ GAME_STEP = 1 / 60
 
 
 def joint_of(method):
-    """The joint of a method, whatever the steps. Stored results still have two kinds that are no more."""
-    for steps in ("-frames", "-adaptive", "-leapfrog"):
-        method = method.removesuffix(steps)
-    return method
+    """The joint of a method, in frames or in steps."""
+    return method.removesuffix("-frames")
 
 
 def is_ours(method):
