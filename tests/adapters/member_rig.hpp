@@ -297,7 +297,7 @@ struct BallOnPost : Scene {
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
         : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
-    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    /// Its end held, so that it may slide along alone, or not at all; struck at `place` [m].
     BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
                double gap, double place, bool held_twice)
         : Scene({0, 0, 0}, tolerance, 0) {

@@ -169,6 +169,16 @@ struct Struck {
     }
 };
 
+/// That slides along z alone.
+inline dBodyID carriage_at(const Rig& rig, ode::World& world, double z) {
+    const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, z});
+    world.add(carriage);
+    const dJointID rail = dJointCreateSlider(rig.id, nullptr);
+    dJointAttach(rail, carriage, nullptr);
+    dJointSetSliderAxis(rail, 0, 0, 1);
+    return carriage;
+}
+
 /// A beam that stands clamped, its other end held so that it may slide along alone, or not at all,
 /// and a mass [kg] fixed by a point to it at `place` [m].
 struct HeldTwice {
@@ -184,12 +194,9 @@ struct HeldTwice {
         : world(rig.id, {.tolerance = tolerance,
                          .warn = [this](const std::string& line) { said.push_back(line); }}),
           mass(rig.body(kg, {10, 10, 10}, {0, 0, place})) {
-        const dBodyID carriage = rig.body(1, {1, 1, 1}, {0, 0, of.length()});
-        for (const dBodyID body : {mass, carriage}) world.add(body);
-        const dJointID rail = dJointCreateSlider(rig.id, nullptr),
-                       end = dJointCreateFixed(rig.id, nullptr);
-        dJointAttach(rail, carriage, nullptr);
-        dJointSetSliderAxis(rail, 0, 0, 1);
+        world.add(mass);
+        const dBodyID carriage = carriage_at(rig, world, of.length());
+        const dJointID end = dJointCreateFixed(rig.id, nullptr);
         dBodyID last = nullptr, struck = nullptr;
         if (just_in_time) {
             member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
@@ -283,7 +290,7 @@ struct BallOnPost : Scene {
     BallOnPost(const Member& of, double mass, double speed, double tolerance = 0.01,
                double half = 0.05, double gap = 0.00713)
         : BallOnPost(of, mass, speed, tolerance, half, gap, of.length() - 0.03, false) {}
-    /// Its end held, so that it cannot turn, or not at all; struck at `place` [m].
+    /// Its end held, so that it may slide along alone, or not at all; struck at `place` [m].
     BallOnPost(const Member& of, double mass, double speed, double tolerance, double half,
                double gap, double place, bool held_twice)
         : Scene({0, 0, 0}, tolerance, 0), ball(ball_of(rig, mass, {0, -half - 0.1 - gap, place})) {
@@ -294,7 +301,7 @@ struct BallOnPost : Scene {
         post = std::make_unique<ode::Member>(body, of, here);
         if (held_twice) {
             const dJointID end = dJointCreateFixed(rig.id, nullptr);
-            dJointAttach(end, body, nullptr);
+            dJointAttach(end, body, carriage_at(rig, world, of.length()));
             dJointSetFixed(end);
             post->attach(of.length(), end);
         }

@@ -230,8 +230,11 @@ RowTurning<S> LinkPose<S>::turning(const BodyState<S>& a, const BodyState<S>& b,
     if (slides) {
         const Vector3<S> way = difference(relative_velocity(a, b), sum(across, along));
         if (!is_finite(way)) return {};
-        across = difference(across, scaled(dt, cross(b.spin, way)));
-        turned = scaled(-dt / 2, cross(b.spin, a.spin));
+        // farther it would give more than there is, from part to part: 10^160 J of 10^7 J
+        if (turn_b <= 4 * largest * largest) {
+            across = difference(across, scaled(dt, cross(b.spin, way)));
+            turned = scaled(-dt / 2, cross(b.spin, a.spin));
+        }
     }
     result.across =
         twist_of(transposed_times(axes_, across), transposed_times(moment_axes(), turned));

@@ -116,13 +116,15 @@ struct BlowProfile {
     return carried.bending * carried.bending * turn / 2;
 }
 
-/// The closed section of a piece that carries the most, if that is too much.
+/// The closed section of a piece that carries the most, if that is too much, but for those `beside`.
 [[nodiscard]] inline int worst_section(const Member& member, const MemberState& state,
                                        const InternalForces& forces, double dt,
-                                       const ActiveSections& rule = {}) {
+                                       const ActiveSections& rule = {},
+                                       const MemberRun& beside = {0, no_section}) {
     int worst = no_section;
     double most = 1 + rule.beyond;
     for (const SectionForce& carried : forces.sections) {
+        if (beside.holds(carried.section)) continue;
         const double used = utilisation_of(member, state, carried, dt);
         if (!(used > most)) continue;
         most = used;

@@ -124,8 +124,8 @@ class MemberCourse {
         vibration_.ahead = whole() ? 0 : vibration_.ahead - lost;
         return lost;
     }
-    /// Between supports that hold it along, as the last `beyond` saw them: a section that flows
-    /// there would have to stretch.
+    /// Between supports that hold it along, as the last look saw them: to flow there it would have
+    /// to stretch. None opens: rigid pieces held at both ends stand, in the limit of short steps.
     [[nodiscard]] bool is_locked(int section) const noexcept { return locked_.holds(section); }
     /// Largest left_over of the last `beyond` [-].
     [[nodiscard]] double left_over() const noexcept { return left_over_; }
@@ -135,30 +135,38 @@ class MemberCourse {
     void doubt(Unmodelled what) noexcept { unmodelled_ = what; }
 
     /// Closed sections, the worst of each piece, that carried more than they can in a step of `dt`
-    /// [s]; `steps`: by piece. Valid until the next call.
+    /// [s]; `steps`: by piece; but for what is locked. Valid until the next call.
     const std::vector<int>& beyond(std::span<const PieceStep> steps,
                                    std::span<const MemberLoad> loads, double dt) {
         found_.clear();
         left_over_ = 0;
         find_locked(loads);
-        bool beside = false;
+        bool beside = false, locks = false;
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
             left_over_ = std::max(left_over_, forces_.left_over());
             beside = find_unmodelled(pieces_[i].mass * steps[i].blur, dt) || beside;
-            const int worst = worst_section(member_, state_, forces_, dt, rule_);
+            int worst = worst_section(member_, state_, forces_, dt, rule_);
+            if (locked_.holds(worst)) {
+                locks = true;
+                worst = worst_section(member_, state_, forces_, dt, rule_, locked_);
+            }
             if (worst != no_section) found_.push_back(worst);
         }
         beside_for_ = beside ? beside_for_ + dt : 0;
         if (beside && (!has_blows_ || beside_for_ >= wave_time()))
             unmodelled_ = Unmodelled::off_plane;
         if (whole()) {
-            is_opened_ = !found_.empty() && !is_borne(steps, loads, dt);
-            if (!is_opened_) found_.clear();
+            if ((locks || !found_.empty()) && is_borne(steps, loads, dt)) {
+                found_.clear();
+                locks = false;
+            }
+            is_opened_ = !found_.empty();
         } else {
             is_opened_ = is_opened_ && dt == closed_dt_;
             if (is_opened_) list_supports(member_, pieces_, steps, loads, dt, supports_);
         }
+        if (locks && found_.empty()) unmodelled_ = Unmodelled::stretch;
         return found_;
     }
 
@@ -180,10 +188,12 @@ class MemberCourse {
             strike.add(by_joints.energy, by_joints.speed, by_joints.segment);
         }
         if (!(strike.energy > 0)) return no_section;
+        find_locked(loads);
         BlowProfile profile;
         int nearest = no_section, least = std::numeric_limits<int>::max();
         double utilisation = 0;
         constexpr double noticed = 1e-4; // of the blow's energy
+        bool locks = false;
         const bool first = !std::exchange(struck_, true);
         for (std::size_t i = 0; i < pieces_.size(); ++i) {
             internal_forces(member_, pieces_[i], steps[i], loads, forces_);
@@ -201,7 +211,8 @@ class MemberCourse {
                 const double taken = opening_energy(member_, pieces_[i], carried);
                 if (!(taken > noticed * strike.energy)) continue;
                 const int away = std::abs(2 * carried.section + 1 - 2 * strike.segment);
-                if (away >= least) continue;
+                locks = locks || locked_.holds(carried.section);
+                if (away >= least || locked_.holds(carried.section)) continue;
                 least = away;
                 nearest = carried.section;
             }
@@ -209,6 +220,7 @@ class MemberCourse {
         if (first && nearest != no_section) expect_vibration(strike.energy, utilisation);
         if (rough_) unmodelled_ = Unmodelled::rough_blow;
         if (profile.is_off_plane(strike.energy)) unmodelled_ = Unmodelled::off_plane;
+        if (locks && nearest == no_section) unmodelled_ = Unmodelled::stretch;
         return nearest;
     }
 

@@ -18,7 +18,7 @@ namespace ductile {
 /// What a member or a structure met that its description knows nothing of.
 enum class Unmodelled : unsigned char {
     nothing,
-    stretch,    ///< a member flowed that nothing lets stretch (member/member_course.hpp)
+    stretch,    ///< a member would flow that nothing lets stretch (member/member_course.hpp)
     off_plane,  ///< more along, about or across a member than it bears, but bending about its x
     rough_blow, ///< of a blow it is known roughly what flowed of it (member/blow.hpp)
     driven,     ///< what does not move of it and a driven body passed through each other
