@@ -659,7 +659,7 @@ TEST_CASE("one that was saved holds on again to balls, hinges and what is fixed,
         }
         CAPTURE(more);
         CHECK(first[597] > 0.1);
-        for (const std::size_t k : {597, 598, 599}) { // what is fixed is so where bodies drifted to
+        for (const std::size_t k : {597u, 598u, 599u}) { // what is fixed is so where bodies drifted to
             CHECK(runs[0][k] == Approx(first[k]).epsilon(1e-4));
         }
         CHECK(runs[1] == runs[0]);

@@ -158,8 +158,9 @@ TEST_CASE("A portal of five hinges sways elastically and collapses as P31 says",
         double h, tolerance;
     };
     // a load that goes up by steps of 1/60 s makes what is not damped by the step swing by 0.5 %
-    for (const auto& [h, tolerance] : {Steps{1.0 / 60, 0}, Steps{1.0 / 240, 0}, Steps{dt, 0},
-                                       Steps{1.0 / 3840, 0}, Steps{1.0 / 240, 0.01}}) {
+    for (const Steps& asked : {Steps{1.0 / 60, 0}, Steps{1.0 / 240, 0}, Steps{dt, 0},
+                               Steps{1.0 / 3840, 0}, Steps{1.0 / 240, 0.01}}) {
+        const double h = asked.h, tolerance = asked.tolerance;
         INFO("steps of 1/" << 1 / h << ", tolerance " << tolerance);
         StructureRig rig(0, {.tolerance = tolerance});
         const auto portal = rig.build(Portal(true).model);

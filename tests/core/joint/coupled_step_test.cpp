@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ductile/fracture/any_of.hpp"
 #include "ductile/fracture/brittle_force.hpp"
@@ -26,7 +25,6 @@ namespace {
 
 using V2 = Eigen::Matrix<double, 2, 1>;
 using Ellipse = Ellipsoid<double, 2>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double solve(const RowLimits<double>& row, double mass, double free, double dt) {
     const double wanted = (row.bias - free) / (1 / mass + row.compliance);
@@ -61,6 +59,8 @@ struct Plate {
     V2 position = V2::Zero();
     double mass = 2;
 };
+template <class Joint>
+Plate(Joint, V2) -> Plate<Joint>;
 
 } // namespace
 

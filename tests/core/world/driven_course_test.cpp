@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -31,7 +32,7 @@ Total over(double from, double to, std::array<double, 2> lengths) {
     const auto angle = [](double t) { return std::sin(std::numbers::pi * t); };
     Total total;
     double t = 0, end = 0;
-    for (int i = 0; t < to - 1e-9; ++i) {
+    for (std::size_t i = 0; t < to - 1e-9; ++i) {
         const double length = lengths[i % 2], next = t + length;
         course.begin(turning((angle(next) - angle(t)) / length), length);
         if (t > from - 1e-9) {
