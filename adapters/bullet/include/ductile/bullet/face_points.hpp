@@ -3,8 +3,8 @@
 // Where corners of a convex shape meet a flat face. Of two convex shapes Bullet tells one point a
 // tick, by an iteration (GJK) that in single precision is up to 10 µm and 0.1 mrad off, other ones
 // for the same pose. So a bar that lies down has a contact at one end of its edge, or in the
-// middle of it, and what a blow closes is not what was seen to close. On the face of a box, the end
-// of a cylinder, or a plane, all corners are known:
+// middle of it, and what a blow closes is not what was seen to close. On the face of a box, a
+// plane, or the end of a cylinder that a box meets, all corners are known:
 //
 //   height of a corner x, a rounding r:   n·x - r - level,   n the normal of the face
 //
@@ -55,6 +55,12 @@ struct Corner {
     btScalar away;
 };
 
+[[nodiscard]] inline btVector3 along_axis(int axis, bool forwards) {
+    btVector3 unit(0, 0, 0);
+    unit[axis] = btScalar(forwards ? 1 : -1);
+    return unit;
+}
+
 /// Calls `visit(corner)` with all that may be farthest `towards`, in the shape's axes, without
 /// their rounding, which is returned; negative: a shape of another kind [m].
 template <class Visit>
@@ -75,15 +81,13 @@ btScalar visit_corners(const btCollisionShape& shape, const btVector3& towards,
         const int up = cylinder.getUpAxis();
         const btVector3& half = cylinder.getHalfExtentsWithoutMargin();
         const btScalar radius = half[up == 0 ? 1 : 0];
-        btVector3 axis(0, 0, 0);
-        axis[up] = towards[up] < 0 ? btScalar(-1) : btScalar(1);
+        const btVector3 axis = along_axis(up, !(towards[up] < 0));
         btVector3 lowest = towards - axis * towards.dot(axis);
         constexpr btScalar upright = btScalar(1e-6);
         if (lowest.length2() > upright * upright) {
             lowest.normalize();
         } else {
-            lowest.setValue(0, 0, 0);
-            lowest[up == 0 ? 1 : 0] = 1;
+            lowest = along_axis(up == 0 ? 1 : 0, true);
         }
         const btVector3 level = axis.cross(lowest);
         for (const btVector3& out : {lowest, level, -level, -lowest}) {
@@ -117,29 +121,27 @@ class FaceView {
   public:
     FaceView(const Placed& owner, const Placed& other, btScalar near)
         : owner_(owner), other_(other), near_(near) {
-        const bool plane = owner.shape->getShapeType() == STATIC_PLANE_PROXYTYPE;
-        const bool box = owner.shape->getShapeType() == BOX_SHAPE_PROXYTYPE &&
-                         other.shape->getShapeType() != BOX_SHAPE_PROXYTYPE;
-        if (plane) {
+        const int type = owner.shape->getShapeType();
+        if (type == STATIC_PLANE_PROXYTYPE) {
             const auto& shape = static_cast<const btStaticPlaneShape&>(*owner.shape);
             look(shape.getPlaneNormal(), shape.getPlaneConstant(),
                  [](const btVector3&) { return false; });
-        } else if (box) {
+        } else if (type == BOX_SHAPE_PROXYTYPE) {
             const btVector3 half =
                 static_cast<const btBoxShape&>(*owner.shape).getHalfExtentsWithMargin();
             for (int i = 0; i < 6; ++i) {
-                look(along(i / 2, i % 2 == 0), half[i / 2], [&half, i](const btVector3& at) {
+                look(along_axis(i / 2, i % 2 == 0), half[i / 2], [&half, i](const btVector3& at) {
                     const int j = (i / 2 + 1) % 3, k = (i / 2 + 2) % 3;
                     return btFabs(at[j]) > half[j] || btFabs(at[k]) > half[k];
                 });
             }
-        } else if (owner.shape->getShapeType() == CYLINDER_SHAPE_PROXYTYPE) {
+        } else if (type == CYLINDER_SHAPE_PROXYTYPE) {
             const auto& shape = static_cast<const btCylinderShape&>(*owner.shape);
             const int up = shape.getUpAxis();
-            const btVector3 half = shape.getHalfExtentsWithMargin();
-            const btScalar radius = half[up == 0 ? 1 : 0];
+            const btScalar height = shape.getHalfExtentsWithMargin()[up],
+                           radius = shape.getRadius();
             for (const bool top : {true, false}) {
-                look(along(up, top), half[up], [up, radius](btVector3 at) {
+                look(along_axis(up, top), height, [up, radius](btVector3 at) {
                     at[up] = 0;
                     return at.length2() > radius * radius;
                 });
@@ -153,11 +155,6 @@ class FaceView {
     [[nodiscard]] std::span<const Corner> corners() const noexcept { return corners_; }
 
   private:
-    [[nodiscard]] static btVector3 along(int axis, bool forwards) {
-        btVector3 normal(0, 0, 0);
-        normal[axis] = btScalar(forwards ? 1 : -1);
-        return normal;
-    }
     /// At a face whose normal is in the axes of its owner, and so is what `is_beyond` its edges.
     template <class Beyond>
     void look(const btVector3& normal, btScalar level, const Beyond& is_beyond) {
