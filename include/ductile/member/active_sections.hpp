@@ -116,7 +116,8 @@ struct BlowProfile {
     return carried.bending * carried.bending * turn / 2;
 }
 
-/// The closed section of a piece that carries the most, if that is too much, but for those `beside`.
+/// The closed section of a piece that carries the most, if that is too much, but for those
+/// `beside`.
 [[nodiscard]] inline int worst_section(const Member& member, const MemberState& state,
                                        const InternalForces& forces, double dt,
                                        const ActiveSections& rule = {},

@@ -19,8 +19,8 @@ namespace ductile {
 [[nodiscard]] inline const char* unmodelled_warning(Unmodelled what) {
     switch (what) {
         case Unmodelled::stretch:
-            return "is beyond its strength between supports that hold it along, where it would have "
-                   "to stretch, and stands";
+            return "is beyond its strength between supports that hold it along, where it would "
+                   "have to stretch, and stands";
         case Unmodelled::off_plane:
             return "had to bear more than it can along its axis, about it or across the plane in "
                    "which it bends, of which it knows nothing";

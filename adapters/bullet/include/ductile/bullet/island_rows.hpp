@@ -17,8 +17,8 @@ class IslandRows {
     /// world's.
     virtual void open_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,
                            double tick, double erp) = 0;
-    /// The island is solved: asks for what fits the velocities with which its bodies leave the part.
-    /// True where that is something else.
+    /// The island is solved: asks for what fits the velocities with which its bodies leave the
+    /// part. True where that is something else.
     [[nodiscard]] virtual bool turn_rows(solve::Island& /*island*/, const IslandSeat& /*a*/,
                                          const IslandSeat& /*b*/) {
         return false;
