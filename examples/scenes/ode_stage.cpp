@@ -125,7 +125,9 @@ class OdeStage final : public Stage {
         dBodySetAngularVel(own_[std::size_t(body)].body, 0, 0, (to - from) / frame);
     }
     void push(BodyNumber body, const Vector3<double>& force) override {
-        dBodyAddForce(own_[std::size_t(body)].body, force.x(), force.y(), force.z());
+        dBodyID id = own_[std::size_t(body)].body;
+        dBodyEnable(id); // ODE keeps the forces of all steps that a body sleeps, for the one that wakes it
+        dBodyAddForce(id, force.x(), force.y(), force.z());
     }
     void halt() override {
         each([](dBodyID body) {

@@ -731,6 +731,24 @@ TEST_CASE("Frames: islands fall asleep as a whole, and what strikes wakes them",
     CHECK(asleep(lower)); // no business of theirs
 }
 
+TEST_CASE("Frames: what leaves at once wakes what it lay on", "[frame]") {
+    for (const double frame : all_frames) {
+        Rig rig;
+        rig.set_gravity(9.81);
+        const dBodyID head = rig.body(50, V3(2, 2, 2), {0, 0, 0}, rig.box(0.5, 0.1, 0.5), 1, 2);
+        rig.slider(head, V3(0, 1, 0), 5000);
+        const dBodyID load = rig.body(20, V3(1, 1, 1), {0, 0.35, 0}, rig.box(0.25, 0.25, 0.25), 2);
+        for (const dBodyID body : {head, load}) dBodySetAutoDisableFlag(body, 1);
+        rig.run(2, frame);
+        REQUIRE(dBodyIsEnabled(head) == 0);
+        REQUIRE(dBodyIsEnabled(load) == 0);
+        dBodyEnable(load);
+        dBodySetLinearVel(load, 0, 20, 0);
+        rig.world.step(frame);
+        CHECK(dBodyIsEnabled(head) == 1); // as in a step of ODE's
+    }
+}
+
 TEST_CASE("Frames: what ODE does not tell is asked for by name", "[frame]") {
     using Catch::Matchers::Contains;
     const auto contact_of = [](Rig& rig, dBodyID body, bool named) {

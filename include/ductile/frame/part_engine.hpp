@@ -25,7 +25,7 @@ namespace ductile {
 /// mean of their forces: what is rigid, and holds that, may flow at their peak.
 ///
 ///   spring  V² = ((u + u')/2)² + (a/ω)²,  U = m V²/2,  misplaced U (ω h)³/4: F e at its peak, e =
-///           |a'| h³/8
+///           |a'| h³/8, and no farther than it swings: 2 U
 ///   motor   F acted until it had its speed, for s = h |f|/F:  v = u less that,  U = m v²/2,
 ///           misplaced F |v| (h - s)/2
 struct OwnForces {
@@ -45,7 +45,7 @@ struct OwnForces {
                                        std::abs(start), std::abs(end)}); // V
         const double held = mass * swing * swing / 2;
         energy += counts * held;
-        swings += held * std::pow(frequency * h, 3) / 4;
+        swings += held * std::min(std::pow(frequency * h, 3) / 4, 2.0);
         reach(std::abs(force) + mass * frequency * swing, std::abs(force));
     }
     /// @param speed v  @param strength F [N | N m]

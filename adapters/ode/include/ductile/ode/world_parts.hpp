@@ -152,6 +152,7 @@ class WorldParts final : public PartEngine {
     void damp(double share);
     void drop_forces();
     void see_contacts();
+    void wake_touched() const;
     /// The bodies are elsewhere, or other ones.
     void moved() {
         looked_ = false;

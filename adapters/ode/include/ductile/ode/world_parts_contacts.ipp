@@ -168,10 +168,21 @@ DUCTILE_INLINE void WorldParts::open_others() {
     }
 }
 
+/// As ODE's step does: where the part is solved they may be apart.
+DUCTILE_INLINE void WorldParts::wake_touched() const {
+    for (const NamedContact& named : of_.contacts) {
+        const auto [a, b, reversed] = attached_bodies(named.joint);
+        if (a == nullptr || b == nullptr || dBodyIsEnabled(a) == dBodyIsEnabled(b)) continue;
+        const dBodyID asleep = dBodyIsEnabled(a) != 0 ? b : a;
+        if (can_move(asleep)) dBodyEnable(asleep);
+    }
+}
+
 /// As the coming part begins.
 DUCTILE_INLINE void WorldParts::see_contacts() {
     if (!of_.maker && !closing_.any_stops()) return;
     if (!std::exchange(looked_, true)) look();
+    wake_touched();
     seen_.clear();
     if (!closing_.any_plastic()) return;
     for (const NamedContact& named : of_.contacts) seen_.push_back(detail::seen_contact(named));
