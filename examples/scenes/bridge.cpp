@@ -17,10 +17,9 @@
 //
 // On the way a vehicle flies off the deck's kinks and lands, and the deck swings at about 1 Hz:
 // joints that are below yield with it at rest flow a little, by what is told, and the sag that 50 t
-// leave is not that of statics: in frames of 1/60, 1/240 s 0.983 m in Bullet and 0.978, 0.977 m in
-// ODE (the author's 0.34 m: where parts of the deck collide with their
-// neighbours 2 cm away, as in Bullet unless told otherwise, their top edges carry it and it is
-// 0.324).
+// leave is not that of statics: in frames of 1/60, 1/240 s 0.987 m in Bullet and 0.990 m in ODE
+// (the author's 0.34 m: where parts of the deck collide with their neighbours 2 cm away, as in
+// Bullet unless told otherwise, their top edges carry it and it is 0.324).
 //
 // g grows over 4 s, without a jump of its rate, and the deck comes to rest. The vehicle waits at
 // the end of the deck with its axles 11.3 and 6.9 m from the middle, then goes, without friction,

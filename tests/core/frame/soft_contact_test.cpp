@@ -90,3 +90,12 @@ TEST_CASE("SoftContact: it tells the swing that it is in, and nothing where it i
     CHECK(swings.swings ==
           Approx(mass * 2.0 * 2.0 / 2 * std::pow(frequency * h, 3) / 4).epsilon(0.03));
 }
+
+TEST_CASE("OwnForces: a spring far too fast for its part misplaces no more than its swing",
+          "[frame]") {
+    constexpr double mass = 3, start = -0.4;
+    OwnForces forces;
+    forces.add_spring(1e15, mass, 1e3, start, 0, 1e-3);
+    CHECK(forces.swings == Approx(2 * forces.energy));
+    CHECK(forces.energy == Approx(mass * start * start / 2));
+}
