@@ -13,6 +13,7 @@
 #include "ductile/bullet/face_points.hpp"
 #include "ductile/bullet/front_solver.hpp"
 #include "ductile/bullet/lent.hpp"
+#include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
 
@@ -135,6 +136,35 @@ DUCTILE_INLINE void end_rebounds(const std::vector<btPersistentManifold*>& manif
     }
 }
 
+/// Contacts of what the joints of `constraints` held until they broke push apart slowly
+/// (parted_erp), in a step of `info`.
+DUCTILE_INLINE void part_slowly(btPersistentManifold** manifolds, int manifold_count,
+                                btTypedConstraint** constraints, int constraint_count,
+                                const btContactSolverInfo& info, Lent<btScalar>& lent,
+                                Lent<int>& flags) {
+    constexpr int own = BT_CONTACT_FLAG_HAS_CONTACT_ERP;
+    for (int i = 0; i < constraint_count; ++i) {
+        PlasticConstraint* joint = as_plastic(*constraints[i]);
+        if (joint == nullptr || joint->isEnabled() || !joint->queries().broken()) continue;
+        const btCollisionObject* a = &joint->getRigidBodyA();
+        const btCollisionObject* b = &joint->getRigidBodyB();
+        for (int k = 0; k < manifold_count; ++k) {
+            btPersistentManifold& manifold = *manifolds[k];
+            const btCollisionObject *first = manifold.getBody0(), *second = manifold.getBody1();
+            if (!(first == a && second == b) && !(first == b && second == a)) continue;
+            for (int at = 0; at < manifold.getNumContacts(); ++at) {
+                btManifoldPoint& point = manifold.getContactPoint(at);
+                const bool has_own = (point.m_contactPointFlags & own) != 0;
+                const auto usual = double(has_own ? point.m_contactERP : info.m_erp2);
+                lent.put(point.m_contactERP,
+                         btScalar(parted_erp(usual, -double(point.getDistance()),
+                                             double(info.m_timeStep))));
+                flags.put(point.m_contactPointFlags, point.m_contactPointFlags | own);
+            }
+        }
+    }
+}
+
 } // namespace detail
 
 DUCTILE_INLINE FrontHold::FrontHold(btDiscreteDynamicsWorld& world) : world_(world) {
@@ -217,14 +247,17 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     // Bullet flushes an empty group after an island above its batch size
     if (handed_over_ || (body_count == 0 && manifold_count == 0 && constraint_count == 0)) return 0;
     Lent<btScalar> lent;
-    const auto double_gaps = [&] {
+    Lent<int> flags;
+    const auto rule_contacts = [&] {
         if (kind_ == TickKind::part) detail::double_gaps(manifolds, manifold_count, lent);
+        detail::part_slowly(manifolds, manifold_count, constraints, constraint_count, info, lent,
+                            flags);
     };
     static const DirectBodies none;
     const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
     if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic) &&
         !direct.any) {
-        double_gaps();
+        rule_contacts();
         return solve_usual(bodies, body_count, manifolds, manifold_count, constraints,
                            constraint_count, info, drawer, dispatcher);
     }
@@ -235,7 +268,7 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
         if (kind_ == TickKind::step) break;
         for (btPersistentManifold* manifold : island.manifolds) see_corners(*manifold);
     }
-    double_gaps();
+    rule_contacts();
     for (IslandParts& island : room->islands.chosen()) {
         solve_plastic(island, info, drawer, dispatcher);
     }

@@ -105,6 +105,10 @@ struct AttachedBodies {
     bool reversed = false; ///< the user attached the world first
 
     bool operator==(const AttachedBodies&) const = default;
+    /// The same two, whichever is the first.
+    [[nodiscard]] bool are_of(const AttachedBodies& other) const noexcept {
+        return (a == other.a && b == other.b) || (a == other.b && b == other.a);
+    }
     bool operator<(const AttachedBodies& other) const noexcept {
         const std::less<dBodyID> less;
         return a != other.a ? less(a, other.a) : less(b, other.b);

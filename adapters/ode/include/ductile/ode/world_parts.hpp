@@ -240,6 +240,7 @@ class WorldParts final : public PartEngine {
     double touching_ = 0;                                    ///< of what touches [J]
     double closed_ = 0;                                      ///< in the middle of the part [s]
     std::vector<Soft> soft_;                                 ///< of the part
+    std::vector<AttachedBodies> parted_;                     ///< by joints that broke
     PartMotion motion_;
 };
 

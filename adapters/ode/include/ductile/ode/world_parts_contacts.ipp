@@ -33,6 +33,10 @@ DUCTILE_INLINE void WorldParts::break_off() {
 
 DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
     soft_.clear();
+    parted_.clear();
+    for (const PlasticConstraint* joint : of_.joints) {
+        if (joint->queries().broken()) parted_.push_back(joint->bodies());
+    }
     for (NamedContact& named : of_.contacts) {
         dSurfaceParameters& surface = named.contact.surface;
         const ContactClosing it(named);
@@ -43,8 +47,12 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             continue;
         }
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
-        const double closing = blow ? 0 : closes(it, double(named.contact.geom.depth), h, plastic);
-        if (!plastic && !own && !soft && !(closing > 0)) continue;
+        const auto depth = double(named.contact.geom.depth);
+        const double closing = blow ? 0 : closes(it, depth, h, plastic);
+        const bool parted = std::any_of(parted_.begin(), parted_.end(), [&](const auto& pair) {
+            return it.bodies.are_of(pair);
+        });
+        if (!plastic && !own && !soft && !parted && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
         if (soft && !blow) {
@@ -54,7 +62,8 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             surface.soft_erp = dReal(spring.erp);
             surface.soft_cfm = dReal(spring.compliance);
         } else {
-            surface.soft_erp = dReal(blow ? 0 : overlap_erp(double(surface.soft_erp), h, length_));
+            const double erp = overlap_erp(double(surface.soft_erp), h, length_);
+            surface.soft_erp = dReal(blow ? 0 : parted ? parted_erp(erp, depth, h) : erp);
         }
         if (blow) surface.soft_cfm *= dReal(blow_compliance(h));
         if (!blow) {
