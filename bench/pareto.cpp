@@ -38,11 +38,11 @@ namespace {
 struct Plan {
     std::vector<double> steps;
     std::vector<double> tolerances, frames; ///< of ours in a World with a tolerance
-    std::vector<int> iterations; ///< of iterative solvers
-    std::vector<int> fallback;   ///< of direct solvers where they give up
-    long longest = 0;            ///< runs of more steps are left out
-    int passes = 3;              ///< over all rows of a scene, in each of which every one is timed
-    double at_least = 0;         ///< CPU time of a row in a pass [s]
+    std::vector<int> iterations;            ///< of iterative solvers
+    std::vector<int> fallback;              ///< of direct solvers where they give up
+    long longest = 0;                       ///< runs of more steps are left out
+    int passes = 3;      ///< over all rows of a scene, in each of which every one is timed
+    double at_least = 0; ///< CPU time of a row in a pass [s]
 };
 
 const Plan full{
@@ -214,8 +214,7 @@ int main(int argc, char** argv) try {
         }
         for (const Settings& row : rows(scene, plan)) {
             fmt::print("{},{},{},{:.9e},{},{},{}\n", scene.name, row.solver, name(row), row.dt,
-                       row.tolerance, row.iterations,
-                       long(scene.duration / row.dt));
+                       row.tolerance, row.iterations, long(scene.duration / row.dt));
         }
     }
     if (!found) throw std::invalid_argument("--scene = " + only + ": no such scene");

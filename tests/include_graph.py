@@ -50,7 +50,7 @@ def keys(text):
     for found in re.finditer(r"[^;{}]+;", text):
         words = found.group().split()
         said = " ".join(words)
-        virtual = words[-1] in ("override;", "final;") or "virtual" in words or re.search(r"~\w+\(\);$", said)
+        virtual = words[-1] in ("override;", "final;") or "virtual" in words or re.search(r"(^|[^>])~\w+\(\);$", said)
         inside = any(a <= found.start() < b for a, b in templates)
         if virtual and not inside and "DUCTILE_INLINE" not in words and "= " not in said:
             yield said

@@ -6,18 +6,11 @@
 #include <ductile/joint/usual_joints.hpp>
 #include <ductile/numeric/block_ldlt.hpp>
 #include <ductile/numeric/block_ldlt.ipp>
-#include <ductile/solve/active_set.ipp>
-#include <ductile/solve/certificate.ipp>
-#include <ductile/solve/fixed_sides.ipp>
 #include <ductile/solve/interior_point.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>
 #include <ductile/solve/island_system.ipp>
-#include <ductile/solve/lagged_friction.ipp>
-#include <ductile/solve/one_pair.ipp>
-#include <ductile/solve/proximal_newton.ipp>
 #include <ductile/structure/built_structure.ipp>
-#include <ductile/structure/joint_stations.ipp>
 #include <ductile/structure/structure_course.ipp>
 #include <ductile/structure/structure_model.ipp>
 #include <ductile/structure/structure_plan.ipp>
@@ -26,7 +19,6 @@
 #include <ductile/world/island_joint.ipp>
 #include <ductile/world/kept_joint.ipp>
 #include <ductile/world/stepped_world.ipp>
-#include <ductile/world/structures.ipp>
 #include <ductile/world/supervisor.ipp>
 #include <ductile/world/waiting_joints.ipp>
 

@@ -4,25 +4,17 @@
 #include <ductile/ode/ode.hpp>
 
 #include <ductile/ode/closing_contacts.ipp>
-#include <ductile/ode/contact_maker.ipp>
-#include <ductile/ode/contact_rows.ipp>
-#include <ductile/ode/energy_meter.ipp>
 #include <ductile/ode/island_solver.ipp>
 #include <ductile/ode/joint_constraint.ipp>
-#include <ductile/ode/local_scope.ipp>
 #include <ductile/ode/member.ipp>
-#include <ductile/ode/member_geoms.ipp>
 #include <ductile/ode/member_snapshot.ipp>
 #include <ductile/ode/members.ipp>
 #include <ductile/ode/motor_axis.ipp>
 #include <ductile/ode/own_joint.ipp>
 #include <ductile/ode/plastic_motor.ipp>
-#include <ductile/ode/point_rows.ipp>
 #include <ductile/ode/structure.ipp>
 #include <ductile/ode/structure_in_time.ipp>
-#include <ductile/ode/user_joint.ipp>
 #include <ductile/ode/world.ipp>
-#include <ductile/ode/world_life.ipp>
 #include <ductile/ode/world_parts.ipp>
 
 namespace ductile::ode {

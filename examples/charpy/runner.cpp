@@ -7,17 +7,8 @@
 #include <exception>
 #include <nlohmann/json.hpp>
 
-#include "drive.hpp"
 #include "options.hpp"
 #include "report.hpp"
-
-#ifdef CHARPY_ODE
-#include "ode_scene.hpp"
-using Scene = charpy::OdeScene;
-#else
-#include "bullet_scene.hpp"
-using Scene = charpy::BulletScene;
-#endif
 
 int main(int argc, char** argv) try {
     charpy::Options options;
@@ -32,7 +23,7 @@ int main(int argc, char** argv) try {
     charpy::finish(options);
     for (const auto& [method, name] : charpy::method_names) {
         if (options.method != name) continue;
-        const charpy::Result result = charpy::drive<Scene>(options.scenario, method, options.solver);
+        const charpy::Result result = charpy::run(options.scenario, method, options.solver);
         const nlohmann::ordered_json document{{"result", charpy::to_json(result)},
                                               {"history", charpy::history_to_json(result)}};
         std::puts(document.dump().c_str());

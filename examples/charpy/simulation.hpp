@@ -106,4 +106,7 @@ struct Result {
     std::vector<Sample> history;
 };
 
+/// One method by one solver of the engine that the program is linked with (engine.cpp).
+[[nodiscard]] Result run(const Scenario& scenario, Method method, const std::string& solver);
+
 } // namespace charpy

@@ -137,18 +137,19 @@ void Run::keep(const std::string& name, const replay::Recorder& recorder) {
     if (options_.keep) replays_.push_back(options_.keep(name, recorder.finish()));
 }
 
+void Scene::require_part(const std::string& wanted) {
+    std::string known;
+    for (const Part& part : parts()) {
+        if (wanted.empty() || wanted == part.name) return;
+        known += (known.empty() ? "" : ", ") + part.name;
+    }
+    throw std::invalid_argument("part = " + wanted + ": " + name() + " has " + known);
+}
+
 void Scene::play(Run& run) {
     const std::string& wanted = run.options().part;
-    std::string known;
-    bool played = false;
     for (const Part& part : parts()) {
-        known += (known.empty() ? "" : ", ") + part.name;
-        if (wanted.empty() ? part.only_asked : wanted != part.name) continue;
-        part.play(run);
-        played = true;
-    }
-    if (!played) {
-        throw std::invalid_argument("part = " + wanted + ": " + name() + " has " + known);
+        if (wanted.empty() ? !part.only_asked : wanted == part.name) part.play(run);
     }
 }
 

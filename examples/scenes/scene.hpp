@@ -139,7 +139,9 @@ class Scene {
     [[nodiscard]] virtual std::string about() const = 0;
     [[nodiscard]] virtual std::vector<Option> options() { return {}; }
     [[nodiscard]] virtual std::vector<Part> parts() = 0;
-    /// All parts, or the one that is asked for. @throws std::invalid_argument where there is none
+    /// @throws std::invalid_argument where there is no such part; empty: all
+    void require_part(const std::string& name);
+    /// All parts, or the one that is asked for, which is there.
     void play(Run& run);
 
   protected:

@@ -156,6 +156,7 @@ int main(int argc, char** argv) try {
     const bool all = app.get_subcommands().empty();
     for (const auto& scene : scenes) {
         if (!all && !app.got_subcommand(scene->name())) continue;
+        scene->require_part(options.part);
         for (const char* of : {"bullet", "ode"}) {
             if (engine != "both" && engine != of) continue;
             fmt::print("{} ({}): {}\n", scene->name(), of, scene->about());

@@ -26,7 +26,6 @@
 #include <ductile/material/named.hpp>
 #include <ductile/section/box.hpp>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 static btTransform at(const btVector3& place) {
@@ -38,6 +37,14 @@ int main(int argc, char** argv) {
     std::string path;
     app.add_option("FILE.csv", path, "its history; none: none is written");
     CLI11_PARSE(app, argc, argv);
+
+    std::ofstream history(path); // without a name nothing is kept
+    const auto is_lost = [&] {
+        if (path.empty() || history.flush()) return false;
+        std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+        return true;
+    };
+    if (is_lost()) return 2;
 
     btDefaultCollisionConfiguration configuration;
     btCollisionDispatcher dispatcher(&configuration);
@@ -69,7 +76,6 @@ int main(int argc, char** argv) {
     ball.setFriction(0);
     ball.setActivationState(DISABLE_DEACTIVATION);
 
-    std::ostringstream history;
     history << "time_s,moment_N_m,open_sections,absorbed_J,tip_m\n";
     const auto tip = [&] { return post.pose(description.segments() - 1).getOrigin(); };
     for (int hit = 1; hit <= 3; ++hit) {
@@ -91,7 +97,5 @@ int main(int argc, char** argv) {
         std::printf("hit %d: %.0f J absorbed, tip at %.3f m, %s\n", hit, post.absorbed_energy(),
                     tip().y(), post.whole() ? "one body" : "open");
     }
-    if (path.empty() || std::ofstream(path) << history.str() << std::flush) return 0;
-    std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
-    return 2;
+    return is_lost() ? 2 : 0;
 }

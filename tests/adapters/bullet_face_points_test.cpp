@@ -15,7 +15,6 @@ namespace {
 
 using namespace ductile;
 using bullet::Gap;
-using bullet::detail::face_gaps;
 using bullet::detail::Placed;
 
 constexpr double exact = 4e-7; // of places of some metres in single precision [m]
@@ -27,6 +26,12 @@ constexpr double margin = 1e-3;
 [[nodiscard]] btTransform at(const Vector3<double>& place, double tilt = 0) {
     return btTransform(btQuaternion(btVector3(0, 0, 1), btScalar(tilt)),
                        vector(place[0], place[1], place[2]));
+}
+
+[[nodiscard]] std::vector<Gap> face_gaps(const Placed& a, const Placed& b) {
+    std::vector<Gap> gaps;
+    bullet::detail::list_face_gaps(a, b, gaps);
+    return gaps;
 }
 
 /// A brick of 0.4 by 0.1 by 0.2 m as a hull, margins and all.

@@ -283,7 +283,8 @@ struct Scene {
 struct Cantilever : Scene {
     std::unique_ptr<bullet::Member> member;
 
-    Cantilever(const Member& of, double g) : Scene({0, btScalar(-g), 0}) {
+    Cantilever(const Member& of, double g, double tolerance = 0.01)
+        : Scene({0, btScalar(-g), 0}, tolerance) {
         member = std::make_unique<bullet::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
         world.add(*member);
     }

@@ -276,7 +276,7 @@ struct Scene {
 struct Cantilever : Scene {
     std::unique_ptr<ode::Member> member;
 
-    Cantilever(const Member& of, double g) : Scene({0, -g, 0}) {
+    Cantilever(const Member& of, double g, double tolerance = 0.01) : Scene({0, -g, 0}, tolerance) {
         member = std::make_unique<ode::Member>(rig.body(0, {0, 0, 0}, {0, 0, 0}), of, here);
         world.add(*member);
     }

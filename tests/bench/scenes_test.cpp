@@ -143,7 +143,8 @@ TEST_CASE("frames with a tolerance come to the answers, and are believed", "[ben
             Settings settings = with("elastic-plastic", frame);
             settings.tolerance = 0.01;
             const RunResult run = observe<World>(scene, settings);
-            const bool blow = scene.name == "charpy"; // first order in the edges' turning; 5.5 % at 1/30
+            const bool blow =
+                scene.name == "charpy"; // first order in the edges' turning; 5.5 % at 1/30
             CHECK(relative_error(scene.quantities[0], run).value() < (blow ? 0.06 : 0.01));
             CHECK(run.frames.believed());
             CHECK(run.energy_highest < run.energy_start + (single ? 1e-2 : 1e-6));

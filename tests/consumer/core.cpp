@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
+//
+// Includes little, as it is built by every way; run.sh has all of the core read once.
 #include <cstdio>
-#include <ductile/ductile.hpp>
+#include <ductile/material.hpp>
+#include <ductile/section/capacity.hpp>
+#include <ductile/section/rectangle.hpp>
 
 int main() {
     using namespace ductile;

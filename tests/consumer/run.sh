@@ -78,7 +78,7 @@ find_component() {
     consume "$2" -DCMAKE_PREFIX_PATH="$prefix" -DCOMPONENTS="$1" \
         -DTARGET="ductile::${1:-ductile}" "${@:3}"
 }
-tries core && step "find_package, core" "$holds" find_component "" "$here/core.cpp"
+tries core && step "find_package, core" "$holds" find_component "" "$here/core.cpp" -DHEADER=ductile/ductile.hpp
 for adapter in bullet bullet_float64; do
     tries $adapter && step "find_package, $adapter" '^took 96\.0 J over 1\.50 rad$' \
         find_component $adapter "$here/bullet_hinge.cpp" -DHEADER=ductile/bullet/bullet.hpp

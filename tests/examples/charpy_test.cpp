@@ -5,23 +5,18 @@
 // 122.716 J lost.
 #include <catch2/catch.hpp>
 
-#include <array>
-
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
-#include "drive.hpp"
 #include "reference.hpp"
+#include "simulation.hpp"
 
 #ifdef CHARPY_ODE
-#include "ode_scene.hpp"
-using Scene = charpy::OdeScene;
 static const std::vector<std::string> solvers{"direct", "quick"};
 static const std::string rebounding = "direct";
 #else
-#include "bullet_scene.hpp"
-using Scene = charpy::BulletScene;
 static const std::vector<std::string> solvers{"mlcp", "si"};
 /// Bullet's own: with restitution and a bar against its anvils Dantzig makes energy, sweeps lose
 /// the rebound.
@@ -34,7 +29,11 @@ using namespace charpy;
 
 namespace {
 
-constexpr bool single = Scene::precision == "float";
+#if defined(CHARPY_ODE) || defined(BT_USE_DOUBLE_PRECISION)
+constexpr bool single = false;
+#else
+constexpr bool single = true;
+#endif
 
 /// Of frames, 1e-5 of what the hammer has [J].
 constexpr double unexplained = single ? 1e-2 : 3e-3;
@@ -44,7 +43,7 @@ constexpr std::array seed_steps{1.001e-4, 1e-4, 0.99e-4, 0.8e-4, 0.5e-4};
 
 Result run(const Scenario& scenario, const std::string& solver = solvers.front(),
            Method method = Method::plastic_hinge) {
-    return drive<Scene>(scenario, method, solver);
+    return charpy::run(scenario, method, solver);
 }
 
 Scenario in_frames(double frame) {

@@ -30,6 +30,7 @@ DUCTILE_INLINE FrameControl::FrameControl(const FrameParameters& parameters)
 
 DUCTILE_INLINE void FrameControl::forget() noexcept {
     past_.clear();
+    kicked_.clear();
     fresh_ = fitted_ = false;
     next_ = spin_ = start_ = 0;
 }
@@ -121,6 +122,7 @@ DUCTILE_INLINE double FrameControl::strike(PartEngine& engine, double h) {
 
 /// `h` = 0: a blow.
 DUCTILE_INLINE void FrameControl::remember(const PartMotion& motion, double h) {
+    if (past_.size() != motion.rows.size()) kicked_.assign(motion.rows.size(), {});
     past_.resize(motion.rows.size());
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
@@ -256,7 +258,6 @@ DUCTILE_INLINE void FrameControl::stand(PartEngine& engine, const PartMotion& mo
 /// A frame begins; `misread`: as PartEngine::was_misread.
 DUCTILE_INLINE void FrameControl::begin_kicks(bool misread) {
     constexpr double at_most = 0.8; // of the frame: who flows longer by it would flow anyhow
-    if (kicked_.size() != past_.size()) kicked_.assign(past_.size(), {});
     for (std::size_t i = 0; i < kicked_.size(); ++i) {
         Kicked& kicked = kicked_[i];
         if (misread && kicked.speed > 0 && kicked.time <= at_most * length_) {
@@ -272,7 +273,6 @@ DUCTILE_INLINE void FrameControl::begin_kicks(bool misread) {
 /// not: the kick v is gone after v/d where the row becomes slower by d, and has taken R v²/(2 d). d
 /// is that of the whole flow, its peak by its time.
 DUCTILE_INLINE void FrameControl::doubt_kicks(const PartMotion& motion, double h) {
-    if (kicked_.size() != motion.rows.size()) kicked_.assign(motion.rows.size(), {});
     for (std::size_t i = 0; i < kicked_.size(); ++i) {
         const PartRow& row = motion.rows[i];
         Kicked& kicked = kicked_[i];

@@ -192,7 +192,7 @@ class LinkPose {
     Matrix3<S> orientation_ = Matrix3<S>::Identity(); ///< R
     mutable Vector3<S> elastic_rotation_ = Vector3<S>::Zero();
     mutable Matrix3<S> moment_axes_ = Matrix3<S>::Identity(); ///< of rows of ė
-    mutable bool turned_ = true; ///< e is to be worked out anew
+    mutable bool turned_ = true;                              ///< e is to be worked out anew
     bool conjugate_ = false;
 };
 

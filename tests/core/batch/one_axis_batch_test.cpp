@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The batch against the scalar joint, which is the reference: every field, to round-off.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "ductile/batch/batch_storage.hpp"
 #include "ductile/batch/one_axis_batch.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -112,7 +112,8 @@ Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint
             seen.broken += step.outcome == Outcome::broken;
             seen.unreliable += step.outcome == Outcome::unreliable;
             seen.released += step.release > 0;
-            // in float the travel left before a break keeps few digits: start each step from the same
+            // in float the travel left before a break keeps few digits: start each step from the
+            // same
             if (sizeof(S) == 4) batch.restore(i, joints[i].state());
             memory.velocity_after[i] -=
                 std::copysign(std::min(std::abs(memory.velocity_after[i]), step.release),
@@ -124,8 +125,8 @@ Seen compare(OneAxisBatch<Law> batch, BatchStorage<S>& memory, std::vector<Joint
 
 } // namespace
 
-TEMPLATE_TEST_CASE("the batch books random histories as the scalar joint does",
-                   "[batch]", float, double) {
+TEMPLATE_TEST_CASE("the batch books random histories as the scalar joint does", "[batch]", float,
+                   double) {
     using S = TestType;
     // 37 joints: whole registers and a remainder
     constexpr std::size_t joints = 37;
@@ -164,7 +165,7 @@ TEMPLATE_TEST_CASE("the batch books random histories as the scalar joint does",
 
 TEMPLATE_TEST_CASE("joints with numbers of their own in one batch", "[batch]", float, double) {
     using S = TestType;
-    rc::prop("any strength, hardening and limit", [] {
+    test::prop("any strength, hardening and limit", [] {
         const std::size_t count = *rc::gen::inRange<std::size_t>(0, 40);
         std::vector<S> strength(count), hardening(count), limit(count);
         std::vector<OneAxisJoint<Linear<S>>> joints;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The choice of detail against what the oscillator really does with and without its elastic part.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "ductile/fidelity/joint_detail.hpp"
 #include "ductile/material.hpp"
 #include "ductile/section/rectangle.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -199,7 +199,7 @@ TEST_CASE("an event that is not known gets the elastic part where it costs nothi
 TEST_CASE("the error told is the error made by leaving the elastic part out", "[joint_detail]") {
     // the suddenly applied load of P04, alone and after a hit: the elastic-plastic oscillator and
     // the rigid-plastic joint stepped so finely that only the model differs
-    rc::prop("any hit, load and length of it", [] {
+    test::prop("any hit, load and length of it", [] {
         const AxisSystem<double> system{.mass = 100, .stiffness = 4e4, .strength = 2000};
         const double omega = 20, dt = 1e-3 / omega;
         // past yield: hit at more than ω u_y = 1 m/s, or loaded for long with more than R/2

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "core/fidelity/oscillator.hpp"
 #include "ductile/fidelity/model_choice.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -77,7 +77,7 @@ TEST_CASE("a joint that breaks needs no small step", "[model_choice]") {
 }
 
 TEST_CASE("the detail chosen keeps the tolerance and nothing cheaper does", "[model_choice]") {
-    rc::prop("any stiffness, hit and load", [] {
+    test::prop("any stiffness, hit and load", [] {
         const AxisSystem<double> system{.mass = 100,
                                         .stiffness = 4e4 * std::pow(10.0, *rc::gen::inRange(0, 3)),
                                         .strength = 2000};

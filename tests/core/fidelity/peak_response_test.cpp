@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "core/fidelity/oscillator.hpp"
 #include "ductile/fidelity/peak_response.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -92,7 +92,7 @@ TEST_CASE("a held load takes its share of the strength", "[peak_response]") {
 }
 
 TEST_CASE("the rigid axis is the limit of a stiff one", "[peak_response]") {
-    rc::prop("any event, with an error that falls at least as 1/√k", [] {
+    test::prop("any event, with an error that falls at least as 1/√k", [] {
         AxisSystem<double> rigid{.mass = *rc::gen::inRange(1, 100) / 10.0,
                                  .stiffness = infinity,
                                  .strength = *rc::gen::inRange(1, 100) / 1.0};
@@ -115,7 +115,7 @@ TEST_CASE("the rigid axis is the limit of a stiff one", "[peak_response]") {
 }
 
 TEST_CASE("the closed forms are those of the oscillator stepped in time", "[peak_response]") {
-    rc::prop("any system and event", [] {
+    test::prop("any system and event", [] {
         const AxisSystem<double> system{.mass = *rc::gen::inRange(1, 100) / 10.0,
                                         .stiffness = *rc::gen::inRange(1, 1000) * 1.0,
                                         .strength = *rc::gen::inRange(1, 100) * 1.0};

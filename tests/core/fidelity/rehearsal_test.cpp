@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "core/fidelity/oscillator.hpp"
 #include "ductile/fidelity/rehearsal.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -78,7 +78,7 @@ TEST_CASE("under a load that stays an axis comes to rest at any step", "[rehears
 }
 
 TEST_CASE("an axis alone is stepped as the oscillators of the other tests are", "[rehearsal]") {
-    rc::prop("any hit and load below the strength", [] {
+    test::prop("any hit and load below the strength", [] {
         const AxisEvent<double> event{.speed = *rc::gen::inRange(24, 100) / 20.0,
                                       .load = *rc::gen::inRange(0, 40) * 40.0};
         const double dt = *rc::gen::inRange(1, 40) * 1e-3 / 20;
@@ -120,7 +120,7 @@ TEST_CASE("the step chosen is the longest whose error stays within the target", 
     AxisSystem<double> strong = rotor;
     strong.strength = 50;
     CHECK(choose_step(strong, {.speed = 10}, exact, 0.1, 1e-2).dt == 0);
-    rc::prop("every finer step keeps it too", [] {
+    test::prop("every finer step keeps it too", [] {
         const AxisEvent<double> event{.speed = *rc::gen::inRange(24, 100) / 20.0,
                                       .load = *rc::gen::inRange(0, 40) * 40.0};
         const double target = *rc::gen::element(0.1, 0.03, 0.01);

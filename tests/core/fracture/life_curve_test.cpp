@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <rapidcheck/catch.h>
-
 #include "ductile/fracture/coffin_manson.hpp"
 #include "ductile/fracture/hinge_strain.hpp"
 #include "ductile/fracture/total_strain_life.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -87,26 +86,27 @@ TEST_CASE("total strain tends to Coffin-Manson at large and to Basquin at small 
 }
 
 TEST_CASE("life curves are inverted to round-off and decrease", "[fracture]") {
-    rc::prop("amplitude(reversals(a)) is a, for any constants and twelve decades of amplitude", [] {
-        const auto real = [](double low, double high) {
-            return low + (high - low) * *rc::gen::inRange(0, 1'000'001) / 1e6;
-        };
-        const double c = real(-1.9, -0.05);
-        const double b = c * real(0.01, 0.99);
-        const TotalStrainLife<double> curve({.ductility_coefficient = std::pow(10, real(-3, 1)),
-                                             .ductility_exponent = c,
-                                             .strength_coefficient = std::pow(10, real(7, 10)),
-                                             .strength_exponent = b,
-                                             .youngs_modulus = std::pow(10, real(9, 12))});
-        const double amplitude = std::pow(10, real(-8, 4));
-        const double life = curve.reversals(amplitude);
-        RC_ASSERT(!std::isnan(life));
-        if (!std::isfinite(life) || life < 1e-280) return; // out of range, said honestly
-        // x = ln 2N is good to a few ε|x|, ε_a goes with exp(c x)
-        const double bound = 1e-15 * (8 + 8 * std::abs(c * std::log(life)));
-        RC_ASSERT(std::abs(curve.amplitude(life) / amplitude - 1) < bound);
-        RC_ASSERT(curve.reversals(amplitude * 1.001) < life);
-    });
+    test::prop(
+        "amplitude(reversals(a)) is a, for any constants and twelve decades of amplitude", [] {
+            const auto real = [](double low, double high) {
+                return low + (high - low) * *rc::gen::inRange(0, 1'000'001) / 1e6;
+            };
+            const double c = real(-1.9, -0.05);
+            const double b = c * real(0.01, 0.99);
+            const TotalStrainLife<double> curve({.ductility_coefficient = std::pow(10, real(-3, 1)),
+                                                 .ductility_exponent = c,
+                                                 .strength_coefficient = std::pow(10, real(7, 10)),
+                                                 .strength_exponent = b,
+                                                 .youngs_modulus = std::pow(10, real(9, 12))});
+            const double amplitude = std::pow(10, real(-8, 4));
+            const double life = curve.reversals(amplitude);
+            RC_ASSERT(!std::isnan(life));
+            if (!std::isfinite(life) || life < 1e-280) return; // out of range, said honestly
+            // x = ln 2N is good to a few ε|x|, ε_a goes with exp(c x)
+            const double bound = 1e-15 * (8 + 8 * std::abs(c * std::log(life)));
+            RC_ASSERT(std::abs(curve.amplitude(life) / amplitude - 1) < bound);
+            RC_ASSERT(curve.reversals(amplitude * 1.001) < life);
+        });
 }
 
 TEST_CASE("life curves name the constant that is missing or out of range", "[fracture]") {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/joint/break_release.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
 
 #include "core/joint/any_body.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using any_body::Body;
@@ -14,7 +14,7 @@ using any_body::number;
 using any_body::V3;
 
 TEST_CASE("a release gives exactly its energy to the motion along its axis", "[joint][release]") {
-    rc::prop("any two bodies, joint, axis and energy", [] {
+    test::prop("any two bodies, joint, axis and energy", [] {
         Body a = Body::any(), b = Body::any();
         Vector6<double> axis = Vector6<double>::Zero();
         axis.segment<3>(*rc::gen::inRange(0, 2) * 3) =

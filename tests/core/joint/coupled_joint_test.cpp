@@ -4,8 +4,6 @@
 // rows exactly and every difference from the closed form is the joint's own.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
-#include <rapidcheck/catch.h>
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -16,9 +14,10 @@
 #include "ductile/law/linear.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/numeric/lu.hpp"
-#include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/ellipsoid.hpp"
+#include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/scaled.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -64,7 +63,8 @@ using V2 = Eigen::Vector2d;
 
 auto ellipse_joint(double bending, double torsion, double limit) {
     return CoupledJoint(Ellipse({.capacity = V2(bending, torsion)}),
-                        Perfect<double>({.strength = bending}), TravelLimit<double>({.limit = limit}));
+                        Perfect<double>({.strength = bending}),
+                        TravelLimit<double>({.limit = limit}));
 }
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -85,14 +85,15 @@ TEST_CASE("one coupled axis is the one-axis joint", "[coupled_joint]") {
         u += impulse / 2;
         q += u * dt;
         single.commit({impulse / dt, u, q}, dt);
-        REQUIRE(body.joint.state().plastic_work == Approx(single.state().plastic_work).epsilon(1e-9));
+        REQUIRE(body.joint.state().plastic_work ==
+                Approx(single.state().plastic_work).epsilon(1e-9));
         REQUIRE(body.joint.state().broken == single.state().broken);
     }
     CHECK(single.state().broken);
 }
 
 TEST_CASE("energy is exact in any direction of an ellipse", "[coupled_joint]") {
-    rc::prop("any masses, capacities, speeds and steps", [] {
+    test::prop("any masses, capacities, speeds and steps", [] {
         const auto number = [](int hi) { return *rc::gen::inRange(1, hi) / 10.0; };
         const V2 capacity(number(900), number(900)), mass(number(50), number(50));
         Body body(ellipse_joint(capacity[0], capacity[1], infinity), mass);
@@ -110,7 +111,8 @@ TEST_CASE("energy is exact in any direction of an ellipse", "[coupled_joint]") {
 }
 
 TEST_CASE("an isotropic joint stops along its own direction", "[coupled_joint]") {
-    // capacity 40 N m any way, 2 kg m², 10 rad/s at 30 degrees: 2.5 rad along 30 degrees, less u dt/2
+    // capacity 40 N m any way, 2 kg m², 10 rad/s at 30 degrees: 2.5 rad along 30 degrees, less u
+    // dt/2
     Body body(ellipse_joint(40, 40, infinity), V2(2, 2));
     const V2 along(std::cos(std::numbers::pi / 6), std::sin(std::numbers::pi / 6));
     body.velocity = 10 * along;
@@ -122,13 +124,15 @@ TEST_CASE("an isotropic joint stops along its own direction", "[coupled_joint]")
 }
 
 TEST_CASE("a hinge that yields under axial force also extends", "[coupled_joint]") {
-    // rectangle h = 0.1 m, N_p = 1 MN, M_p = N_p h/4 = 25 kN m, axial load n = 0.4 held: it bends at
-    // m = 1 - n² and its neutral axis is n h/2 off the centroid, so it stretches by that per radian
+    // rectangle h = 0.1 m, N_p = 1 MN, M_p = N_p h/4 = 25 kN m, axial load n = 0.4 held: it bends
+    // at m = 1 - n² and its neutral axis is n h/2 off the centroid, so it stretches by that per
+    // radian
     const double axial = 1e6, plastic = 25e3, n = 0.4, h = 0.1;
     const Scaled surface(RectangleAxialBending<double>(), {.capacity = V2(axial, plastic)});
     Body body(CoupledJoint(surface, Perfect<double>({.strength = plastic})), V2(1000, 20));
     const double moment = 1.02 * plastic * (1 - n * n);
-    for (int i = 0; i < 4000; ++i) body.step(1e-4, V2(n * axial, std::min(1.0, i / 500.0) * moment));
+    for (int i = 0; i < 4000; ++i)
+        body.step(1e-4, V2(n * axial, std::min(1.0, i / 500.0) * moment));
     CHECK(body.position[1] > 0.05);
     CHECK(body.position[0] / body.position[1] == Approx(n * h / 2).epsilon(0.03));
     CHECK(body.joint.utilisation() == Approx(1).epsilon(0.01));
@@ -145,7 +149,8 @@ TEST_CASE("below the surface nothing flows and nothing is consumed", "[coupled_j
     CHECK(body.position.norm() < 1e-12);
 }
 
-TEST_CASE("the rows of a coupled joint are the chords through the predicted force", "[coupled_joint]") {
+TEST_CASE("the rows of a coupled joint are the chords through the predicted force",
+          "[coupled_joint]") {
     // the definition, spelled out with an inverse for every matrix, against what the joint spares
     const Ellipse surface({.capacity = V2(40, 30)});
     const double dt = 0.01;
@@ -186,8 +191,8 @@ TEST_CASE("the rows of a coupled joint are the chords through the predicted forc
 }
 
 TEST_CASE("a load that nobody could predict is bounded by the true surface", "[coupled_joint]") {
-    // far below yield for long, then one axis is struck: it flows at what the surface leaves it beside
-    // the force of the other one, at once and not before
+    // far below yield for long, then one axis is struck: it flows at what the surface leaves it
+    // beside the force of the other one, at once and not before
     for (const double share : {0.05, 0.3, 0.6}) {
         const double left = 30 * std::sqrt(1 - share * share);
         for (const double strike : {0.999, 1.001, 20.0}) {
@@ -209,7 +214,8 @@ TEST_CASE("a coupled break takes the energy of its life at every step", "[couple
         body.velocity = V2(8, 6);
         const double energy = body.kinetic();
         double release = 0;
-        for (int i = 0; i < 1000 && !body.joint.state().broken; ++i) release += body.step(dt).release;
+        for (int i = 0; i < 1000 && !body.joint.state().broken; ++i)
+            release += body.step(dt).release;
         INFO("dt = " << dt);
         CHECK(body.joint.state().broken);
         CHECK(body.joint.state().plastic_work == Approx(44).epsilon(1e-9));
@@ -242,13 +248,15 @@ TEST_CASE("elastic rows of a coupled joint keep the account closed", "[coupled_j
         }
         const auto& state = body.joint.state();
         INFO("dt = " << dt);
-        CHECK(body.taken == Approx(state.plastic_work + state.stored + state.other_work).epsilon(1e-9));
+        CHECK(body.taken ==
+              Approx(state.plastic_work + state.stored + state.other_work).epsilon(1e-9));
         CHECK(state.plastic_work > 0);
         CHECK(state.stored >= 0);
     }
 }
 
-TEST_CASE("bent to yield and then twisted, elastic rows follow the ellipse", "[coupled_joint][P23]") {
+TEST_CASE("bent to yield and then twisted, elastic rows follow the ellipse",
+          "[coupled_joint][P23]") {
     // t = tanh δ, m = sech δ after a twist of δ yield strains (Krieg & Krieg 1977); a body so
     // heavy that it goes on as it is told, and rows that the step resolves
     const double delta = GENERATE(0.5, 1.0, 2.0);
@@ -391,6 +399,7 @@ TEST_CASE("a coupled joint refuses parameters that make none, by name", "[couple
     CHECK(message_of([&] {
               CoupledJoint(surface, law, TravelLimit<double>(), {.stiffness = V2(1, -1)});
           }) == "CoupledJoint.stiffness[1] = -1 N/m or N m/rad: must be > 0 (infinity: no limit)");
-    CHECK(message_of([&] { CoupledJoint(surface, law, TravelLimit<double>(), {.drift_time = 0}); }) ==
-          "CoupledJoint.drift_time = 0 s: must be finite and > 0");
+    CHECK(message_of([&] {
+              CoupledJoint(surface, law, TravelLimit<double>(), {.drift_time = 0});
+          }) == "CoupledJoint.drift_time = 0 s: must be finite and > 0");
 }

@@ -2,7 +2,6 @@
 //
 // What a joint reports of its first yield and of its break, against closed forms, on bodies that
 // only the joint and a given load act on: the rows are solved exactly by clamping.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -20,6 +19,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/law/softening.hpp"
 #include "ductile/surface/ellipsoid.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 
@@ -67,7 +67,7 @@ void check_second_order(double dt, Error error) {
 
 TEST_CASE("a break reports its time to round-off at any step", "[fracture_event]") {
     // 2 kg m², 40 N m, 10 rad/s: ω falls by 20 rad/s per second
-    rc::prop("any limit and step", [] {
+    test::prop("any limit and step", [] {
         const double dt = *rc::gen::inRange(1, 1000) / 1e4;
         const double limit = *rc::gen::inRange(1, 2400) / 1e3;
         const double way = *rc::gen::element(1.0, -1.0);

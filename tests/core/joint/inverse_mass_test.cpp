@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/joint/inverse_mass.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/QR>
 #include <cmath>
 
 #include "core/joint/any_body.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using any_body::Body;
 using any_body::number;
 
 TEST_CASE("the inverse by blocks is the inverse", "[joint][mass]") {
-    rc::prop("any two bodies", [] {
+    test::prop("any two bodies", [] {
         const Matrix6<double> k =
             inverse_mass_at_joint(Body::any().at_joint(), Body::any().at_joint());
         const Matrix6<double> product = k * inverse_by_blocks(k);
@@ -24,7 +24,7 @@ TEST_CASE("the inverse by blocks is the inverse", "[joint][mass]") {
 
 TEST_CASE("an axis response moves its axis by one and leaves the held axes alone",
           "[joint][mass]") {
-    rc::prop("any two bodies, any axis, any number of held ones", [] {
+    test::prop("any two bodies, any axis, any number of held ones", [] {
         const Body a = Body::any(), b = Body::any();
         const Matrix6<double> k = inverse_mass_at_joint(a.at_joint(), b.at_joint());
         // any six directions at right angles

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// The one-axis joint on a body that only it acts on: the row is solved exactly by clamping, so every
-// difference from the closed form is the joint's own.
-#include <catch2/catch.hpp>
-#include <rapidcheck/catch.h>
-
+// The one-axis joint on a body that only it acts on: the row is solved exactly by clamping, so
+// every difference from the closed form is the joint's own.
 #include <algorithm>
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "ductile/joint/one_axis_joint.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -21,7 +20,8 @@ namespace {
 template <class S>
 struct Mass {
     Mass(S mass_, S strength, S limit = std::numeric_limits<S>::infinity())
-        : mass(mass_), joint(Perfect<S>({.strength = strength}), TravelLimit<S>({.limit = limit})) {}
+        : mass(mass_),
+          joint(Perfect<S>({.strength = strength}), TravelLimit<S>({.limit = limit})) {}
 
     Step<S> step(S dt, S load = 0) {
         const RowLimits<S> row = joint.prepare({position, velocity}, dt);
@@ -60,7 +60,7 @@ TEST_CASE("a rotor stops on its plastic hinge with exactly its kinetic energy di
 }
 
 TEST_CASE("energy is exact also where the stop ends inside a step", "[one_axis_joint]") {
-    rc::prop("any step, mass, strength and speed", [] {
+    test::prop("any step, mass, strength and speed", [] {
         const double dt = *rc::gen::inRange(1, 500) / 1e3;
         const double mass = *rc::gen::inRange(1, 1000) / 10.0;
         const double strength = *rc::gen::inRange(1, 1000) / 1.0;
@@ -89,7 +89,7 @@ TEST_CASE("the residual speed after a break is exact at every step", "[one_axis_
 }
 
 TEST_CASE("a break takes the same energy at any step", "[one_axis_joint]") {
-    rc::prop("any limit and step", [] {
+    test::prop("any limit and step", [] {
         const double dt = *rc::gen::inRange(1, 1000) / 1e4;
         const double limit = *rc::gen::inRange(1, 2400) / 1e3;
         Mass<double> rotor(2, 40, limit);
@@ -135,7 +135,7 @@ TEST_CASE("the hanging block of the seed's table", "[one_axis_joint]") {
 }
 
 TEST_CASE("load below yield never consumes life", "[one_axis_joint]") {
-    rc::prop("any load history below yield, with solver noise on the velocity", [] {
+    test::prop("any load history below yield, with solver noise on the velocity", [] {
         OneAxisJoint joint(Perfect<double>({.strength = 10}));
         double position = 0, velocity = 0;
         const double dt = 0.01;
@@ -165,7 +165,8 @@ TEST_CASE("random loads never create energy, turn to NaN or mend a break", "[one
         REQUIRE((!broken || state.broken));
         last = state.plastic_work;
         broken = state.broken;
-        if (!broken) REQUIRE(state.plastic_work == Approx(25 * state.plastic_travel).epsilon(1e-12));
+        if (!broken)
+            REQUIRE(state.plastic_work == Approx(25 * state.plastic_travel).epsilon(1e-12));
     }
     CHECK(broken);
 }
@@ -233,8 +234,9 @@ TEST_CASE("a joint refuses parameters that make none, by name", "[one_axis_joint
     const Perfect<double> law({.strength = 1});
     CHECK(message_of([&] { OneAxisJoint(law, TravelLimit<double>{}, {.drift_time = 0}); }) ==
           "OneAxisJoint.drift_time = 0 s: must be finite and > 0");
-    CHECK(message_of([&] { OneAxisJoint(law, TravelLimit<double>{}, {.absolute_residual = -1}); }) ==
-          "OneAxisJoint.absolute_residual = -1 m/s or rad/s: must be finite and > 0");
+    CHECK(message_of([&] {
+              OneAxisJoint(law, TravelLimit<double>{}, {.absolute_residual = -1});
+          }) == "OneAxisJoint.absolute_residual = -1 m/s or rad/s: must be finite and > 0");
     CHECK(message_of([&] { OneAxisJoint(law, TravelLimit<double>{}, {.relative_residual = 2}); }) ==
           "OneAxisJoint.relative_residual = 2: must be in [0, 1]");
     CHECK(message_of([] { Perfect<double>({}); }) ==

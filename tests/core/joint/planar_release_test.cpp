@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <array>
@@ -9,6 +8,7 @@
 
 #include "ductile/joint/break_release.hpp"
 #include "ductile/joint/planar_release.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 
@@ -74,7 +74,7 @@ bool nothing(const PlanarVelocity<double>& change) {
 } // namespace
 
 TEST_CASE("in the plane a release is the one in space", "[planar]") {
-    rc::prop("any two bodies, arms, velocities and energy", [] {
+    test::prop("any two bodies, arms, velocities and energy", [] {
         const PlanarBody<double> a = any_body(), b = any_body();
         const double energy = number(0, 50);
         const auto planar = planar_release(a, b, energy);
@@ -82,7 +82,7 @@ TEST_CASE("in the plane a release is the one in space", "[planar]") {
         RC_ASSERT(same(planar.a, spatial.a));
         RC_ASSERT(same(planar.b, spatial.b));
     });
-    rc::prop("one body fixed, whichever comes first", [] {
+    test::prop("one body fixed, whichever comes first", [] {
         const PlanarBody<double> a = any_body(), fixed{.arm_x = 3, .arm_y = -1};
         const double energy = number(1, 50);
         const auto planar = planar_release(a, fixed, energy);
@@ -96,7 +96,7 @@ TEST_CASE("in the plane a release is the one in space", "[planar]") {
 
 TEST_CASE("in the plane a release keeps momentum and pin and gives exactly its energy",
           "[planar]") {
-    rc::prop("any two bodies, pin closed or not", [] {
+    test::prop("any two bodies, pin closed or not", [] {
         PlanarBody<double> a = any_body(), b = any_body();
         const auto momentum = [&] {
             return std::array{a.velocity.x / a.inverse_mass + b.velocity.x / b.inverse_mass,

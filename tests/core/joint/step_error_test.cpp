@@ -4,7 +4,6 @@
 // is known in closed form.
 #include "ductile/joint/step_error.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -16,6 +15,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 #include "ductile/surface/independent_axes.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -88,7 +88,7 @@ TEST_CASE("a stop in n steps is off by one part in n, and the joint says so", "[
 }
 
 TEST_CASE("a rest position more than a twentieth off is never left unsaid", "[step_error]") {
-    rc::prop("any mass, strength, speed and step", [] {
+    test::prop("any mass, strength, speed and step", [] {
         const double mass = *rc::gen::inRange(1, 1000) / 10.0;
         const double strength = *rc::gen::inRange(1, 1000) / 1.0;
         const double speed = *rc::gen::inRange(10, 1000) / 10.0;

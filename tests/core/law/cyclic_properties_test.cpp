@@ -2,8 +2,6 @@
 //
 // Every hysteretic law over long random histories: no energy from nothing, no NaN, the same
 // answer in other units and with moves cut in two.
-#include <rapidcheck/catch.h>
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,6 +16,7 @@
 #include "ductile/law/softening.hpp"
 #include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/voce.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 
@@ -46,11 +45,16 @@ auto hysteretic_laws(S length = 1) {
     const std::array<IwanElement<S>, 4> elements{
         {{80 * slope, 4}, {60 * slope, 6}, {40 * slope, 8}, {20 * slope, 10}}};
     return std::tuple{
-        UniaxialReturn(k, Hardening(weakening)),       UniaxialReturn(k, Hardening(pairs)),
-        UniaxialReturn(k, Hardening(fading)),          UniaxialReturn(k, Hardening(perfect)),
-        UniaxialReturn(k, Hardening(linear)),          UniaxialReturn(k, Hardening(voce)),
-        UniaxialReturn(k, Hardening(perfect, prager)), UniaxialReturn(k, Hardening(voce, prager)),
-        UniaxialReturn(k, Hardening(voce, recalling)), Iwan<S, 4>(elements),
+        UniaxialReturn(k, Hardening(weakening)),
+        UniaxialReturn(k, Hardening(pairs)),
+        UniaxialReturn(k, Hardening(fading)),
+        UniaxialReturn(k, Hardening(perfect)),
+        UniaxialReturn(k, Hardening(linear)),
+        UniaxialReturn(k, Hardening(voce)),
+        UniaxialReturn(k, Hardening(perfect, prager)),
+        UniaxialReturn(k, Hardening(voce, prager)),
+        UniaxialReturn(k, Hardening(voce, recalling)),
+        Iwan<S, 4>(elements),
         Iwan<S, 4>(elements, 5 * slope),
     };
 }
@@ -165,7 +169,7 @@ TEST_CASE("the work of a hardening law over a path is its force integrated along
 }
 
 TEST_CASE("a closed cycle never gives work", "[law][cyclic][property]") {
-    rc::prop("out and back to the start, as often as it takes to settle", [] {
+    test::prop("out and back to the start, as often as it takes to settle", [] {
         const double a = *rc::gen::inRange(-1000, 1000) / 1000.0;
         const double b = *rc::gen::inRange(-1000, 1000) / 1000.0;
         for_each_law<double>([&](const auto& law) {
@@ -184,7 +188,7 @@ TEST_CASE("a closed cycle never gives work", "[law][cyclic][property]") {
 }
 
 TEST_CASE("moves cut in two end in the same state", "[law][cyclic][property]") {
-    rc::prop("split", [] {
+    test::prop("split", [] {
         const unsigned seed = *rc::gen::inRange(0u, 1000000u);
         const double cut = *rc::gen::inRange(0, 1000) / 1000.0;
         for_each_law<double>([&](const auto& law) {

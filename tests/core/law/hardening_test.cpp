@@ -2,8 +2,6 @@
 //
 // Hardening as a rigid-plastic row sees it. The row of the dynamic tests is solved in closed form:
 // one mass, one bounded row.
-#include <rapidcheck/catch.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "ductile/law/linear.hpp"
 #include "ductile/law/multilinear.hpp"
 #include "ductile/law/voce.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -144,7 +143,7 @@ TEST_CASE("dissipated and stored work are the integrals over the flow", "[law][h
 }
 
 TEST_CASE("cutting an increment in two changes nothing", "[law][hardening][property]") {
-    rc::prop("split", [] {
+    test::prop("split", [] {
         const double x = *rc::gen::inRange(-490, 490) / 100.0;
         const double whole = *rc::gen::inRange(-1000, 1000) / 1000.0;
         const double cut = *rc::gen::inRange(0, 1000) / 1000.0;
@@ -166,7 +165,7 @@ TEST_CASE("cutting an increment in two changes nothing", "[law][hardening][prope
 }
 
 TEST_CASE("the tangent is the finite difference of the resistance", "[law][hardening][property]") {
-    rc::prop("both directions", [] {
+    test::prop("both directions", [] {
         const HardeningState<double> state{.plastic_travel = 0.02,
                                            .back_force = *rc::gen::inRange(-490, 490) / 100.0};
         const double travel = 1e-3 + *rc::gen::inRange(0, 1000) / 1000.0;

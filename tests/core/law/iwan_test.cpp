@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // Parallel elements with memory (P08, P09 of tests/reference).
-#include <rapidcheck/catch.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
 
 #include "ductile/law/iwan.hpp"
-#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/uniaxial.hpp"
+#include "ductile/law/uniaxial_return.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -101,7 +100,7 @@ TEST_CASE("the loop energy is the sum over the elements (P08)", "[law][iwan]") {
 TEST_CASE("unloading follows the backbone doubled, as Masing's rule says",
           "[law][iwan][property]") {
     const Iwan<double, 4> law(elements<double>, 300.0);
-    rc::prop("F = Fa - 2 f((ua - u)/2)", [&] {
+    test::prop("F = Fa - 2 f((ua - u)/2)", [&] {
         const double amplitude = *rc::gen::inRange(1, 2000) * 1e-5;
         const double back = amplitude * (*rc::gen::inRange(0, 1000)) * 1e-3;
         Iwan<double, 4>::State loaded;
@@ -139,7 +138,7 @@ TEST_CASE("N elements approach the Ramberg-Osgood loop to second order (P09)",
 }
 
 TEST_CASE("elements flow as a rigid law with their stiffness in series", "[law][iwan][property]") {
-    rc::prop("any path, with and without a final stiffness", [] {
+    test::prop("any path, with and without a final stiffness", [] {
         const double final_stiffness = *rc::gen::inRange(0, 3) * 500.0;
         const Iwan<double, 4> law(elements<double>, final_stiffness);
         const double k = law.stiffness();
@@ -162,8 +161,10 @@ TEST_CASE("elements flow as a rigid law with their stiffness in series", "[law][
             const auto range = law.prepare(flowing, 0);
             RC_ASSERT(step.force <= range.upper + 1e-9);
             RC_ASSERT(step.force >= range.lower - 1e-9);
-            if (step.plastic_increment > 0) RC_ASSERT(step.force == Approx(range.upper).margin(1e-9));
-            if (step.plastic_increment < 0) RC_ASSERT(step.force == Approx(range.lower).margin(1e-9));
+            if (step.plastic_increment > 0)
+                RC_ASSERT(step.force == Approx(range.upper).margin(1e-9));
+            if (step.plastic_increment < 0)
+                RC_ASSERT(step.force == Approx(range.lower).margin(1e-9));
             // the tangent is the slope, but for a kink within the difference
             const double travel = *rc::gen::inRange(0, 10000) * 1e-6 + 0.37e-6, h = 1e-9;
             for (const double direction : {-1.0, 1.0}) {

@@ -4,8 +4,6 @@
 // tests/reference), and the hinge made of it.
 #include "ductile/law/moment_curvature.hpp"
 
-#include <rapidcheck/catch.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "ductile/law/moment_rotation.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -232,7 +231,7 @@ TEST_CASE("axial force lowers the plastic moment as the interaction curves say (
 TEST_CASE("the moment grows with curvature, and the curvature of a moment inverts it",
           "[law][fibres][property]") {
     const MomentCurvature tee(Tee{}, steel(0.01));
-    rc::prop("there and back, either direction", [&] {
+    test::prop("there and back, either direction", [&] {
         const double k = std::pow(10.0, *rc::gen::inRange(-3000, 500) / 1000.0);
         const double moment = tee.moment(k);
         RC_ASSERT(tee.moment(1.05 * k) > moment);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,6 +13,7 @@
 #include "ductile/law/perfect.hpp"
 #include "ductile/law/softening.hpp"
 #include "ductile/law/voce.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -126,7 +125,7 @@ TEST_CASE("a law that fades says where, others say never", "[law]") {
 }
 
 TEST_CASE("the slope of every law is its finite difference away from kinks", "[law][property]") {
-    rc::prop("central difference", [] {
+    test::prop("central difference", [] {
         const double p = 1e-3 + share(*rc::gen::inRange(0, 1200));
         for_each_law<double>([&](const auto& law) {
             constexpr double h = 1e-6;
@@ -142,7 +141,7 @@ TEST_CASE("the slope of every law is its finite difference away from kinks", "[l
 }
 
 TEST_CASE("the work of every law is the integral of its value", "[law][property]") {
-    rc::prop("against Simpson's rule, and additive", [] {
+    test::prop("against Simpson's rule, and additive", [] {
         const double a = share(*rc::gen::inRange(0, 1200));
         const double b = share(*rc::gen::inRange(0, 1200));
         const double c = share(*rc::gen::inRange(0, 1200));
@@ -154,7 +153,7 @@ TEST_CASE("the work of every law is the integral of its value", "[law][property]
             RC_ASSERT(law.work(a, a) == 0);
         });
     });
-    rc::prop("small steps keep their digits", [] {
+    test::prop("small steps keep their digits", [] {
         const double p = share(*rc::gen::inRange(0, 1200));
         for_each_law<double>([&](const auto& law) {
             constexpr double step = 1e-7;
@@ -165,7 +164,7 @@ TEST_CASE("the work of every law is the integral of its value", "[law][property]
 }
 
 TEST_CASE("strength never is negative, and hardening laws never fall", "[law][property]") {
-    rc::prop("order", [] {
+    test::prop("order", [] {
         const double a = share(*rc::gen::inRange(0, 3000));
         const double b = a + share(*rc::gen::inRange(0, 3000));
         for_each_law<double>([&](const auto& law) {
@@ -183,7 +182,7 @@ TEMPLATE_TEST_CASE("travel after a work inverts the work of every law", "[law][p
     using S = TestType;
     // Round-off of the work at p ~ 1 (W ~ 20), through the smallest strength met (0.1)
     constexpr S travel_tolerance = 4000 * std::numeric_limits<S>::epsilon();
-    rc::prop("there and back", [&] {
+    test::prop("there and back", [&] {
         const S p0 = S(share(*rc::gen::inRange(0, 400)));
         const S p1 = p0 + S(share(*rc::gen::inRange(0, 2000)));
         for_each_law<S>([&](const auto& law) {

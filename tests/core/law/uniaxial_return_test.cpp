@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The elastic-plastic form: loops and peaks with known answers (P06, P07 of tests/reference).
-#include <rapidcheck/catch.h>
-
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -10,9 +8,10 @@
 #include <vector>
 
 #include "ductile/law/linear.hpp"
-#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/softening.hpp"
+#include "ductile/law/uniaxial_return.hpp"
 #include "ductile/law/voce.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -205,7 +204,7 @@ TEST_CASE("mixed and non-linear hardening return to the range along the exact fl
         k, Hardening(Voce(VoceParameters<double>{.strength = 4.0, .saturation = 3.0, .rate = 9.0}),
                      ArmstrongFrederick(
                          ArmstrongFrederickParameters<double>{.modulus = 30.0, .recall = 8.0})));
-    rc::prop("on the bound, and the same in one move or in several", [&] {
+    test::prop("on the bound, and the same in one move or in several", [&] {
         Law::State one;
         Law::State many;
         double from = 0;
@@ -264,7 +263,8 @@ TEST_CASE("a softening spring fades to zero and stays there, having taken its ar
 TEST_CASE("a spring steeper than the softening snaps back without leaving the range",
           "[law][uniaxial_return]") {
     const Softening steep(SofteningParameters<double>{.strength = 10.0, .exhaustion = 0.01});
-    const UniaxialReturn law(100.0, IsotropicHardening<Softening<double>>(steep)); // slope 1000 > 100
+    const UniaxialReturn law(100.0,
+                             IsotropicHardening<Softening<double>>(steep)); // slope 1000 > 100
     decltype(law)::State state;
     double dissipated = 0;
     for (int i = 1; i <= 100; ++i) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "ductile/law/uniaxial.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -37,7 +36,7 @@ TEST_CASE("Ramberg-Osgood takes its reference values (P09)", "[law][uniaxial]") 
 TEMPLATE_TEST_CASE("Ramberg-Osgood inverts itself from tiny to huge strains",
                    "[law][uniaxial][property]", float, double) {
     using S = TestType;
-    rc::prop("there and back, odd", [] {
+    test::prop("there and back, odd", [] {
         const RambergOsgood law(
             RambergOsgoodParameters<S>{.youngs_modulus = S(200e9),
                                        .coefficient = S(1200e6),

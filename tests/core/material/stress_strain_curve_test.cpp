@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "ductile/material/stress_strain_curve.hpp"
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <rapidcheck/catch.h>
-
-#include "ductile/material/stress_strain_curve.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -65,10 +64,11 @@ TEMPLATE_TEST_CASE("a stress-strain curve is straight between its pairs and leve
 
 TEST_CASE("the tangent of a stress-strain curve is its slope, and the curve is odd", "[material]") {
     const auto curve = hardening_then_softening<double>();
-    rc::prop("", [&] {
+    test::prop("", [&] {
         const double strain = *rc::gen::inRange(-260, 260) * 1e-3 + 0.3e-3; // never at a pair
         const double step = 1e-7;
-        const double slope = (curve.stress(strain + step) - curve.stress(strain - step)) / (2 * step);
+        const double slope =
+            (curve.stress(strain + step) - curve.stress(strain - step)) / (2 * step);
         // differences of stresses of 4e8 Pa known to 1e-16, over 2e-7
         RC_ASSERT(std::abs(slope - curve.tangent(strain)) < 1e6);
         RC_ASSERT(curve.stress(-strain) == -curve.stress(strain));
@@ -81,7 +81,7 @@ TEST_CASE("true and engineering values convert into each other", "[material]") {
     const auto converted = true_from_engineering<double>({.strain = 0.1, .stress = 400e6});
     CHECK(converted.strain == Approx(0.0953101798043).epsilon(1e-12));
     CHECK(converted.stress == Approx(440e6).epsilon(1e-15));
-    rc::prop("back and forth is the identity", [] {
+    test::prop("back and forth is the identity", [] {
         const StressStrainPoint<double> point{.strain = *rc::gen::inRange(1, 500) * 1e-3,
                                               .stress = *rc::gen::inRange(1, 1000) * 1e6};
         const auto back = engineering_from_true(true_from_engineering(point));
@@ -100,7 +100,8 @@ TEST_CASE("an elastic-perfectly plastic curve has two pairs", "[material]") {
 TEST_CASE("a stress-strain curve says which pair it cannot use", "[material]") {
     CHECK(message_for({{0.001, 200e6}, {0.01, 200e6}}, -1) ==
           "StressStrainCurve.youngs_modulus = -1 Pa: must be finite and > 0");
-    CHECK(message_for({{0.001, 200e6}}) == "StressStrainCurve.points = 1: must be at least 2 pairs");
+    CHECK(message_for({{0.001, 200e6}}) ==
+          "StressStrainCurve.points = 1: must be at least 2 pairs");
     CHECK(message_for({{0, 0}, {0.001, 200e6}}) ==
           "StressStrainCurve.points[0].strain = 0: must be finite and > 0");
     CHECK(message_for({{0.001, 200e6}, {0.002, -1}}) ==
@@ -111,9 +112,10 @@ TEST_CASE("a stress-strain curve says which pair it cannot use", "[material]") {
           "StressStrainCurve.points[1].strain = nan: must be finite and > 0");
     CHECK(message_for({{0.001, 200e6}, {0.001, 250e6}}) ==
           "StressStrainCurve.points[1].strain = 0.001: must be > the strain before it");
-    CHECK(message_for({{0.001, 197e6}, {0.01, 250e6}}) ==
-          "StressStrainCurve.points[0].stress = 197000000 Pa: must be youngs_modulus * strain within "
-          "1 %: a curve starts elastic");
+    CHECK(
+        message_for({{0.001, 197e6}, {0.01, 250e6}}) ==
+        "StressStrainCurve.points[0].stress = 197000000 Pa: must be youngs_modulus * strain within "
+        "1 %: a curve starts elastic");
     CHECK(message_for({{0.001, 200e6}, {0.002, 500e6}}) ==
           "StressStrainCurve.points[1].stress = 500000000 Pa: must be reached with a slope <= "
           "youngs_modulus");

@@ -2,7 +2,6 @@
 //
 // The solver of the reference integrator against brute force: every way to put n rows at a bound or
 // between them is tried. What verifies the core must itself be verified.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/QR>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "reference/boxed_lcp.hpp"
+#include "support/property.hpp"
 
 using namespace ductile::reference;
 
@@ -71,7 +71,7 @@ double smallest_by_enumeration(const Problem& p) {
 } // namespace
 
 TEST_CASE("the boxed LCP finds the optimum that enumeration finds", "[reference][lcp]") {
-    rc::prop("whole numbers, dependent rows, ties, boxes of no width", [] {
+    ductile::test::prop("whole numbers, dependent rows, ties, boxes of no width", [] {
         const Problem p = arbitrary_problem();
         BoxedLcp<double> lcp;
         const Vector<double> lambda = lcp.solve(p.a, p.g, p.lower, p.upper);
@@ -86,7 +86,7 @@ TEST_CASE("the boxed LCP finds the optimum that enumeration finds", "[reference]
 }
 
 TEST_CASE("the boxed LCP gives the same velocities whatever it starts from", "[reference][lcp]") {
-    rc::prop("after any other problem of the same size", [] {
+    ductile::test::prop("after any other problem of the same size", [] {
         const Problem p = arbitrary_problem();
         BoxedLcp<double> cold, warm;
         cold.solve(p.a, p.g, p.lower, p.upper);

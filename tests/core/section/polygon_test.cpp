@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <rapidcheck/catch.h>
-
 #include "core/section/shapes.hpp"
 #include "ductile/section/channel.hpp"
 #include "ductile/section/i_section.hpp"
@@ -15,6 +13,7 @@
 #include "ductile/section/principal.hpp"
 #include "ductile/section/rectangle.hpp"
 #include "ductile/section/t_section.hpp"
+#include "support/property.hpp"
 #include "support/throws.hpp"
 
 using namespace ductile;
@@ -46,8 +45,8 @@ double any_angle() { return *rc::gen::inRange(-314, 315) * 1e-2; }
 template <class T>
 void agrees_with_its_outline(const T& section) {
     const auto polygon = polygon_of(section);
-    const double size = std::max({section.highest(x), section.highest(y), -section.lowest(x),
-                                  -section.lowest(y)});
+    const double size =
+        std::max({section.highest(x), section.highest(y), -section.lowest(x), -section.lowest(y)});
     RC_ASSERT(close(polygon.area(), section.area(), section.area()));
     RC_ASSERT(std::hypot(polygon.centroid().x, polygon.centroid().y) < round_off * size);
     for (const SectionAxis axis : {x, y}) {
@@ -59,8 +58,8 @@ void agrees_with_its_outline(const T& section) {
                         section.plastic_modulus(axis)));
         RC_ASSERT(close(polygon.lowest(axis), section.lowest(axis), size));
         RC_ASSERT(close(polygon.highest(axis), section.highest(axis), size));
-        const double height = section.lowest(axis) + std::numbers::inv_pi *
-                                                         (section.highest(axis) - section.lowest(axis));
+        const double height = section.lowest(axis) +
+                              std::numbers::inv_pi * (section.highest(axis) - section.lowest(axis));
         RC_ASSERT(close(polygon.width_at(height, axis), section.width_at(height, axis), size));
     }
     RC_ASSERT(close(polygon.product_of_inertia(), section.product_of_inertia(),
@@ -76,23 +75,23 @@ std::string message_for(std::vector<Point<double>> vertices) {
 } // namespace
 
 TEST_CASE("a polygon has the properties of the named section with its outline", "[section]") {
-    rc::prop("rectangle", [] {
+    test::prop("rectangle", [] {
         const Rectangle<double> section({.width = any_length(), .height = any_length()});
         agrees_with_its_outline(section);
         const auto polygon = polygon_of(section);
         RC_ASSERT(close(polygon.shear_area(x), section.shear_area(x), section.area()));
-        RC_ASSERT(close(polygon.elastic_shear_area(x), section.elastic_shear_area(x), section.area()));
+        RC_ASSERT(
+            close(polygon.elastic_shear_area(x), section.elastic_shear_area(x), section.area()));
     });
-    rc::prop("I", [] {
+    test::prop("I", [] {
         const double b = any_length();
         const double h = any_length();
-        agrees_with_its_outline(
-            ISection<double>({.width = b,
-                              .height = h,
-                              .web_thickness = b * any_fraction(),
-                              .flange_thickness = h / 2 * any_fraction()}));
+        agrees_with_its_outline(ISection<double>({.width = b,
+                                                  .height = h,
+                                                  .web_thickness = b * any_fraction(),
+                                                  .flange_thickness = h / 2 * any_fraction()}));
     });
-    rc::prop("T", [] {
+    test::prop("T", [] {
         const double b = any_length();
         const double h = any_length();
         agrees_with_its_outline(TSection<double>({.width = b,
@@ -100,13 +99,13 @@ TEST_CASE("a polygon has the properties of the named section with its outline", 
                                                   .web_thickness = b * any_fraction(),
                                                   .flange_thickness = h * any_fraction()}));
     });
-    rc::prop("L", [] {
+    test::prop("L", [] {
         const double b = any_length();
         const double h = any_length();
         agrees_with_its_outline(LSection<double>(
             {.width = b, .height = h, .thickness = std::min(b, h) * any_fraction()}));
     });
-    rc::prop("channel", [] {
+    test::prop("channel", [] {
         const double b = any_length();
         const double h = any_length();
         agrees_with_its_outline(Channel<double>({.width = b,
@@ -131,7 +130,7 @@ TEST_CASE("the plastic torsion of a flat outline keeps its digits", "[section]")
 }
 
 TEST_CASE("a polygon is the same wherever it lies and in either orientation", "[section]") {
-    rc::prop("", [] {
+    test::prop("", [] {
         const auto outline = any_star();
         const Point<double> by{*rc::gen::inRange(-10, 10) * 1.0, *rc::gen::inRange(-10, 10) * 1.0};
         const Polygon<double> here({.vertices = outline});
@@ -152,7 +151,7 @@ TEST_CASE("a polygon is the same wherever it lies and in either orientation", "[
 }
 
 TEST_CASE("a quarter turn of a polygon swaps its axes", "[section]") {
-    rc::prop("", [] {
+    test::prop("", [] {
         const auto outline = any_star();
         Outline<double> quarter;
         for (const auto& p : outline) quarter.push_back({-p.y, p.x});
@@ -173,7 +172,7 @@ TEST_CASE("a quarter turn of a polygon swaps its axes", "[section]") {
 }
 
 TEST_CASE("bending about an axis at an angle is bending of the polygon turned back", "[section]") {
-    rc::prop("", [] {
+    test::prop("", [] {
         const auto outline = any_star();
         const double angle = any_angle();
         const Polygon<double> here({.vertices = outline});
@@ -198,7 +197,8 @@ TEST_CASE("bending about an axis at an angle is bending of the polygon turned ba
     });
 }
 
-TEST_CASE("the width of a polygon at its flat top and bottom is that of the edge there", "[section]") {
+TEST_CASE("the width of a polygon at its flat top and bottom is that of the edge there",
+          "[section]") {
     const LSection<double> angle({.width = 0.3, .height = 0.2, .thickness = 0.01});
     const auto polygon = polygon_of(angle);
     CHECK(polygon.width_at(polygon.highest()) == Approx(0.01).epsilon(1e-12));
@@ -222,16 +222,20 @@ TEST_CASE("the moments of a polygon are those of its cells", "[section]") {
     // cells of 1/350 that the boundary cuts: a relative error of about 1e-4
     const double tolerance = 5e-4;
     CHECK(polygon.area() == Approx(sum([](auto) { return 1.0; })).epsilon(tolerance));
-    CHECK(polygon.second_moment(x) == Approx(sum([](auto p) { return p.y * p.y; })).epsilon(tolerance));
-    CHECK(polygon.second_moment(y) == Approx(sum([](auto p) { return p.x * p.x; })).epsilon(tolerance));
-    CHECK(polygon.product_of_inertia() ==
-          Approx(sum([](auto p) { return p.x * p.y; })).margin(tolerance * polygon.second_moment(x)));
+    CHECK(polygon.second_moment(x) ==
+          Approx(sum([](auto p) { return p.y * p.y; })).epsilon(tolerance));
+    CHECK(polygon.second_moment(y) ==
+          Approx(sum([](auto p) { return p.x * p.x; })).epsilon(tolerance));
+    CHECK(polygon.product_of_inertia() == Approx(sum([](auto p) {
+                                              return p.x * p.y;
+                                          })).margin(tolerance * polygon.second_moment(x)));
     const auto height = [&](Point<double> p) {
         return std::cos(0.3) * p.y - std::sin(0.3) * p.x - bending.height;
     };
     CHECK(sum([&](auto p) { return height(p) > 0 ? 1.0 : -1.0; }) ==
           Approx(0).margin(2 * tolerance * polygon.area()));
-    CHECK(bending.modulus == Approx(sum([&](auto p) { return std::abs(height(p)); })).epsilon(tolerance));
+    CHECK(bending.modulus ==
+          Approx(sum([&](auto p) { return std::abs(height(p)); })).epsilon(tolerance));
     CHECK(bending.companion == Approx(sum([&](auto p) {
                                    const double u = std::cos(0.3) * p.x + std::sin(0.3) * p.y;
                                    return height(p) > 0 ? u : -u;
@@ -240,7 +244,8 @@ TEST_CASE("the moments of a polygon are those of its cells", "[section]") {
 
 TEST_CASE("a polygon in single precision far from the origin keeps its accuracy", "[section]") {
     // 4 m away coordinates are known to 2.4e-7 m: 1e-5 of the thickness, twice for its cube
-    const auto outline = outline_of(LSection<float>({.width = 0.1f, .height = 0.1f, .thickness = 0.02f}));
+    const auto outline =
+        outline_of(LSection<float>({.width = 0.1f, .height = 0.1f, .thickness = 0.02f}));
     const Polygon<float> here({.vertices = outline});
     const Polygon<float> there({.vertices = moved(outline, {4.0f, -4.0f})});
     CHECK(there.area() == Approx(here.area()).epsilon(5e-5));
@@ -262,7 +267,8 @@ TEST_CASE("St Venant's estimate of J is near the truth for compact polygons", "[
 TEST_CASE("a polygon says what is wrong with its vertices", "[section]") {
     CHECK(message_for({}) == "Polygon.vertices = 0: must be at least 3 points");
     CHECK(message_for({{0, 0}, {1, 0}}) == "Polygon.vertices = 2: must be at least 3 points");
-    CHECK(message_for({{0, 0}, {1, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}) == "Polygon.vertices[2].x = nan m: must be finite");
+    CHECK(message_for({{0, 0}, {1, 0}, {std::numeric_limits<double>::quiet_NaN(), 0}}) ==
+          "Polygon.vertices[2].x = nan m: must be finite");
     CHECK(message_for({{0, 0}, {1, std::numeric_limits<double>::infinity()}, {0, 1}}) ==
           "Polygon.vertices[1].y = inf m: must be finite");
     CHECK(message_for({{0, 0}, {1, 0}, {1, 0}, {0, 1}}) ==

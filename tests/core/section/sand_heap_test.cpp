@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <rapidcheck/catch.h>
 #include <span>
 
 #include "core/section/shapes.hpp"
 #include "ductile/section/box.hpp"
 #include "ductile/section/sand_heap.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -22,9 +22,8 @@ constexpr double round_off = 1e-11;
 
 Outline<double> any_triangle() {
     const auto coordinate = [] { return *rc::gen::inRange(0, 1000) * 1e-3; };
-    const Outline<double> t{{coordinate(), coordinate()},
-                            {coordinate(), coordinate()},
-                            {coordinate(), coordinate()}};
+    const Outline<double> t{
+        {coordinate(), coordinate()}, {coordinate(), coordinate()}, {coordinate(), coordinate()}};
     RC_PRE(std::abs(cross(t[1] - t[0], t[2] - t[0])) > 1e-3);
     return t;
 }
@@ -38,7 +37,7 @@ TEST_CASE("the sand heap on a polygon with an inscribed circle is a pyramid", "[
         CHECK(heap(regular(corners)) ==
               Approx(n * std::tan(std::numbers::pi / n) / 3).epsilon(round_off));
     }
-    rc::prop("any triangle", [] {
+    test::prop("any triangle", [] {
         const auto t = any_triangle();
         double perimeter = 0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -52,8 +51,8 @@ TEST_CASE("the sand heap on a polygon with an inscribed circle is a pyramid", "[
 }
 
 TEST_CASE("the search along an edge survives a tie of two obstacles where it starts", "[section]") {
-    // The first obstacle rises with u, the second falls, and they tie exactly at the golden section,
-    // where the search looks first and takes the first of them.
+    // The first obstacle rises with u, the second falls, and they tie exactly at the golden
+    // section, where the search looks first and takes the first of them.
     struct Tied {
         double at;
         double first() const { return 0; }
@@ -68,15 +67,16 @@ TEST_CASE("the search along an edge survives a tie of two obstacles where it sta
         }
     };
     const double golden = 0.381966011250105152;
-    const double expected = golden * golden / 2 + 2 * golden * (1 - golden) -
-                            (1 - golden * golden) / 2;
+    const double expected =
+        golden * golden / 2 + 2 * golden * (1 - golden) - (1 - golden * golden) / 2;
     CHECK(detail::heap_volume(Tied{golden}, 0.0, 1.0) == Approx(expected).epsilon(1e-14));
 }
 
 TEST_CASE("the sand heap on an L is two hipped roofs and their corner", "[section]") {
-    // Two straight legs of length a - t, each a roof t²/4 per length less t³/24 at the hip of its free
-    // end, and the square they share, where the height is the least of the distances to the two outer
-    // sides and to the re-entrant corner. Over the square cells of 1/2000 are good to 1e-7.
+    // Two straight legs of length a - t, each a roof t²/4 per length less t³/24 at the hip of its
+    // free end, and the square they share, where the height is the least of the distances to the
+    // two outer sides and to the re-entrant corner. Over the square cells of 1/2000 are good to
+    // 1e-7.
     const double t = 1;
     const double a = 4;
     const Outline<double> outline{{0, 0}, {a, 0}, {a, t}, {t, t}, {t, a}, {0, a}};
@@ -94,13 +94,14 @@ TEST_CASE("the sand heap on a polygon with many reflex corners is that of its ce
         const auto outline = star(corners, static_cast<unsigned>(corners));
         CHECK(heap(outline) == Approx(heap_by_cells(outline, 400)).epsilon(5e-6));
     }
-    const Outline<double> comb{{0, 0},   {7, 0}, {7, 3}, {6, 3}, {6, 1}, {5, 1},
+    const Outline<double> comb{{0, 0},   {7, 0},   {7, 3}, {6, 3}, {6, 1}, {5, 1},
                                {5, 2.5}, {3, 2.5}, {3, 1}, {2, 1}, {2, 4}, {0, 4}};
     CHECK(heap(comb) == Approx(heap_by_cells(comb, 700)).epsilon(5e-5));
 }
 
-TEST_CASE("the sand heap does not depend on place, turn, orientation or first vertex", "[section]") {
-    rc::prop("", [] {
+TEST_CASE("the sand heap does not depend on place, turn, orientation or first vertex",
+          "[section]") {
+    test::prop("", [] {
         const auto outline = star(static_cast<std::size_t>(*rc::gen::inRange(3, 25)),
                                   *rc::gen::arbitrary<unsigned>());
         const double volume = heap(outline);
@@ -115,12 +116,13 @@ TEST_CASE("the sand heap does not depend on place, turn, orientation or first ve
         auto rotated = outline;
         std::rotate(rotated.begin(), rotated.begin() + 1, rotated.end());
         RC_ASSERT(same(rotated));
-        RC_ASSERT(std::abs(heap(scaled(outline, 1e-3)) - 1e-9 * volume) < round_off * 1e-9 * volume);
+        RC_ASSERT(std::abs(heap(scaled(outline, 1e-3)) - 1e-9 * volume) <
+                  round_off * 1e-9 * volume);
     });
 }
 
 TEST_CASE("a vertex along an edge does not change the sand heap", "[section]") {
-    rc::prop("", [] {
+    test::prop("", [] {
         const auto outline = turned(star(9, *rc::gen::arbitrary<unsigned>()), 0.7);
         Outline<double> halved;
         for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -135,8 +137,8 @@ TEST_CASE("a vertex along an edge does not change the sand heap", "[section]") {
 TEST_CASE("a slit opens the sand heap", "[section]") {
     // a square with a slit of width 2e-6 to its middle: the limit is that of the slit as a line
     const double slit = 1e-6;
-    const Outline<double> outline{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0.5 + slit}, {0.5, 0.5},
-                                  {0, 0.5 - slit}};
+    const Outline<double> outline{{0, 0},          {1, 0},     {1, 1},         {0, 1},
+                                  {0, 0.5 + slit}, {0.5, 0.5}, {0, 0.5 - slit}};
     const Outline<double> square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     const double cells = over_cells(square, 1000, [&](Point<double> q) {
         return std::min(distance_to_outline(q, square),
@@ -147,8 +149,8 @@ TEST_CASE("a slit opens the sand heap", "[section]") {
 
 TEST_CASE("the plastic torque of a box is that of the heap with a flat top over its hole",
           "[section]") {
-    // The heap is the least of the distance to the outer boundary and the plateau t plus the distance
-    // to the hole; t is the thinner wall.
+    // The heap is the least of the distance to the outer boundary and the plateau t plus the
+    // distance to the hole; t is the thinner wall.
     const auto by_cells = [](double b, double h, double tw, double tf) {
         const Outline<double> outer{{0, 0}, {b, 0}, {b, h}, {0, h}};
         return 2 * over_cells(outer, 1200, [&](Point<double> q) {
@@ -163,9 +165,13 @@ TEST_CASE("the plastic torque of a box is that of the heap with a flat top over 
             .plastic_torsion_modulus();
     };
     // thin webs, thin flanges, equal, and a hole narrower than the ridge is wide
-    const double sizes[][4] = {
-        {1, 2, 0.1, 0.3}, {1, 2, 0.3, 0.1}, {1, 2, 0.2, 0.2}, {0.5, 2, 0.1, 0.9}, {2, 0.6, 0.9, 0.05}};
+    const double sizes[][4] = {{1, 2, 0.1, 0.3},
+                               {1, 2, 0.3, 0.1},
+                               {1, 2, 0.2, 0.2},
+                               {0.5, 2, 0.1, 0.9},
+                               {2, 0.6, 0.9, 0.05}};
     for (const auto& s : sizes) {
-        CHECK(closed(s[0], s[1], s[2], s[3]) == Approx(by_cells(s[0], s[1], s[2], s[3])).epsilon(1e-5));
+        CHECK(closed(s[0], s[1], s[2], s[3]) ==
+              Approx(by_cells(s[0], s[1], s[2], s[3])).epsilon(1e-5));
     }
 }

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/surface/cases.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -41,7 +42,7 @@ TEST_CASE("a surface for solvers is the surface in shares of its strengths", "[s
         const AnySurfaceOf any(surface);
         INFO(name);
         for (int i = 0; i < n; ++i) CHECK(any.value(six(Vector(Vector::Unit(i)))) == Approx(1));
-        CHECK(rc::check([&] {
+        test::prop(name, [&] {
             const Vector share = any_direction<Vector>() * 2,
                          metric = Vector::Ones() * 0.1 + any_vector<Vector>().cwiseAbs();
             const Vector c = any.strength();
@@ -77,7 +78,7 @@ TEST_CASE("a surface for solvers is the surface in shares of its strengths", "[s
             const double off = ((after - before) / 2 - expected).norm();
             RC_PRE((after - Vector(2 * closest) + before).norm() < 1e-9);
             RC_ASSERT(off <= 1e-3 * change.norm());
-        }));
+        });
     });
     CHECK(met == 10);
 }

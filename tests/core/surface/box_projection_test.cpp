@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/surface/box_projection.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/Core>
@@ -9,13 +8,14 @@
 
 #include "core/surface/cases.hpp"
 #include "ductile/numeric/ldlt.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
 
 TEST_CASE("the box solver finds the closest point of a box", "[surface]") {
     using Vector = Eigen::Matrix<double, 4, 1>;
-    rc::prop("complementarity", [] {
+    test::prop("complementarity", [] {
         const Vector middle = any_vector<Vector>();
         const Vector half = any_vector<Vector>().cwiseAbs(); // now and then without width
         const Vector lower = middle - half, upper = middle + half;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/surface/chords.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <type_traits>
 
 #include "core/surface/cases.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -20,7 +20,7 @@ TEST_CASE("chords in closed form are those that Newton finds", "[surface]") {
         using Vector = typename T::Vector;
         if constexpr (ChordedSurface<T>) {
             ++closed;
-            rc::prop(name, [&] {
+            test::prop(name, [&] {
                 const auto ray = any_direction<Vector>();
                 const Vector point = ray * (any_number(0.0, 1.0) / surface.value(ray));
                 const auto [lower, upper] = surface.chords(point);
@@ -42,7 +42,7 @@ TEST_CASE("the ends of the chords take in a point that round-off put outside", "
     for_every_surface<float>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             const auto ray = any_direction<Vector>();
             const Vector point = ray * ((1 + on_surface<float>) / surface.value(ray));
             const auto [lower, upper] = chords_through(surface, point);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The return to a surface along paths with known answers.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -9,6 +8,7 @@
 
 #include "core/surface/cases.hpp"
 #include "core/surface/closest_point_return.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -87,7 +87,7 @@ TEST_CASE("an increment is its elastic and its plastic part, and dissipates", "[
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             const auto k = any_stiffness<typename T::Matrix>();
             Vector force = Vector::Zero(), total = force, plastic = force;
             for (int i = 0; i < 10; ++i) {

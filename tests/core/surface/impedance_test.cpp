@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // The impedance of rows against its definition and its limits.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/LU>
@@ -9,6 +8,7 @@
 
 #include "core/surface/cases.hpp"
 #include "ductile/surface/impedance.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -22,7 +22,7 @@ using Rows = Impedance<double, 4>;
 } // namespace
 
 TEST_CASE("the impedance is that of masses and springs in series", "[surface]") {
-    rc::prop("(M⁻¹ + C)⁻¹/dt, some rows rigid", [] {
+    test::prop("(M⁻¹ + C)⁻¹/dt, some rows rigid", [] {
         const auto mass = any_stiffness<Matrix>();
         const Vector compliance = any_vector<Vector>().cwiseAbs(); // now and then 0
         const double dt = any_number(0.001, 0.1);

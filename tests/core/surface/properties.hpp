@@ -4,7 +4,6 @@
 // properties are the slowest to compile of all tests.
 #pragma once
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/Core>
@@ -15,6 +14,7 @@
 #include "core/surface/cases.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
+#include "support/property.hpp"
 
 namespace ductile::test {
 
@@ -32,7 +32,7 @@ void check_all() {
         const auto name = [&](const char* property) { return surface_name + scalar + property; };
         constexpr S tolerance = round_off<S>;
 
-        rc::prop(name("the value is a gauge"), [&] {
+        test::prop(name("the value is a gauge"), [&] {
             const auto f = any_direction<Vector>();
             const auto g = any_vector<Vector>();
             const S s = any_number(S(0.01), S(100));
@@ -44,7 +44,7 @@ void check_all() {
             RC_ASSERT(surface.value(f + g) <= sum * (1 + tolerance));
         });
 
-        rc::prop(name("a sign of one force does not matter"), [&] {
+        test::prop(name("a sign of one force does not matter"), [&] {
             const auto f = any_vector<Vector>();
             Vector mirrored = f;
             const int axis = *rc::gen::inRange(0, T::dimension);
@@ -52,7 +52,7 @@ void check_all() {
             RC_ASSERT(std::abs(surface.value(mirrored) - surface.value(f)) <= tolerance);
         });
 
-        rc::prop(name("flow dissipates, at the rate of the gauge"), [&] {
+        test::prop(name("flow dissipates, at the rate of the gauge"), [&] {
             const auto f = any_direction<Vector>();
             const S value = surface.value(f);
             const Vector normal = surface.normal(f);
@@ -62,13 +62,13 @@ void check_all() {
             RC_ASSERT((outside - normal).norm() <= 4 * tolerance * normal.norm());
         });
 
-        rc::prop(name("the normal supports the surface"), [&] {
+        test::prop(name("the normal supports the surface"), [&] {
             const auto f = any_direction<Vector>();
             const auto g = any_vector<Vector>();
             RC_ASSERT(surface.normal(f).dot(g) <= surface.value(g) + tolerance);
         });
 
-        rc::prop(name("the support of a flow dissipates most"), [&] {
+        test::prop(name("the support of a flow dissipates most"), [&] {
             const auto flow = any_direction<Vector>();
             const auto g = any_direction<Vector>();
             const Vector force = surface.support(flow);
@@ -79,7 +79,7 @@ void check_all() {
             RC_ASSERT(g.dot(flow) / surface.value(g) <= dissipated * (1 + tolerance));
         });
 
-        rc::prop(name("a force inside stays"), [&] {
+        test::prop(name("a force inside stays"), [&] {
             const auto ray = any_direction<Vector>();
             const Vector f = ray * (any_number(S(0), S(1)) / surface.value(ray));
             const auto stiffness = any_stiffness<Matrix>();
@@ -87,7 +87,7 @@ void check_all() {
             RC_ASSERT(project_radially(surface, f) == f);
         });
 
-        rc::prop(name("projection lands on the surface, and stays"), [&] {
+        test::prop(name("projection lands on the surface, and stays"), [&] {
             const auto ray = any_direction<Vector>();
             const S beyond = std::pow(S(10), any_number(S(-3), S(3)));
             const Vector f = ray * ((1 + beyond) / surface.value(ray));
@@ -100,7 +100,7 @@ void check_all() {
             RC_ASSERT(project_radially(surface, drawn) == drawn);
         });
 
-        rc::prop(name("projection finds the closest force, so that flow is associated"), [&] {
+        test::prop(name("projection finds the closest force, so that flow is associated"), [&] {
             const auto ray = any_direction<Vector>();
             const S beyond = std::pow(S(10), any_number(S(-1), S(2)));
             const Vector f = ray * ((1 + beyond) / surface.value(ray));

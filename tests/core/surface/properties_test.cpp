@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
 // What holds for every yield surface.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/Core>
@@ -13,6 +12,7 @@
 #include "core/surface/properties.hpp"
 #include "ductile/numeric/ldlt.hpp"
 #include "ductile/surface/closest_point.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -40,7 +40,7 @@ TEST_CASE("the normal is the gradient of the value", "[surface]") {
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             const auto f = any_direction<Vector>();
             constexpr double step = 1e-6;
             // second differences reach 1e2 (edges of the box excluded): error of step² × third, and
@@ -65,7 +65,7 @@ TEST_CASE("the slope of the support is its derivative", "[surface]") {
         if constexpr (CurvedSurface<T>) {
             using Vector = typename T::Vector;
             using Matrix = typename T::Matrix;
-            rc::prop(name, [&] {
+            test::prop(name, [&] {
                 const auto flow = any_direction<Vector>();
                 constexpr double step = 1e-6;
                 const Matrix slope = surface.support_slope(flow);
@@ -92,7 +92,7 @@ TEST_CASE("an ellipsoid's own closest point is that of the general return", "[su
     using Surface = Ellipsoid<double, 6>;
     using Vector = Surface::Vector;
     const Surface surface({.capacity = {1, 2, 0.5, 1.5, 0.7, 1}});
-    rc::prop("any trial, any stiffness", [&] {
+    test::prop("any trial, any stiffness", [&] {
         const auto ray = any_direction<Vector>();
         const double beyond = std::pow(10, any_number(-6.0, 6.0));
         const Vector trial = ray * ((1 + beyond) / surface.value(ray));
@@ -117,7 +117,7 @@ TEST_CASE("float agrees with double", "[surface]") {
     constexpr double tolerance = 2e-5;
     const auto check = [&](const char* name, const auto& single, const auto& twice) {
         using Vector = typename std::decay_t<decltype(single)>::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             const auto f = any_direction<Vector>();
             const auto wide = f.template cast<double>().eval();
             RC_ASSERT(std::abs(double(single.value(f)) - twice.value(wide)) <= tolerance);
@@ -161,7 +161,7 @@ TEST_CASE("huge and tiny forces are met as well", "[surface]") {
 
 TEST_CASE("a change of units or of the order of the moments changes nothing", "[surface]") {
     using Surface = Scaled<BiaxialRectangle<double>>;
-    rc::prop("N, N m against kN, kN mm; x against y", [] {
+    test::prop("N, N m against kN, kN mm; x against y", [] {
         const Eigen::Vector3d capacity{2.5e5, 3.1e4, 1.2e4};
         const Eigen::Vector3d units{1e-3, 1, 1}; // kN, kN mm
         const Surface si(BiaxialRectangle<double>(), {.capacity = capacity});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "ductile/surface/row_box.hpp"
 
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <Eigen/Core>
@@ -11,6 +10,7 @@
 
 #include "core/surface/cases.hpp"
 #include "core/surface/enforced_rows.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -36,7 +36,7 @@ TEST_CASE("the box along a prediction touches the surface there and holds what i
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             const auto ray = any_direction<Vector>();
             const double value = any_number(0.0, 3.0);
             const Vector predicted = ray * (value / surface.value(ray));
@@ -64,7 +64,7 @@ TEST_CASE("told the right force, the rows give it and its associated flow", "[su
     for_every_surface<double>([](const std::string& name, const auto& surface) {
         using T = std::decay_t<decltype(surface)>;
         using Vector = typename T::Vector;
-        rc::prop(name, [&] {
+        test::prop(name, [&] {
             Vector ray = any_direction<Vector>();
             for (double& entry : ray) { // the chord of a row without force: below
                 if (std::abs(entry) < 1e-3) entry = 1e-3;
@@ -117,7 +117,7 @@ TEST_CASE("a joint bent in flow extends as associated flow demands", "[surface]"
     const Scaled surface(RectangleAxialBending<double>(),
                          ScaledParameters<double, 2>{.capacity = {np, mp}});
     Rows<Boxed, std::decay_t<decltype(surface)>> rows{surface,
-                                                       Eigen::Matrix2d{{3.0, 0.0}, {0.0, 0.01}}};
+                                                      Eigen::Matrix2d{{3.0, 0.0}, {0.0, 0.01}}};
     // settle into the flow, in which the axial row hardly accelerates
     for (int i = 0; i < 400; ++i) rows.step({n * np, (1 - n * n) * mp * 1.0001}, 1e-2);
     for (int i = 0; i < 4000; ++i) rows.step({n * np, (1 - n * n) * mp}, 1e-2);

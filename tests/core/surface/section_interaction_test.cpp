@@ -2,7 +2,6 @@
 //
 // Interaction of axial force and bending against closed forms, and against fibres of the section
 // whose stress follows from the kinematics of the hinge.
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/surface/cases.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 using namespace ductile::test;
@@ -77,7 +77,7 @@ TEST_CASE("the rectangle carries m = 1 - n^2", "[surface]") {
     const RectangleAxialBending<double> surface;
     check_table(surface,
                 {{0.1, 0.99}, {0.2, 0.96}, {0.4, 0.84}, {0.5, 0.75}, {0.6, 0.64}, {0.8, 0.36}});
-    rc::prop("gauge in closed form", [&] { // γ² - |m| γ - n² = 0
+    test::prop("gauge in closed form", [&] { // γ² - |m| γ - n² = 0
         const auto f = any_direction<Eigen::Vector2d>();
         const double m = std::abs(f[1]);
         const double gauge = (m + std::sqrt(m * m + 4 * f[0] * f[0])) / 2;
@@ -111,7 +111,7 @@ TEST_CASE("an I carries its plates", "[surface]") {
 }
 
 TEST_CASE("a tube runs from the circle to the thin tube, an I to the rectangle", "[surface]") {
-    rc::prop("limits", [] {
+    test::prop("limits", [] {
         const auto f = any_direction<Eigen::Vector2d>();
         // relative: area of the bore ρ² = 1e-12; thickness 1e-4, of second order in the curve; web
         // as wide as the flange but for 1e-12
@@ -182,7 +182,7 @@ TEST_CASE("biaxial bending of a rectangle follows its formula in every regime", 
         CHECK((surface.support({n, 0.5, tau / 2}) - force).norm() <= 1e-15);
     }
     SECTION("one moment alone is the rectangle") {
-        rc::prop("n-m", [&] {
+        test::prop("n-m", [&] {
             const auto f = any_direction<Eigen::Vector2d>();
             const double flat = RectangleAxialBending<double>().value(f);
             RC_ASSERT(std::abs(surface.value({f[0], f[1], 0}) - flat) <= 1e-14);
@@ -190,7 +190,7 @@ TEST_CASE("biaxial bending of a rectangle follows its formula in every regime", 
         });
     }
     SECTION("any neutral line, against rows of the square integrated exactly along x") {
-        rc::prop("support", [&] {
+        test::prop("support", [&] {
             const auto flow = any_direction<Eigen::Vector3d>();
             constexpr int count = 4000; // rows; midpoint rule in y, second order
             Eigen::Vector3d force = Eigen::Vector3d::Zero();
@@ -208,7 +208,7 @@ TEST_CASE("biaxial bending of a rectangle follows its formula in every regime", 
         });
     }
     SECTION("neutral line across a corner") {
-        rc::prop("Santathadaporn & Chen", [&] {
+        test::prop("Santathadaporn & Chen", [&] {
             const double a = any_number(0.01, 2.0), b = any_number(0.01, 2.0);
             const double q = a * b / 4; // 1 - n
             const double mx = 2 * q * (1 - b / 3), my = 2 * q * (1 - a / 3);

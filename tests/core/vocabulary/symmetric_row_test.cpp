@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <rapidcheck/catch.h>
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -7,6 +6,7 @@
 #include <limits>
 
 #include "ductile/vocabulary/symmetric_row.hpp"
+#include "support/property.hpp"
 
 using namespace ductile;
 
@@ -36,7 +36,7 @@ Solved solve(const SymmetricRow& row, double mass, double u, double dt) {
 } // namespace
 
 TEST_CASE("a symmetric row and its centre do what the core's row does", "[symmetric_row]") {
-    rc::prop("any bounds, target, compliance, mass, speed and step", [] {
+    test::prop("any bounds, target, compliance, mass, speed and step", [] {
         const double one = number(-50, 50), other = number(-50, 50);
         const RowLimits<double> row{.lower = std::min(one, other),
                                     .upper = std::max(one, other),

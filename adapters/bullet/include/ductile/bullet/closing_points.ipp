@@ -111,8 +111,8 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        const std::vector<Gap> gaps = gaps_at(point, *a, *b);
-        for (const Gap& gap : gaps) see(gap, gaps, *a, *b);
+        list_gaps(point, *a, *b, gaps_);
+        for (const Gap& gap : gaps_) see(gap, gaps_, *a, *b);
         return 0;
     }
 
@@ -148,6 +148,8 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
                                     : taken > apart || speed * h / 2 - away > unseen;
         if (counts) found.time = std::min(found.time, way / speed);
     }
+
+    std::vector<Gap> gaps_; ///< of a point
 };
 
 /// Where two bodies meet elsewhere than where they are nearest.
@@ -194,10 +196,11 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
     }
     btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* a, int, int,
                              const btCollisionObjectWrapper* b, int, int) override {
-        const std::vector<Gap> gaps = gaps_at(point, *a, *b);
-        const bool known = are_all_known(gaps, *a, *b);
-        for (const Gap& gap : gaps)
+        list_gaps(point, *a, *b, gaps_);
+        const bool known = are_all_known(gaps_, *a, *b);
+        for (const Gap& gap : gaps_) {
             see(gap, known, *a->getCollisionObject(), *b->getCollisionObject());
+        }
         return 0;
     }
 
@@ -259,7 +262,8 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
     double touching_, apart_;
     btCollisionObject &a_, &b_;
     btTransform at_a_, at_b_;
-    double time_ = 0; ///< ahead [s]; 0: turned about
+    double time_ = 0;       ///< ahead [s]; 0: turned about
+    std::vector<Gap> gaps_; ///< of a point
     btVector3 touches_ = btVector3(0, 0, 0);
 };
 

@@ -200,15 +200,16 @@ class FaceView {
                     b.getContactBreakingThreshold(gContactBreakingThreshold));
 }
 
-/// Where corners of one are over a face of the other, the nearest first; none: they meet otherwise.
-[[nodiscard]] inline std::vector<Gap> face_gaps(const Placed& a, const Placed& b) {
-    std::vector<Gap> gaps;
+/// Where corners of one are over a face of the other, the nearest first, into `gaps`; none: they
+/// meet otherwise.
+inline void list_face_gaps(const Placed& a, const Placed& b, std::vector<Gap>& gaps) {
+    gaps.clear();
     const auto is = [](const Placed& placed, int type) {
         return placed.shape->getShapeType() == type;
     };
     const bool box_a = is(a, BOX_SHAPE_PROXYTYPE), box_b = is(b, BOX_SHAPE_PROXYTYPE);
     const bool plane = is(a, STATIC_PLANE_PROXYTYPE) || is(b, STATIC_PLANE_PROXYTYPE);
-    if (!plane && box_a == box_b) return gaps;
+    if (!plane && box_a == box_b) return;
     const btScalar near = contact_reach(*a.shape, *b.shape);
     for (const bool on_b : {true, false}) { // whose face it is
         const Placed &owner = on_b ? b : a, &other = on_b ? a : b;
@@ -219,9 +220,8 @@ class FaceView {
             gaps.push_back({double(corner.away), on_b ? view.normal() : -view.normal(),
                             on_b ? at : below, on_b ? below : at});
         }
-        if (!gaps.empty()) break;
+        if (!gaps.empty()) return;
     }
-    return gaps;
 }
 
 /// The shape that a manifold's point is of; null where that is not told.
@@ -254,14 +254,12 @@ inline void keep_spread(std::vector<Gap>& gaps) {
 
 } // namespace detail
 
-/// Of closest points that a contactPairTest found; the nearest first.
-[[nodiscard]] inline std::vector<Gap> gaps_at(const btManifoldPoint& point,
-                                              const btCollisionObjectWrapper& a,
-                                              const btCollisionObjectWrapper& b) {
-    std::vector<Gap> gaps = detail::face_gaps({a.getCollisionShape(), a.getWorldTransform()},
-                                              {b.getCollisionShape(), b.getWorldTransform()});
+/// Of closest points that a contactPairTest found, into `gaps`; the nearest first.
+inline void list_gaps(const btManifoldPoint& point, const btCollisionObjectWrapper& a,
+                      const btCollisionObjectWrapper& b, std::vector<Gap>& gaps) {
+    detail::list_face_gaps({a.getCollisionShape(), a.getWorldTransform()},
+                           {b.getCollisionShape(), b.getWorldTransform()}, gaps);
     if (gaps.empty()) gaps.push_back(gap_at(point, a, b));
-    return gaps;
 }
 
 /// Whether Bullet is shown all of them that are near, or knows them.
@@ -280,7 +278,8 @@ inline void see_corners(btPersistentManifold& manifold) {
     const detail::Placed of_a = detail::placed(a, manifold.getContactPoint(0).m_index0),
                          of_b = detail::placed(b, manifold.getContactPoint(0).m_index1);
     if (of_a.shape == nullptr || of_b.shape == nullptr) return;
-    std::vector<Gap> gaps = detail::face_gaps(of_a, of_b);
+    std::vector<Gap> gaps;
+    detail::list_face_gaps(of_a, of_b, gaps);
     std::erase_if(gaps, [&manifold](const Gap& gap) {
         return gap.away > double(manifold.getContactBreakingThreshold());
     });

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ductile/ode/convert.hpp"
+#include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/members.hpp"
 
 namespace ductile::ode {

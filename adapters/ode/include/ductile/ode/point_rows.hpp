@@ -27,10 +27,11 @@
 #include <ode/ode.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
+#include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
-#include "ductile/vocabulary/linkage.hpp"
 #include "ductile/vocabulary/symmetric_row.hpp"
 #include "ductile/vocabulary/vector.hpp"
 
@@ -38,6 +39,21 @@ namespace ductile::ode {
 
 /// Diagonal up to which ODE's direct solver takes rows as they are: 1e-9 off [1/kg | 1/(kg m²)].
 inline constexpr double largest_diagonal = 1e4;
+
+namespace detail {
+
+/// Any one of unit length at right angles to v.
+inline Vector3<double> unit_orthogonal(const Vector3<double>& v) noexcept {
+    constexpr double beside = 1e-12;
+    const bool along_z =
+        std::abs(v[0]) <= beside * std::abs(v[2]) && std::abs(v[1]) <= beside * std::abs(v[2]);
+    const double first = along_z ? v[1] : v[0], second = along_z ? v[2] : v[1];
+    const double length = std::sqrt(first * first + second * second);
+    const double across = -second / length, on = first / length;
+    return along_z ? Vector3<double>(0, across, on) : Vector3<double>(across, on, 0);
+}
+
+} // namespace detail
 
 /// A row along or about a direction; its centre is not applied here.
 struct PointRow {
@@ -47,7 +63,9 @@ struct PointRow {
 };
 
 /// s of a row with the diagonal A.
-[[nodiscard]] double row_scale(double diagonal) noexcept;
+[[nodiscard]] inline double row_scale(double diagonal) noexcept {
+    return diagonal > largest_diagonal ? 1 / std::sqrt(diagonal) : 1;
+}
 
 class PointRows {
   public:
@@ -59,14 +77,44 @@ class PointRows {
     /// Makes force rows on `a`, opposite on `b` (null: the static world), for the coming step.
     /// Directions at right angles to each other; rows without strength are left out.
     void make(dBodyID a, dBodyID b, const Vector3<double>& point,
-              const std::array<PointRow, 3>& rows);
+              const std::array<PointRow, 3>& rows) {
+        attach(a, b, rows, 2, [&point](const PointRow& first, const PointRow* second) {
+            const Vector3<double> along = scaled(first.scale, first.direction);
+            const Vector3<double> other =
+                second != nullptr ? scaled(second->scale, second->direction)
+                                  : scaled(first.scale, detail::unit_orthogonal(first.direction));
+            return contact(point, along, other);
+        });
+    }
     /// The same with moments about the directions, which need not be at right angles.
-    void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows);
+    void make_moments(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows) {
+        attach(a, b, rows, 1, [](const PointRow& row, const PointRow*) {
+            const Vector3<double> normal =
+                cross(row.direction, detail::unit_orthogonal(row.direction));
+            const Vector3<double> along =
+                scaled(row.scale / distance, cross(row.direction, normal));
+            return contact(scaled(distance, normal), along,
+                           scaled(row.scale / distance, row.direction));
+        });
+    }
 
     /// What the rows did in the step, about the centres of mass; takes them away.
-    [[nodiscard]] OutsideForce collect();
+    [[nodiscard]] OutsideForce collect() {
+        OutsideForce result;
+        for (const dJointFeedback& f : feedback_) {
+            result.force = sum(result.force, to_core(f.f1));
+            result.torque_a = sum(result.torque_a, to_core(f.t1));
+            result.torque_b = sum(result.torque_b, to_core(f.t2));
+        }
+        clear();
+        return result;
+    }
     /// Takes the rows away.
-    void clear();
+    void clear() {
+        dJointGroupEmpty(group_);
+        feedback_ = {};
+        contacts_ = 0;
+    }
 
   private:
     static constexpr double never = -1e15;   ///< [m/s]
@@ -74,13 +122,49 @@ class PointRows {
 
     /// Two rows along directions at right angles.
     static dContact contact(const Vector3<double>& point, const Vector3<double>& first,
-                            const Vector3<double>& second);
+                            const Vector3<double>& second) {
+        // ODE's second friction direction is normal × first
+        const Vector3<double> normal = scaled(1 / dot(first, first), cross(first, second));
+        dContact result{};
+        result.surface.mode = dContactAxisDep | dContactFDir1 | dContactMotionN | dContactMotion1 |
+                              dContactMotion2 | dContactSlip1 | dContactSlip2;
+        for (int i = 0; i < 3; ++i) {
+            result.geom.pos[i] = dReal(point[i]);
+            result.geom.normal[i] = dReal(normal[i]);
+            result.fdir1[i] = dReal(first[i]);
+        }
+        result.surface.motionN = dReal(never);
+        return result;
+    }
 
     /// One contact for each `together` rows, of which `contact_of` gets the first and the second
     /// (null: there is none).
     template <class ContactOf>
     void attach(dBodyID a, dBodyID b, const std::array<PointRow, 3>& rows, std::size_t together,
-                const ContactOf& contact_of);
+                const ContactOf& contact_of) {
+        std::array<const PointRow*, 3> acting{};
+        std::size_t count = 0;
+        for (const PointRow& row : rows) {
+            if (row.row.strength > 0) acting[count++] = &row;
+        }
+        for (std::size_t i = 0; i < count; i += together) {
+            const PointRow& first = *acting[i];
+            const PointRow* second = together > 1 && i + 1 < count ? acting[i + 1] : nullptr;
+            dContact contact = contact_of(first, second);
+            dSurfaceParameters& surface = contact.surface;
+            surface.mu = dReal(first.row.strength / first.scale);
+            surface.motion1 = dReal(first.row.velocity * first.scale);
+            surface.slip1 = dReal(first.row.cfm * first.scale * first.scale);
+            if (second != nullptr) {
+                surface.mu2 = dReal(second->row.strength / second->scale);
+                surface.motion2 = dReal(second->row.velocity * second->scale);
+                surface.slip2 = dReal(second->row.cfm * second->scale * second->scale);
+            }
+            const dJointID joint = dJointCreateContact(world_, group_, &contact);
+            dJointAttach(joint, a, b);
+            dJointSetFeedback(joint, &feedback_[contacts_++]);
+        }
+    }
 
     dWorldID world_;
     dJointGroupID group_;
@@ -89,7 +173,3 @@ class PointRows {
 };
 
 } // namespace ductile::ode
-
-#ifndef DUCTILE_COMPILED
-#include "ductile/ode/point_rows.ipp"
-#endif

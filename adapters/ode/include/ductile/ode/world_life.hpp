@@ -10,18 +10,37 @@
 #include <ode/ode.h>
 
 #include <memory>
-
-#include "ductile/vocabulary/linkage.hpp"
+#include <mutex>
+#include <unordered_map>
 
 namespace ductile::ode {
 
 class WorldLife {
   public:
     /// Of the world, shared by all who ask. Thread-safe.
-    [[nodiscard]] static std::shared_ptr<const WorldLife> of(dWorldID world);
+    [[nodiscard]] static std::shared_ptr<const WorldLife> of(dWorldID world) {
+        static std::mutex mutex;
+        static std::unordered_map<dWorldID, std::weak_ptr<const WorldLife>> known;
+        const std::lock_guard lock(mutex);
+        std::erase_if(known, [](const auto& entry) { return entry.second.expired(); });
+        std::weak_ptr<const WorldLife>& entry = known[world];
+        std::shared_ptr<const WorldLife> life = entry.lock();
+        // ODE may make a new world where an old one was
+        if (life == nullptr || !life->goes_on()) entry = life = std::make_shared<WorldLife>(world);
+        return life;
+    }
 
-    explicit WorldLife(dWorldID world);
-    DUCTILE_INLINE ~WorldLife();
+    explicit WorldLife(dWorldID world)
+        : body_(dBodyCreate(world)),
+          group_(dJointGroupCreate(0)),
+          witness_(dJointCreateBall(world, group_)) {
+        dBodyDisable(body_);
+        dJointAttach(witness_, body_, nullptr);
+    }
+    ~WorldLife() {
+        if (goes_on()) dBodyDestroy(body_);
+        dJointGroupDestroy(group_);
+    }
     WorldLife(const WorldLife&) = delete;
     WorldLife& operator=(const WorldLife&) = delete;
 
@@ -35,7 +54,3 @@ class WorldLife {
 };
 
 } // namespace ductile::ode
-
-#ifndef DUCTILE_COMPILED
-#include "ductile/ode/world_life.ipp"
-#endif
