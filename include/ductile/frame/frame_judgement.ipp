@@ -205,10 +205,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         if (!row.elastic || row.flows()) island.of_flows += coming;
         if (row.elastic) island.nearest = std::max(island.nearest, row.share);
     }
-    double worst = 0, unfit = 0, share = judged.tolerated, of_all = 0;
-    for (const Island& island : islands) of_all += island.unfit;
-    // more than joints tell of velocities that they do not allow is theirs who tell of some
-    const double times = of_all > 0 ? std::max(motion.rigid_work / of_all, 1.0) : 1;
+    double worst = 0, unfit = 0, share = judged.tolerated;
     for (const Island& island : islands) {
         if (!(island.least > 0)) continue; // it has none, or none that holds
         double scale = island.ahead + detail::unmissed * island.least;
@@ -218,7 +215,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         }
         const double tolerated = tolerated_share() * (island.work + scale + island.freed);
         share = std::min(share, tolerated);
-        const double struck = judged.fitted ? 0 : times * island.unfit;
+        const double struck = judged.fitted ? 0 : island.unfit;
         unfit = std::max(unfit, struck / tolerated);
         worst = std::max(worst, (island.error + struck) / tolerated);
     }
