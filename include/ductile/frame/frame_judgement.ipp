@@ -169,6 +169,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
     struct Island {
         double work = 0, ahead = 0, of_flows = 0, least = 0, unmissed = 0, of_springs = 0;
         double nearest = 0, error = 0, unfit = 0, freed = 0;
+        bool moves = false;
     };
     const int first = motion.rows.empty() ? -1 : motion.rows.front().island;
     int last = first;
@@ -198,6 +199,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
             island.freed += row.freed;
         }
         if (!row.moves()) continue;
+        island.moves = true;
         const Misplaced off = misplaced(row, h, before(i, motion));
         island.error += misplaced_energy(row, off, island.work);
         const double coming = work_ahead(row, h);
@@ -206,6 +208,8 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         if (row.elastic) island.nearest = std::max(island.nearest, row.share);
     }
     double worst = 0, unfit = 0, share = judged.tolerated;
+    double untouched =
+        0; // that never flowed: as one, or worlds that stand would be looked at closer
     for (const Island& island : islands) {
         if (!(island.least > 0)) continue; // it has none, or none that holds
         double scale = island.ahead + detail::unmissed * island.least;
@@ -214,11 +218,16 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
                                         detail::unmissed * (island.unmissed + island.of_springs));
         }
         const double tolerated = tolerated_share() * (island.work + scale + island.freed);
-        share = std::min(share, tolerated);
+        if (island.moves || island.work > 0) {
+            share = std::min(share, tolerated);
+        } else {
+            untouched += tolerated;
+        }
         const double struck = judged.fitted ? 0 : island.unfit;
         unfit = std::max(unfit, struck / tolerated);
         worst = std::max(worst, (island.error + struck) / tolerated);
     }
+    if (untouched > 0) share = std::min(share, untouched);
     judged.error = std::max(judged.error, worst * judged.tolerated);
     judged.struck = std::max(judged.struck, unfit * judged.tolerated);
     judged.of_island = judged.tolerated > 0 ? share / judged.tolerated : 1;
