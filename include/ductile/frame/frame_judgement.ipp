@@ -173,10 +173,11 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
     };
     const int first = motion.rows.empty() ? -1 : motion.rows.front().island;
     int last = first;
-    bool one = true;
+    bool one = true, members = motion.closed_work > 0; // which have no number
     for (const PartRow& row : motion.rows) {
         one = one && row.island == first;
         last = std::max(last, row.island);
+        members = members || row.island < 0;
     }
     if (one) return;
     std::vector<Island> islands(std::size_t(last + 1));
@@ -208,8 +209,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         if (row.elastic) island.nearest = std::max(island.nearest, row.share);
     }
     double worst = 0, unfit = 0, share = judged.tolerated;
-    double untouched =
-        0; // that never flowed: as one, or worlds that stand would be looked at closer
+    double untouched = 0; // of all that never flowed
     for (const Island& island : islands) {
         if (!(island.least > 0)) continue; // it has none, or none that holds
         double scale = island.ahead + detail::unmissed * island.least;
@@ -230,7 +230,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
     if (untouched > 0) share = std::min(share, untouched);
     judged.error = std::max(judged.error, worst * judged.tolerated);
     judged.struck = std::max(judged.struck, unfit * judged.tolerated);
-    judged.of_island = judged.tolerated > 0 ? share / judged.tolerated : 1;
+    if (!members && judged.tolerated > 0) judged.of_island = share / judged.tolerated;
 }
 
 } // namespace ductile
