@@ -1147,9 +1147,11 @@ TEST_CASE("a driven body that is past a whole clamped member within one frame is
           "[ode][member]") {
     for (const double away : {0.0, 0.5}) { // through it, and past it
         for (const double speed : {2.0, 60.0}) {
-            for (const double frame : {1.0 / 30, 1.0 / 240}) {
+            for (const auto& [tolerance, frame] :
+                 {std::pair{0.01, 1.0 / 30}, std::pair{0.01, 1.0 / 240}, std::pair{0.0, 1.0 / 30},
+                  std::pair{0.0, 1.0 / 240}}) {
                 Rig rig;
-                World world(rig.id, {.tolerance = 0.01, .warn = {}});
+                World world(rig.id, {.tolerance = tolerance, .warn = {}});
                 rig.meet(world);
                 const dBodyID body = rig.body(0, {0, 0, 0}, {0, 0, 0});
                 rig.boxes(body, heavy_post(), 0.005);
@@ -1160,9 +1162,9 @@ TEST_CASE("a driven body that is past a whole clamped member within one frame is
                 set_velocity(plate, {0, speed, 0});
                 world.add(plate);
                 while (world.time() < 2 / speed - 1e-9) world.step(frame);
-                CAPTURE(away, speed, frame);
+                CAPTURE(away, speed, tolerance, frame);
                 CHECK((world.watch().unreliable_steps(0) > 0) == (away == 0));
-                CHECK(world.run().believed() == (away > 0));
+                if (tolerance > 0) CHECK(world.run().believed() == (away > 0));
             }
         }
     }

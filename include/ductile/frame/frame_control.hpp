@@ -108,6 +108,7 @@ class FrameControl {
         double of_one = 0;    ///< the largest of these
         double struck = 0;    ///< of velocities that rigid rows do not allow, by these
         double closed = 0;    ///< where a gap closed that was not foreseen [s]; 0: none did
+        double of_island = 1; ///< the least that one island may misplace, of what all may
         double stop = 0;      ///< where the row stopped that misplaced most [s]; 0: none did
         double turned = 0;   ///< of turns that were too far, in those that a part may have; 0: none
         double power = 0;    ///< of all rows at their strength [W]
@@ -151,6 +152,7 @@ class FrameControl {
     [[nodiscard]] double followed(double h) const noexcept;
     [[nodiscard]] bool at_stake(double h) const noexcept;
     [[nodiscard]] Judgement judge(const PartMotion& motion, double h, double shortest) const;
+    void judge_islands(const PartMotion& motion, double h, Judgement& judged) const;
     [[nodiscard]] static Shorter shorter(const Judgement& judged, const PartMotion& motion,
                                          double h, bool may_stop);
     [[nodiscard]] double strike(PartEngine& engine, double h);
@@ -176,7 +178,7 @@ class FrameControl {
     double start_ = 0;         ///< least length of a first short part [s]
     double next_ = 0;          ///< length of the next part [s]; 0: as long as may be
     double spin_ = 0;          ///< of what was pushed in the last part [rad/s]
-    double allowed_ = 0;       ///< of the last part [J]
+    double allowed_ = 0;       ///< of the last part, in any island [J]
     double work_ = 0;          ///< plastic, of all joints [J]
     double last_work_ = 0;     ///< of the last frame [J]
     double taken_ = 0;         ///< by them beside their flow [J]

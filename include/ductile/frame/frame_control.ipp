@@ -163,7 +163,7 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         Judgement judged = judge(motion, h, shortest);
         const double early = judged.closed;
         if (tries >= detail::tries_at_gaps) judged.closed = 0;
-        allowed_ = judged.allowed;
+        allowed_ = judged.allowed * judged.of_island;
         run_.least = std::max(run_.least, judged.least); // of what sleeps too
         run_.of_one = std::max(run_.of_one, judged.of_one);
         const double error = detail::likely_error(judged, judged.most);

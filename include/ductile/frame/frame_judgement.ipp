@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "ductile/frame/frame_rules.hpp"
 #include "ductile/vocabulary/angle.hpp"
@@ -150,6 +151,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
                                     detail::unmissed * (unmissed + of_springs));
     }
     judged.tolerated = share * (work + scale + freed);
+    judge_islands(motion, h, judged);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
     if (pushed_too_early(motion.closed, h, share)) judged.closed = motion.closed;
@@ -157,6 +159,78 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.allowed *= std::pow(10.0, 8 * (used() - detail::coarse_from));
     }
     return judged;
+}
+
+/// What one misplaces is a share of its own work, whatever others do: where that is the larger
+/// share it counts as such of all work. Of islands the rows alone tell, so that what contacts and
+/// the engine's joints took is judged for all of them together.
+DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double h,
+                                                Judgement& judged) const {
+    struct Island {
+        double work = 0, ahead = 0, of_flows = 0, least = 0, unmissed = 0, of_springs = 0;
+        double nearest = 0, error = 0, unfit = 0, freed = 0;
+        bool moves = false;
+    };
+    const int first = motion.rows.empty() ? -1 : motion.rows.front().island;
+    int last = first;
+    bool one = true, members = motion.closed_work > 0; // which have no number
+    for (const PartRow& row : motion.rows) {
+        one = one && row.island == first;
+        last = std::max(last, row.island);
+        members = members || row.island < 0;
+    }
+    if (one) return;
+    std::vector<Island> islands(std::size_t(last + 1));
+    for (const PartRow& row : motion.rows) {
+        if (row.island < 0) continue;
+        islands[std::size_t(row.island)].work += row.work;
+    }
+    for (std::size_t i = 0; i < motion.rows.size(); ++i) {
+        const PartRow& row = motion.rows[i];
+        if (row.island < 0) continue;
+        Island& island = islands[std::size_t(row.island)];
+        const double least = row.strength * row.least;
+        island.least += least;
+        double& of_kind = row.elastic ? island.of_springs : island.unmissed;
+        of_kind = row.elastic ? std::max(of_kind, least) : of_kind + least;
+        island.error += row.misfit + row.given;
+        island.unfit += row.unfit;
+        if (breaks(i, motion)) {
+            island.error += row.astray;
+            island.freed += row.freed;
+        }
+        if (!row.moves()) continue;
+        island.moves = true;
+        const Misplaced off = misplaced(row, h, before(i, motion));
+        island.error += misplaced_energy(row, off, island.work);
+        const double coming = work_ahead(row, h);
+        island.ahead += coming;
+        if (!row.elastic || row.flows()) island.of_flows += coming;
+        if (row.elastic) island.nearest = std::max(island.nearest, row.share);
+    }
+    double worst = 0, unfit = 0, share = judged.tolerated;
+    double untouched = 0; // of all that never flowed
+    for (const Island& island : islands) {
+        if (!(island.least > 0)) continue; // it has none, or none that holds
+        double scale = island.ahead + detail::unmissed * island.least;
+        if (island.nearest > detail::near_strength) {
+            scale = std::min(scale, island.of_flows + detail::of_stored * motion.stored +
+                                        detail::unmissed * (island.unmissed + island.of_springs));
+        }
+        const double tolerated = tolerated_share() * (island.work + scale + island.freed);
+        if (island.moves || island.work > 0) {
+            share = std::min(share, tolerated);
+        } else {
+            untouched += tolerated;
+        }
+        const double struck = judged.fitted ? 0 : island.unfit;
+        unfit = std::max(unfit, struck / tolerated);
+        worst = std::max(worst, (island.error + struck) / tolerated);
+    }
+    if (untouched > 0) share = std::min(share, untouched);
+    judged.error = std::max(judged.error, worst * judged.tolerated);
+    judged.struck = std::max(judged.struck, unfit * judged.tolerated);
+    if (!members && judged.tolerated > 0) judged.of_island = share / judged.tolerated;
 }
 
 } // namespace ductile

@@ -56,6 +56,8 @@ namespace ductile {
 struct PartRow {
     std::size_t joint = 0; ///< whose, as its world counts joints
     int section = 0;       ///< which of a member's, whose rows come and go
+    int island = -1;       ///< what hangs together has one number, from 0; -1: it is not told
+    double work = 0;       ///< plastic, of its joint since it was made, told once [J]
     double start = 0;      ///< u [m/s | rad/s]
     double end = 0;        ///< u' [m/s | rad/s]
     double share = 0;      ///< |f|/R, in [0, 1]; of rows that share a surface its utilisation

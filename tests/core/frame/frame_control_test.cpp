@@ -143,6 +143,36 @@ TEST_CASE("A struck chain of two has the work of its closed form", "[frame]") {
     }
 }
 
+TEST_CASE("What one island takes does not depend on how much another one does", "[frame]") {
+    // a chain that is struck, by a mass that flies or one of its own, beside 50 MJ that flow
+    const auto run_with = [](bool flies, bool other, double length) {
+        Engine engine;
+        engine.masses = {{.mass = 1}, {.mass = 3, .velocity = flies ? 0.0 : 4}};
+        engine.rows = {{ground, 0, 60, 0}, {0, 1, 100, 0}};
+        if (flies) {
+            engine.masses.push_back({.mass = 2, .velocity = -5, .position = 0.31});
+            engine.contacts = {{1, 2}};
+        }
+        if (other) {
+            const int heavy = int(engine.masses.size());
+            engine.masses.push_back({.mass = 1e6, .velocity = 10});
+            engine.rows.push_back({ground, heavy, 5e6, 1});
+        }
+        FrameControl control({.tolerance = 0.01});
+        run(engine, control, 1, length);
+        CHECK(control.run().believed());
+        return engine.rows[0].work + engine.rows[1].work;
+    };
+    for (const bool flies : {false, true}) {
+        for (const double length : {1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+            CAPTURE(flies, length);
+            const double alone = run_with(flies, false, 1.0 / 1000);
+            CHECK(run_with(flies, false, length) == Approx(alone).epsilon(2e-3));
+            CHECK(run_with(flies, true, length) == Approx(alone).epsilon(5e-3));
+        }
+    }
+}
+
 TEST_CASE("A smaller tolerance is nearer to the answer and costs more", "[frame]") {
     // a mass on a spring of somebody else and a row of dry friction: each swing is less by 2 R/k,
     // until the row can hold the spring

@@ -21,6 +21,7 @@ struct Mass {
 struct PlasticRow {
     int a, b;
     double strength;
+    int island = -1;
     double travel = 0, work = 0;
 };
 /// a before b: they push each other where the gap is closed.
@@ -140,6 +141,8 @@ class Engine final : public ductile::PartEngine {
             r.travel += std::abs(start[i] + end) / 2 * h;
             r.work -= impulse[i] * (start[i] + end) / 2;
             motion_.rows.push_back({.joint = i,
+                                    .island = r.island,
+                                    .work = r.work,
                                     .start = start[i],
                                     .end = breaks_down ? std::nan("") : end,
                                     .share = std::abs(force) / r.strength,

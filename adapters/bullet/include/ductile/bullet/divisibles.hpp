@@ -28,6 +28,8 @@ class Divisibles : public ductile::Divisibles<PlasticConstraint> {
     [[nodiscard]] bool is_ahead() const noexcept { return ahead_; }
     /// @throws std::invalid_argument where others' constraints hold bodies of theirs.
     virtual void require_known() const {}
+    /// Before a step or a frame, with driven bodies where the user put them.
+    virtual void list_driven() {}
     /// From now on contacts of these alone are looked at; null: of all again.
     void set_scope(const LocalScope* scope) noexcept { scope_ = scope; }
     [[nodiscard]] virtual bool is_member(const btCollisionObject& /*object*/) const {

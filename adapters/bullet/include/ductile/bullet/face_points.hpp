@@ -3,21 +3,22 @@
 // Where corners of a convex shape meet a flat face. Of two convex shapes Bullet tells one point a
 // tick, by an iteration (GJK) that in single precision is up to 10 µm and 0.1 mrad off, other ones
 // for the same pose. So a bar that lies down has a contact at one end of its edge, or in the
-// middle of it, and what a blow closes is not what was seen to close. On the face of a box, a
-// plane, or the end of a cylinder that a box meets, all corners are known:
+// middle of it, and what a blow closes is not what was seen to close. On a plane, the face of a box
+// or a hull and the end of a cylinder all corners are known:
 //
 //   height of a corner x, a rounding r:   n·x - r - level,   n the normal of the face
 //
 // A box has six faces; that over which the lowest corner is highest tells how far the two are
-// apart, if what is near it is within its edges. Else they meet at an edge of the face, and what
-// Bullet tells is left as it is.
+// apart, if what is near it is within its edges. Of a hull it is the face that is nearest to square
+// to Bullet's normal (hull_face.hpp). Else they meet at an edge of the face, and what Bullet tells
+// is left as it is.
 //
 //   corners   hulls and other polyhedra: all; capsules: both centres; cylinders: of each rim the
-//             lowest, and of the lower one what is a quarter of a turn from it, too; boxes over a
-//             plane or the end of a cylinder: all. Rounded by their margin, as Bullet does it, but
-//             boxes, which are sharp.
+//             lowest, and of the lower one what is a quarter of a turn from it, too; boxes: all.
+//             Rounded by their margin, as Bullet does it, but boxes, which are sharp.
 //
-// Two boxes are Bullet's own matter (sharp_boxes.hpp), as are spheres, which have one point.
+// Two boxes are Bullet's own matter (sharp_boxes.hpp), as are spheres, which have one point, and
+// triangles of a mesh, which go on in others.
 #pragma once
 
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
@@ -37,6 +38,7 @@
 #include <span>
 #include <vector>
 
+#include "ductile/bullet/hull_face.hpp"
 #include "ductile/bullet/sharp_boxes.hpp"
 
 namespace ductile::bullet {
@@ -119,8 +121,10 @@ btScalar visit_corners(const btCollisionShape& shape, const btVector3& towards,
 /// all within its edges, or they are of another kind.
 class FaceView {
   public:
-    FaceView(const Placed& owner, const Placed& other, btScalar near)
-        : owner_(owner), other_(other), near_(near) {
+    /// `towards` the other, and not deeper in it than `deepest`, as Bullet has it.
+    FaceView(const Placed& owner, const Placed& other, const btVector3& towards, btScalar deepest,
+             btScalar near)
+        : owner_(owner), other_(other), near_(near), nearest_(deepest) {
         const int type = owner.shape->getShapeType();
         if (type == STATIC_PLANE_PROXYTYPE) {
             const auto& shape = static_cast<const btStaticPlaneShape&>(*owner.shape);
@@ -145,6 +149,13 @@ class FaceView {
                     at[up] = 0;
                     return at.length2() > radius * radius;
                 });
+            }
+        } else if (owner.shape->isPolyhedral()) {
+            const auto& hull = static_cast<const btPolyhedralConvexShape&>(*owner.shape);
+            if (hull.getNumVertices() > 0) {
+                const HullFace face(hull, towards * owner.at.getBasis());
+                look(face.normal(), face.level(),
+                     [&face](const btVector3& at) { return face.is_beyond(at); });
             }
         }
         if (!inside_) corners_.clear();
@@ -173,7 +184,7 @@ class FaceView {
             corner.away -= round;
             nearest = std::min(nearest, corner.away);
         }
-        if (!corners_.empty() && !(nearest > nearest_)) return;
+        if (!(nearest > nearest_)) return;
         nearest_ = nearest;
         normal_ = out;
         inside_ = true;
@@ -190,7 +201,7 @@ class FaceView {
     btScalar near_;
     std::vector<Corner> corners_, seen_;
     btVector3 normal_ = btVector3(0, 0, 0);
-    btScalar nearest_ = 0;
+    btScalar nearest_;
     bool inside_ = false;
 };
 
@@ -201,19 +212,21 @@ class FaceView {
 }
 
 /// Where corners of one are over a face of the other, the nearest first, into `gaps`; none: they
-/// meet otherwise.
-inline void list_face_gaps(const Placed& a, const Placed& b, std::vector<Gap>& gaps) {
+/// meet otherwise. `known`: what Bullet knows of them.
+inline void list_face_gaps(const Placed& a, const Placed& b, const btManifoldPoint& known,
+                           std::vector<Gap>& gaps) {
     gaps.clear();
-    const auto is = [](const Placed& placed, int type) {
-        return placed.shape->getShapeType() == type;
-    };
-    const bool box_a = is(a, BOX_SHAPE_PROXYTYPE), box_b = is(b, BOX_SHAPE_PROXYTYPE);
-    const bool plane = is(a, STATIC_PLANE_PROXYTYPE) || is(b, STATIC_PLANE_PROXYTYPE);
-    if (!plane && box_a == box_b) return;
+    const int of_a = a.shape->getShapeType(), of_b = b.shape->getShapeType();
+    if ((of_a == BOX_SHAPE_PROXYTYPE && of_b == BOX_SHAPE_PROXYTYPE) ||
+        of_a == TRIANGLE_SHAPE_PROXYTYPE || of_b == TRIANGLE_SHAPE_PROXYTYPE) {
+        return;
+    }
     const btScalar near = contact_reach(*a.shape, *b.shape);
+    const btScalar deepest = known.getDistance() - near - rounding(*a.shape) - rounding(*b.shape);
+    const btVector3& normal = known.m_normalWorldOnB;
     for (const bool on_b : {true, false}) { // whose face it is
         const Placed &owner = on_b ? b : a, &other = on_b ? a : b;
-        const FaceView view(owner, other, near);
+        const FaceView view(owner, other, on_b ? normal : -normal, deepest, near);
         for (const Corner& corner : view.corners()) {
             const btVector3 at = other.at.getOrigin() + corner.at,
                             below = at - corner.away * view.normal();
@@ -258,7 +271,7 @@ inline void keep_spread(std::vector<Gap>& gaps) {
 inline void list_gaps(const btManifoldPoint& point, const btCollisionObjectWrapper& a,
                       const btCollisionObjectWrapper& b, std::vector<Gap>& gaps) {
     detail::list_face_gaps({a.getCollisionShape(), a.getWorldTransform()},
-                           {b.getCollisionShape(), b.getWorldTransform()}, gaps);
+                           {b.getCollisionShape(), b.getWorldTransform()}, point, gaps);
     if (gaps.empty()) gaps.push_back(gap_at(point, a, b));
 }
 
@@ -279,7 +292,7 @@ inline void see_corners(btPersistentManifold& manifold) {
                          of_b = detail::placed(b, manifold.getContactPoint(0).m_index1);
     if (of_a.shape == nullptr || of_b.shape == nullptr) return;
     std::vector<Gap> gaps;
-    detail::list_face_gaps(of_a, of_b, gaps);
+    detail::list_face_gaps(of_a, of_b, manifold.getContactPoint(0), gaps);
     std::erase_if(gaps, [&manifold](const Gap& gap) {
         return gap.away > double(manifold.getContactBreakingThreshold());
     });

@@ -82,6 +82,8 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     // ---- what the world's steps ask
 
     DUCTILE_INLINE void require_known() const override;
+    /// One that was not there was where Bullet has it from.
+    DUCTILE_INLINE void list_driven() override;
     [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
                                                     int& section) const override;
     [[nodiscard]] DUCTILE_INLINE double closed_work() const override;
@@ -117,8 +119,6 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     void forget_doubts();
     /// Bullet makes no contacts of what does not move with what is driven.
     void see_driven();
-    /// One that was not there is where it is.
-    void list_driven();
     /// It is looked at in this tick.
     void list(Course& course);
     void read_sums(double dt, bool blow);

@@ -195,7 +195,6 @@ DUCTILE_INLINE void Members::before_solve() {
     if (world_.getNumCollisionObjects() != objects_) { // somebody may have taken one out
         for (Course& course : members_) course.of->require_possible();
         objects_ = world_.getNumCollisionObjects();
-        list_driven();
     }
     if (!driven_.empty()) see_driven();
     for (const Course* course : here_) {

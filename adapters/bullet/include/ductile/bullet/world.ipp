@@ -199,6 +199,7 @@ DUCTILE_INLINE void World::require_possible(double dt) {
     }
     for (const PlasticConstraint* joint : joints_) joint->require_bodies_in_world();
     members_->require_known();
+    members_->list_driven();
 }
 DUCTILE_INLINE void World::do_step(double dt) {
     if (!members_->empty()) {

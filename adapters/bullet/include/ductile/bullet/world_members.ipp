@@ -133,7 +133,8 @@ DUCTILE_INLINE void Members::list_driven() {
         if (body == nullptr || !body->isKinematicObject()) continue;
         const auto known = std::find_if(last.begin(), last.end(),
                                         [body](const auto& was) { return was.first == body; });
-        driven_.emplace_back(body, known != last.end() ? known->second : body->getWorldTransform());
+        driven_.emplace_back(
+            body, known != last.end() ? known->second : body->getInterpolationWorldTransform());
     }
 }
 

@@ -58,6 +58,14 @@ DUCTILE_INLINE void tell_broadphase(btDiscreteDynamicsWorld& world, btScalar h) 
     }
 }
 
+/// Rows of a joint, of what hangs together as the last tick of all had it.
+DUCTILE_INLINE void tell_island(const PlasticConstraint& joint, std::span<PartRow> rows) {
+    const btRigidBody& a = joint.getRigidBodyA();
+    const btRigidBody& body = a.isStaticOrKinematicObject() ? joint.getRigidBodyB() : a;
+    for (PartRow& row : rows) row.island = body.getIslandTag();
+    if (!rows.empty()) rows.front().work = joint.queries().absorbed_energy();
+}
+
 } // namespace detail
 
 /// The solver's settings of a part or a blow of `h` in a frame of `frame` [s].
@@ -316,6 +324,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
             const PlasticConstraint& joint = *entry.joint;
             rows_.clear();
             joint.list_part_rows(number(entry.place, joint), rows_);
+            detail::tell_island(joint, rows_);
             std::copy(rows_.begin(), rows_.end(),
                       motion_.rows.begin() + std::ptrdiff_t(first_row_[std::size_t(entry.place)]));
             risk_.note(entry.place, joint, rows_);
@@ -333,13 +342,14 @@ DUCTILE_INLINE const PartMotion& WorldParts::tell() {
         const PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
         if (plastic == nullptr) continue;
         plastic->list_part_rows(number(i, *plastic), motion_.rows);
+        const std::span<PartRow> rows = std::span(motion_.rows).subspan(first);
         int section = 0;
         if (!members_->empty() && members_->key_of(*plastic, section) != nullptr) {
-            for (std::size_t k = first; k < motion_.rows.size(); ++k) {
-                motion_.rows[k].section = section + 1;
-            }
+            for (PartRow& row : rows) row.section = section + 1;
+        } else {
+            detail::tell_island(*plastic, rows);
         }
-        risk_.note(i, *plastic, std::span(motion_.rows).subspan(first));
+        risk_.note(i, *plastic, rows);
         motion_.plastic_work += plastic->queries().absorbed_energy();
     }
     return motion_;

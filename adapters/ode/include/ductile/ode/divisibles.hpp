@@ -35,6 +35,8 @@ class Divisibles : public ductile::Divisibles<PlasticConstraint> {
 
     /// Contacts as they will be within the coming part: what is driven may be past by its end.
     virtual void see_ahead(std::span<const NamedContact> /*contacts*/) {}
+    /// The same of a step of `dt` [s], where contacts are made once: by the geoms of `bodies`.
+    virtual void see_along(std::span<const dBodyID> /*bodies*/, double /*dt*/) {}
     /// @throws std::logic_error where a contact of a member is none of these.
     virtual void before_solve(std::span<const NamedContact> /*contacts*/) {}
     /// Bodies that can move of contacts with members, after before_solve().

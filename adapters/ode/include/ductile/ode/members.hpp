@@ -58,6 +58,7 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     DUCTILE_INLINE void apply_forces() override;
     DUCTILE_INLINE void drop_forces() override;
     DUCTILE_INLINE void see_ahead(std::span<const NamedContact> contacts) override;
+    DUCTILE_INLINE void see_along(std::span<const dBodyID> bodies, double dt) override;
     DUCTILE_INLINE void before_solve(std::span<const NamedContact> contacts) override;
     [[nodiscard]] DUCTILE_INLINE std::vector<dBodyID> touched() const override;
     [[nodiscard]] std::span<const dJointID> held_by() const override { return held_by_; }

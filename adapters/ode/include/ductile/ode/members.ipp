@@ -4,12 +4,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include "ductile/ode/closing_contacts.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/energy_meter.hpp"
+#include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/members.hpp"
+#include "ductile/ode/world_snapshot.hpp"
 
 namespace ductile::ode {
 
@@ -96,6 +102,56 @@ DUCTILE_INLINE void Members::see_ahead(std::span<const NamedContact> contacts) {
     list_contacts(contacts);
     for (const Course& course : members_) {
         if (is_passed(course)) passed_.push_back(&course);
+    }
+}
+
+namespace detail {
+
+[[nodiscard]] DUCTILE_INLINE std::vector<MovingGeom> geoms_of(dBodyID body) {
+    std::vector<MovingGeom> geoms;
+    for (dGeomID geom = dBodyGetFirstGeom(body); geom != nullptr; geom = dBodyGetNextGeom(geom)) {
+        geoms.emplace_back(geom);
+    }
+    return geoms;
+}
+
+/// Whether the two overlap on the way of the first one's body in `dt` [s], its ends left out.
+[[nodiscard]] DUCTILE_INLINE bool meets_on_way(const MovingGeom& driven, const MovingGeom& stands,
+                                               double dt) {
+    constexpr double of_both = 0.4, most = 1000;
+    const double way = driven.speed() * dt;
+    const double looks =
+        std::min(std::ceil(way / (of_both * (driven.thickness + stands.thickness))), most);
+    if (looks < 2 || !driven.may_reach(stands, way) || !driven.may_touch(stands)) return false;
+    const std::span<const dBodyID> body(&driven.body, 1);
+    WorldSnapshot from;
+    from.take(body, {});
+    HalfAhead ahead;
+    bool met = false;
+    for (double i = 1; i < looks && !met; ++i) {
+        (void)ahead.move(body, dt * i / looks);
+        dContactGeom contact;
+        met = dCollide(driven.geom, stands.geom, 1, &contact, int(sizeof contact)) > 0;
+        from.put_poses_back();
+    }
+    return met;
+}
+
+} // namespace detail
+
+DUCTILE_INLINE void Members::see_along(std::span<const dBodyID> bodies, double dt) {
+    for (dBodyID body : bodies) {
+        if (dBodyIsKinematic(body) == 0 || owners_.find(body) != nullptr) continue;
+        for (const detail::MovingGeom& driven : detail::geoms_of(body)) {
+            for (const Course& course : members_) {
+                for (dBodyID own : course.bodies) {
+                    if (can_move(own)) continue;
+                    for (const detail::MovingGeom& stands : detail::geoms_of(own)) {
+                        if (detail::meets_on_way(driven, stands, dt)) passed_.push_back(&course);
+                    }
+                }
+            }
+        }
     }
 }
 

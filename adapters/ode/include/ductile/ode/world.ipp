@@ -232,6 +232,7 @@ DUCTILE_INLINE void World::step_with_members(double dt) {
     if (snapshot_ == nullptr) snapshot_ = std::make_unique<WorldSnapshot>();
     for (;;) {
         snapshot_->take(bodies_, plastic_);
+        members_->see_along(bodies_, dt);
         members_->before_solve(contacts_);
         members_->apply_forces();
         if (meter_) {

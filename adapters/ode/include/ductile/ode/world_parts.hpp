@@ -37,6 +37,7 @@
 #include "ductile/ode/energy_meter.hpp"
 #include "ductile/ode/half_ahead.hpp"
 #include "ductile/ode/held_forces.hpp"
+#include "ductile/ode/island_numbers.hpp"
 #include "ductile/ode/local_scope.hpp"
 #include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/resting_islands.hpp"
@@ -223,6 +224,7 @@ class WorldParts final : public PartEngine {
     std::vector<Damped> damped_;
     RestingIslands resting_;
     StandingWorld standing_;
+    IslandNumbers islands_;
     mutable std::optional<Stir> stir_; ///< of the bodies as they are
     bool still_ = false;               ///< before the coming part
     bool metered_ = true;              ///< the coming part is

@@ -358,19 +358,23 @@ DUCTILE_INLINE void WorldParts::accept(double h) try {
 DUCTILE_INLINE const PartMotion& WorldParts::tell() {
     motion_.rows.clear();
     standing_.forget_rows();
+    islands_.clear();
     motion_.plastic_work = of_.members->closed_work();
     motion_.idle_work = of_.members->idle_work();
     motion_.closed_work = of_.members->unmissed_work();
     for (const PlasticConstraint* joint : of_.joints) {
         const std::size_t first = motion_.rows.size();
         joint->list_part_rows(of_.number(*joint), motion_.rows);
+        const std::span<PartRow> rows = std::span(motion_.rows).subspan(first);
         int section = 0;
-        if (of_.members->key_of(*joint, section) != nullptr) {
-            for (std::size_t k = first; k < motion_.rows.size(); ++k) {
-                motion_.rows[k].section = section + 1;
-            }
+        const bool of_member = of_.members->key_of(*joint, section) != nullptr;
+        const int island = of_member ? -1 : islands_.of(joint->id());
+        for (PartRow& row : rows) {
+            if (of_member) row.section = section + 1;
+            row.island = island;
         }
-        standing_.note(std::span(motion_.rows).subspan(first));
+        if (!rows.empty()) rows.front().work = joint->queries().absorbed_energy();
+        standing_.note(rows);
         motion_.plastic_work += joint->queries().absorbed_energy();
     }
     return motion_;
