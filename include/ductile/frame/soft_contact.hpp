@@ -35,11 +35,12 @@ struct SoftContact {
         return {usual.erp / (frame * usual.compliance), (1 - usual.erp) / usual.compliance, of_a,
                 of_b};
     }
-    /// It stops what meets it within so little of the frame that it is a hard one, and what would
-    /// come back is damped, or nothing that a step of the frame sends back.
+    /// It stops what meets it within so little time that it is a hard one, in any shorter frame
+    /// too, and what would come back is damped, or nothing that a step of the frame sends back.
     [[nodiscard]] bool is_hard(double frame) const noexcept {
-        constexpr double at_once = 1e-3, damped = 0.8, stiff = 1e4; // [-], [-], (ω frame)²
-        return heavy < at_once * frame * (damping + frame * stiffness) &&
+        constexpr double at_once = 1e-3, longest = 1.0 / 30; // of a frame [-], that of games [s]
+        constexpr double damped = 0.8, stiff = 1e4;          // [-], (ω frame)²
+        return heavy < at_once * std::max(frame, longest) * (damping + frame * stiffness) &&
                (damping * damping > 4 * damped * damped * stiffness * heavy ||
                 stiffness * frame * frame > stiff * heavy);
     }

@@ -80,6 +80,18 @@ namespace ductile::bullet::detail {
     return double(extent[extent.minAxis()]) / 2;
 }
 
+/// Overlap up to which a blow may not know what touches: Bullet's contacts find none of boxes that
+/// the digits of their places have apart [m].
+[[nodiscard]] DUCTILE_INLINE double unknown_depth(const btCollisionObjectWrapper& a,
+                                                  const btCollisionObjectWrapper& b) {
+    return std::max(closed_gap / 4, digits_of(a, b));
+}
+/// Until what is `away` is closed, or a blow knows it [m].
+[[nodiscard]] DUCTILE_INLINE double way_to_close(double away, double unknown) {
+    const double further = away > -unknown ? std::max(closed_gap / 2, -away) : closed_gap / 2;
+    return std::max(away, 0.0) + further;
+}
+
 struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
     ClosingContacts& found;
     double touching, apart;
@@ -132,7 +144,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
             const double rise = other.away - closing_speed(of_a, of_b, other) * time;
             if (rise < double(flush * other.on_b.distance(on_b))) depth = std::max(depth, rise);
         }
-        const double way = gap + closed_gap / 2 + depth;
+        const double unknown = unknown_depth(a, b), way = way_to_close(away, unknown) + depth;
         if (away < nearest.away) nearest = {away, speed, taken, way, on_b, normal};
         if (faster > 0 && yields > 0 && away > -closed_gap / 2) {
             const double end = std::max(speed, 0.0) + faster * h;
@@ -144,7 +156,7 @@ struct ClosestPoints final : btCollisionWorld::ContactResultCallback {
         const bool touches = away < closed_gap;
         found.strikes = found.strikes || (touches && taken > touching);
         // what a blow does not know is not closed for Bullet
-        const bool counts = touches ? away > -closed_gap / 4 && taken > touching
+        const bool counts = touches ? away > -unknown && taken > touching
                                     : taken > apart || speed * h / 2 - away > unseen;
         if (counts) found.time = std::min(found.time, way / speed);
     }
@@ -198,14 +210,15 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
                              const btCollisionObjectWrapper* b, int, int) override {
         list_gaps(point, *a, *b, gaps_);
         const bool known = are_all_known(gaps_, *a, *b);
+        const double unknown = unknown_depth(*a, *b);
         for (const Gap& gap : gaps_) {
-            see(gap, known, *a->getCollisionObject(), *b->getCollisionObject());
+            see(gap, known, unknown, *a->getCollisionObject(), *b->getCollisionObject());
         }
         return 0;
     }
 
   private:
-    void see(const Gap& there, bool known, const btCollisionObject& of_a,
+    void see(const Gap& there, bool known, double unknown, const btCollisionObject& of_a,
              const btCollisionObject& of_b) {
         const auto& [away, normal, on_a, on_b] = there;
         if (!(away < -closed_gap)) return;
@@ -228,14 +241,13 @@ class PointsElsewhere final : public btCollisionWorld::ContactResultCallback {
         const double speed = -double(normal.dot(now_a.velocity - now_b.velocity));
         if (gap < closed_gap) {
             if (!counts(speed, touching_)) return;
-            const bool overlaps = !(gap > -closed_gap / 4);
+            const bool overlaps = !(gap > -unknown);
             found_.strikes = found_.strikes || overlaps || !known;
             note();
             if (overlaps) return;
         }
         const double gain = 2 * ((gap - away) / time_ - speed) / time_;
-        const double way = std::max(gap, 0.0) + closed_gap / 2;
-        found_.time = std::min(found_.time, time_to_close(way, speed, gain));
+        found_.time = std::min(found_.time, time_to_close(way_to_close(gap, unknown), speed, gain));
     }
 
     struct Point {

@@ -113,6 +113,16 @@ inline void find_place(Gap& gap, const btCollisionObjectWrapper& a,
 
 } // namespace detail
 
+/// By how much their places in the world may have two shapes nearer each other than they are [m].
+[[nodiscard]] inline double digits_of(const btCollisionObjectWrapper& a,
+                                      const btCollisionObjectWrapper& b) {
+    const auto size = [](const btCollisionObjectWrapper& of) {
+        return of.getWorldTransform().getOrigin().length() +
+               of.getCollisionShape()->getAngularMotionDisc();
+    };
+    return 16 * double(SIMD_EPSILON) * double(size(a) + size(b));
+}
+
 /// Of closest points that a contactPairTest found.
 [[nodiscard]] inline Gap gap_at(const btManifoldPoint& point, const btCollisionObjectWrapper& a,
                                 const btCollisionObjectWrapper& b) {
@@ -128,12 +138,7 @@ inline void find_place(Gap& gap, const btCollisionObjectWrapper& a,
     const auto along = [&](const btVector3& normal) {
         return double(normal.dot(corner(a, -normal)) - normal.dot(corner(b, normal)));
     };
-    // the digits of places in the world are no edge
-    const auto size = [](const btCollisionObjectWrapper& of) {
-        return of.getWorldTransform().getOrigin().length() +
-               of.getCollisionShape()->getAngularMotionDisc();
-    };
-    const double digits = 16 * double(SIMD_EPSILON) * double(size(a) + size(b));
+    const double digits = digits_of(a, b); // are no edge
     const double sharp = along(gap.normal);
     if (gap.away - sharp > digits) gap.away = sharp;
     const auto see = [&](btVector3 normal) {
