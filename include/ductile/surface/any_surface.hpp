@@ -56,7 +56,7 @@ class AnySurfaceOf final : public AnySurface {
 
     explicit AnySurfaceOf(const Surface& surface) : surface_(surface) {
         for (int i = 0; i < Surface::dimension; ++i) {
-            strength_[i] = 1 / surface_.value(Vector(Vector::Unit(i)));
+            strength_[i] = 1 / surface.value(Vector(Vector::Unit(i)));
         }
     }
 
