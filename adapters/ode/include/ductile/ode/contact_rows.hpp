@@ -59,8 +59,9 @@ inline double wanted_velocity(dWorldID world, const NamedContact& named, double 
     return bounces ? std::max(wanted, double(surface.bounce) * impact + motion) : wanted;
 }
 
-inline std::array<Vector3<double>, 2> friction_directions(const dContact& contact,
-                                                          const Vector3<double>& normal) {
+/// ODE's two friction directions. `normal`: on A.
+[[nodiscard]] inline std::array<Vector3<double>, 2> friction_directions(
+    const dContact& contact, const Vector3<double>& normal) {
     if ((contact.surface.mode & dContactFDir1) != 0) {
         const Vector3<double> first = to_core(contact.fdir1);
         return {first, cross(normal, first)};
@@ -110,12 +111,6 @@ inline void require_contact(dJointID joint, const dContact& contact) {
     require(dContactSlip1, "surface.slip1", surface.slip1, false);
     require(dContactSlip2, "surface.slip2", surface.slip2, false);
 }
-
-namespace detail {
-/// ODE's two friction directions. `normal`: on A.
-[[nodiscard]] std::array<Vector3<double>, 2> friction_directions(const dContact& contact,
-                                                                 const Vector3<double>& normal);
-} // namespace detail
 
 class ContactRows {
   public:
