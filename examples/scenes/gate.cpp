@@ -16,7 +16,7 @@
 // The first hinge breaks at 0.5 rad, some 0.6 s after the vehicle set out; what came off is pushed
 // aside. Up to there both engines take the same at 1/60 to 1/1000 s, 135.0 kJ in half a second (on
 // the block 125.8), within 0.2 %. What comes after, with bodies that rub and knock, is 4 to 6 kJ
-// more or less by the last digit of anything: 162 +- 2 kJ in all (157 +- 0.5). And it matters which
+// more or less by the last digit of anything: 161 +- 1 kJ in all (154, 155). And it matters which
 // edge of two flush faces meets first: with the tip's end first, by a yaw of 0.1 mrad, it is 47 kJ
 // in the first 0.07 s where it is 42 with the vehicle's corner first or both at once.
 #include <algorithm>
