@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Runs one method on one build of one engine and prints the result and its history as JSON. The front,
-// charpy, starts it: Bullet's float and double libraries share their symbols, so each engine build has a
-// program of its own.
+// Runs one method on one build of one engine and prints the result and its history as JSON. The
+// front, charpy, starts it: Bullet's float and double libraries share their symbols, so each engine
+// build has a program of its own.
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>

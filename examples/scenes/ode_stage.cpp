@@ -126,7 +126,8 @@ class OdeStage final : public Stage {
     }
     void push(BodyNumber body, const Vector3<double>& force) override {
         dBodyID id = own_[std::size_t(body)].body;
-        dBodyEnable(id); // ODE keeps the forces of all steps that a body sleeps, for the one that wakes it
+        // ODE keeps the forces of all steps that a body sleeps, for the one that wakes it
+        dBodyEnable(id);
         dBodyAddForce(id, force.x(), force.y(), force.z());
     }
     void halt() override {

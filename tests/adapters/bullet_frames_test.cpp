@@ -1055,8 +1055,7 @@ TEST_CASE("Frames: halves that overlap as their joint breaks are not pushed apar
                             {btScalar(x), 0, 0}, box(0.5, 0.2, 0.2), 1, 1);
         };
         btRigidBody &post = half(20000, -0.5), &arm = half(500, 0.5);
-        Hinge hinge(post, arm, at({0.5f, 0, 0}), at({-0.5f, 0, 0}),
-                    law(20e3, 0.15));
+        Hinge hinge(post, arm, at({0.5f, 0, 0}), at({-0.5f, 0, 0}), law(20e3, 0.15));
         rig.world->add(hinge);
         arm.setLinearVelocity({0, 5, 0});
         arm.setAngularVelocity({0, 0, 10});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Properties for rapidcheck behind one type: what rc::prop makes of a property is compiled once in a
-// unit, not once for each property of each surface.
+// Properties for rapidcheck behind one type: what rc::prop makes of a property is compiled once in
+// a unit, not once for each property of each surface.
 #pragma once
 
 #include <rapidcheck/catch.h>

@@ -49,9 +49,8 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         const bool own = (surface.mode & (dContactSoftERP | dContactSoftCFM)) != 0;
         const auto depth = double(named.contact.geom.depth);
         const double closing = blow ? 0 : closes(it, depth, h, plastic);
-        const bool parted = std::any_of(parted_.begin(), parted_.end(), [&](const auto& pair) {
-            return it.bodies.are_of(pair);
-        });
+        const bool parted = std::any_of(parted_.begin(), parted_.end(),
+                                        [&](const auto& pair) { return it.bodies.are_of(pair); });
         if (!plastic && !own && !soft && !parted && !(closing > 0)) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
