@@ -34,6 +34,7 @@
 
 #include "ductile/bullet/local_scope.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/vocabulary/disjoint_sets.hpp"
 
 namespace ductile::bullet {
 
@@ -149,10 +150,11 @@ class LocalTick {
     /// As Bullet's island manager and meeting_islands.hpp do it.
     void find_islands(btDiscreteDynamicsWorld& world, LocalScope& scope) {
         const auto bodies = scope.bodies();
-        parent_.resize(bodies.size());
-        for (std::size_t i = 0; i < bodies.size(); ++i) parent_[i] = int(i);
+        islands_.reset(bodies.size());
         const auto merge = [&](const btCollisionObject& a, const btCollisionObject& b) {
-            if (scope.has(a) && scope.has(b)) unite(scope.number(a), scope.number(b));
+            if (scope.has(a) && scope.has(b)) {
+                islands_.unite(scope.number(a), scope.number(b));
+            }
         };
         for (const btBroadphasePair* pair : pairs_) {
             const btBroadphaseProxy &a = *pair->m_pProxy0, &b = *pair->m_pProxy1;
@@ -170,13 +172,13 @@ class LocalTick {
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             const int state = bodies[i]->getActivationState();
             if (state == ACTIVE_TAG || state == DISABLE_DEACTIVATION) {
-                awake_[std::size_t(root(int(i)))] = 1;
+                awake_[std::size_t(islands_.root(int(i)))] = 1;
             }
         }
         const int beyond = world.getNumCollisionObjects(); // Bullet's own numbers are below
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             btRigidBody& body = *bodies[i];
-            const int of = root(int(i));
+            const int of = islands_.root(int(i));
             body.setIslandTag(beyond + bodies[std::size_t(of)]->getWorldArrayIndex());
             body.setCompanionId(-1);
             if (awake_[std::size_t(of)] == 0) {
@@ -241,24 +243,12 @@ class LocalTick {
             body->clearForces();
         }
     }
-    [[nodiscard]] int root(int body) noexcept {
-        while (parent_[std::size_t(body)] != body) {
-            int& above = parent_[std::size_t(body)];
-            above = parent_[std::size_t(above)];
-            body = above;
-        }
-        return body;
-    }
-    void unite(int a, int b) noexcept {
-        const int of_a = root(a), of_b = root(b);
-        parent_[std::size_t(std::max(of_a, of_b))] = std::min(of_a, of_b);
-    }
 
     std::vector<const btBroadphaseProxy*> proxies_; ///< of the bodies, sorted
     std::vector<btBroadphasePair*> pairs_;
     std::vector<btPersistentManifold*> touching_;
     std::vector<btRigidBody*> touched_;
-    std::vector<int> parent_; ///< by body of the scope
+    DisjointSets islands_;    ///< of bodies of the scope
     std::vector<char> awake_; ///< by root
     btManifoldArray found_;
     std::vector<btCollisionObject*> solved_bodies_;

@@ -19,6 +19,8 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/vocabulary/disjoint_sets.hpp"
+
 namespace ductile::bullet {
 
 /// Bodies whose islands are chosen whatever holds them together, by their places in the world.
@@ -51,9 +53,8 @@ class TouchingIslands {
     void find(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
               int manifold_count, btTypedConstraint** constraints, int constraint_count,
               Choice choice, const DirectBodies& direct) {
-        parent_.resize(std::size_t(body_count));
+        together_.reset(std::size_t(body_count));
         for (int i = 0; i < body_count; ++i) {
-            parent_[std::size_t(i)] = i;
             bodies[i]->setCompanionId(bodies[i]->isStaticOrKinematicObject() ? nowhere : i);
         }
         for (int i = 0; i < manifold_count; ++i) {
@@ -84,7 +85,7 @@ class TouchingIslands {
         }
         for (int i = 0; i < body_count; ++i) {
             const int id = bodies[i]->getCompanionId();
-            parts_of(id == nowhere ? nowhere : root(id)).bodies.push_back(bodies[i]);
+            parts_of(id == nowhere ? nowhere : together_.root(id)).bodies.push_back(bodies[i]);
         }
         for (int i = 0; i < manifold_count; ++i) {
             const btCollisionObject &a = *manifolds[i]->getBody0(), &b = *manifolds[i]->getBody1();
@@ -133,32 +134,24 @@ class TouchingIslands {
         if (count_ > islands_.size()) islands_.emplace_back();
         islands_[count_ - 1].clear();
     }
-    [[nodiscard]] int root(int body) noexcept {
-        while (parent_[std::size_t(body)] != body) {
-            int& above = parent_[std::size_t(body)];
-            above = parent_[std::size_t(above)];
-            body = above;
-        }
-        return body;
-    }
     /// Of one of two bodies that are held together; nowhere where neither is in an island.
     [[nodiscard]] int island_of(const btCollisionObject& a, const btCollisionObject& b) noexcept {
         const btCollisionObject& held = a.isStaticOrKinematicObject() ? b : a;
         const int id = held.isStaticOrKinematicObject() ? nowhere : held.getCompanionId();
-        return id < 0 || id >= int(parent_.size()) ? nowhere : root(id);
+        return id < 0 || id >= together_.size() ? nowhere : together_.root(id);
     }
     void unite(const btCollisionObject& a, const btCollisionObject& b) noexcept {
         if (a.isStaticOrKinematicObject() || b.isStaticOrKinematicObject()) return;
         if (a.getCompanionId() < 0 || b.getCompanionId() < 0) return;
-        const int of_a = root(a.getCompanionId()), of_b = root(b.getCompanionId());
-        parent_[std::size_t(std::max(of_a, of_b))] = std::min(of_a, of_b);
+        together_.unite(a.getCompanionId(), b.getCompanionId());
     }
     [[nodiscard]] IslandParts& parts_of(int root) noexcept {
         const int island = root == nowhere ? nowhere : island_[std::size_t(root)];
         return island == nowhere ? others_ : islands_[std::size_t(island)];
     }
 
-    std::vector<int> parent_, island_; ///< by body
+    DisjointSets together_;            ///< bodies
+    std::vector<int> island_;          ///< by body
     std::vector<IslandParts> islands_; ///< room that is used again; the first count_
     std::size_t count_ = 0;
     IslandParts others_;
