@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ductile/solve/block_view.hpp"
 #include "ductile/solve/ellipsoid_return.hpp"
@@ -48,8 +49,10 @@ struct EllipsoidForm {
         if (along > 0) v.tangent.terms[0].coefficient = -1 / along;
     }
 
-    /// What is missing to the surface, as a velocity [m/s | rad/s].
+    /// What is missing to the surface, beside the gauge's round-off, as a velocity of the axis that
+    /// it is most of [m/s | rad/s].
     static double set_right(const BlockView& v) noexcept {
+        constexpr double round_off = 4 * std::numeric_limits<double>::epsilon();
         if (!v.on_surface()) return 0;
         const auto& term = v.tangent.terms[0];
         const double gap = (1 - square_gauge(v)) / 2;
@@ -63,7 +66,7 @@ struct EllipsoidForm {
             v.work[i].right -= v.block.multiplier * v.row[i].impulse / (v.size(i) * v.size(i));
             across = std::max(across, v.size(i) * v.work[i].metric);
         }
-        return std::abs(gap) * across;
+        return std::max(std::abs(gap) - round_off, 0.0) * across;
     }
 
     /// False where the multiplier left the range: the surface is not where the block belongs.

@@ -34,8 +34,8 @@ class InteriorPoint {
   public:
     /// True of islands whose blocks are all ellipsoids.
     [[nodiscard]] static bool serves(const Island& island) noexcept;
-    /// From the impulses in the island. Leaves impulses, sides, states and multipliers some 1e-8 of
-    /// the largest velocity from the answer, where the active set makes them exact.
+    /// From the impulses in the island. Leaves impulses, sides, states and multipliers, mostly
+    /// within 1e-9 of the largest velocity of the answer.
     void solve(IslandSystem& system);
 
     [[nodiscard]] int iterations() const noexcept { return iterations_; } ///< of the last solve
@@ -51,10 +51,6 @@ class InteriorPoint {
     struct Row {
         Gap lower, upper;
     };
-    /// What is left, and the multiplier, as velocities [m/s | rad/s].
-    struct Speeds {
-        double left = 0, flow = 0;
-    };
     /// What is left to a surface after a share t of the step: left - along t - bend t².
     struct Way {
         double along = 0, bend = 0;
@@ -63,7 +59,6 @@ class InteriorPoint {
     void begin();
     [[nodiscard]] double lacking() const;
     void measure();
-    [[nodiscard]] double off() const;
     [[nodiscard]] double energy(double share) const;
     void set_tangents();
     void aim(double energy, bool second_order);
@@ -73,7 +68,8 @@ class InteriorPoint {
     void leave();
     [[nodiscard]] bool bounded(std::size_t row) const noexcept;
     [[nodiscard]] double lack(std::size_t block, int row) const noexcept;
-    [[nodiscard]] Speeds speeds(std::size_t block) const noexcept;
+    [[nodiscard]] double flow(std::size_t block) const noexcept;
+    [[nodiscard]] double off() const;
     [[nodiscard]] Way way(std::size_t block) const noexcept;
 
     IslandSystem* system_ = nullptr;

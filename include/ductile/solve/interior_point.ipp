@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ductile/solve/certificate.hpp"
 #include "ductile/solve/ellipsoid_form.hpp"
 #include "ductile/solve/interior_point.hpp"
 
@@ -19,7 +20,7 @@ DUCTILE_INLINE bool InteriorPoint::serves(const Island& island) noexcept {
 
 DUCTILE_INLINE void InteriorPoint::solve(IslandSystem& system) {
     constexpr int most = 40;
-    constexpr double well = 1e-8;   // of the largest velocity
+    constexpr double well = 1e-9;   // of the largest velocity
     constexpr double inside = 0.99; // of the way to the nearest bound
     constexpr double close = 0.1;
     constexpr double far = 0.3; // of a step: second-order terms of a shorter one mislead
@@ -149,16 +150,26 @@ DUCTILE_INLINE double InteriorPoint::lack(std::size_t k, int i) const noexcept {
     return v.work[i].residual - blocks_[k].multiplier * normal;
 }
 
-DUCTILE_INLINE auto InteriorPoint::speeds(std::size_t k) const noexcept -> Speeds {
+/// By its multiplier [m/s | rad/s].
+DUCTILE_INLINE double InteriorPoint::flow(std::size_t k) const noexcept {
     const BlockView v = view_of(*system_, k);
-    Speeds of;
+    double flow = 0;
     for (int i = 0; i < v.count(); ++i) {
         if (!v.live(i)) continue;
         const double normal = std::abs(v.row[i].impulse) / (v.size(i) * v.size(i));
-        of.flow = std::max(of.flow, blocks_[k].multiplier * normal);
-        of.left = std::max(of.left, blocks_[k].left * v.size(i) * v.work[i].metric);
+        flow = std::max(flow, blocks_[k].multiplier * normal);
     }
-    return of;
+    return flow;
+}
+
+/// How far the answer is, surfaces by their gauge too: in a short step a whole strength gives next
+/// to no velocity [m/s | rad/s].
+DUCTILE_INLINE double InteriorPoint::off() const {
+    double worst = certificate(*system_);
+    for (std::size_t k = 0; k < blocks_.size(); ++k) {
+        worst = std::max(worst, std::min(blocks_[k].left * system_->scale(), flow(k)));
+    }
+    return worst;
 }
 
 DUCTILE_INLINE auto InteriorPoint::way(std::size_t k) const noexcept -> Way {
@@ -171,33 +182,6 @@ DUCTILE_INLINE auto InteriorPoint::way(std::size_t k) const noexcept -> Way {
         of.bend += by * by / 2;
     }
     return of;
-}
-
-/// How far the answer is: what residuals and multipliers differ by, and the lesser of each pair of
-/// what is left and its multiplier [m/s | rad/s].
-DUCTILE_INLINE double InteriorPoint::off() const {
-    double worst = 0;
-    const auto see = [&worst](double off) {
-        if (!(off <= worst)) worst = off;
-    };
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (!bounded(i)) continue;
-        const IslandSystem::Row& work = system_->rows()[i];
-        const auto& [lower, upper] = rows_[i];
-        see(std::abs(work.residual + lower.multiplier - upper.multiplier));
-        for (const Gap& gap : {lower, upper}) {
-            if (gap.there) see(std::min(gap.left * work.metric, gap.multiplier));
-        }
-    }
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        const BlockView v = view_of(*system_, k);
-        for (int i = 0; i < v.count(); ++i) {
-            if (v.live(i)) see(std::abs(lack(k, i)));
-        }
-        const Speeds of = speeds(k);
-        see(std::min(of.left, of.flow));
-    }
-    return worst;
 }
 
 /// The mean of τ after a share of the step [J].
@@ -326,24 +310,28 @@ DUCTILE_INLINE void InteriorPoint::take(double share) {
     for (Gap& gap : blocks_) gap.multiplier += share * gap.change;
 }
 
-/// Sides and states: at the bound or surface that less is left to than its multiplier says.
+/// Sides and states: at the bound or surface that less is left to than its multiplier says, and to
+/// the last digit then.
 DUCTILE_INLINE void InteriorPoint::leave() {
     Island& island = system_->island();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         if (!system_->alone(i)) continue;
+        IslandRow& row = island.rows[i];
         const auto at = [&](const Gap& gap) {
             return gap.there && gap.left * system_->rows()[i].metric < gap.multiplier;
         };
-        island.rows[i].side = at(rows_[i].lower)   ? Side::lower
-                              : at(rows_[i].upper) ? Side::upper
-                                                   : Side::free;
+        row.side = at(rows_[i].lower) ? Side::lower : at(rows_[i].upper) ? Side::upper : Side::free;
+        if (row.side == Side::lower) row.impulse = row.lower;
+        if (row.side == Side::upper) row.impulse = row.upper;
     }
     for (std::size_t k = 0; k < blocks_.size(); ++k) {
-        const Speeds of = speeds(k);
-        const bool flows = of.left < of.flow;
+        const bool flows = blocks_[k].left * system_->scale() < flow(k);
         island.blocks[k].state = flows ? BlockState::surface : BlockState::inside;
         island.blocks[k].multiplier = flows ? blocks_[k].multiplier : 0;
+        EllipsoidForm::place(view_of(*system_, k));
     }
+    system_->update_velocities();
+    system_->update_residuals();
 }
 
 } // namespace ductile::solve

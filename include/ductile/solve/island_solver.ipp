@@ -150,8 +150,7 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
     if (InteriorPoint::serves(system_.island())) {
         interior_point_.solve(system_);
         ++report.safe_ways;
-        static_cast<void>(keep());
-        if (polished(report) || keep() <= solved_well) return;
+        if (keep() <= solved_well || polished(report) || keep() <= solved_well) return;
     }
     for (int pass = 0; pass < most; ++pass) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);

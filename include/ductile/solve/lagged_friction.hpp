@@ -28,6 +28,7 @@
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/certificate.hpp"
 #include "ductile/solve/contact_form.hpp"
+#include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island_report.hpp"
 #include "ductile/solve/island_system.hpp"
 #include "ductile/solve/proximal_newton.hpp"
@@ -120,13 +121,23 @@ class LaggedFriction {
             --block.count;
         }
         system_.open(flat_);
+        brief_ = InteriorPoint::serves(flat_);
     }
-    /// What the safe way found counts where the active set, which makes it exact, goes in circles.
+    /// What Newton on the velocities found counts where the active set, which makes it exact, goes
+    /// in circles.
     [[nodiscard]] bool solve_round() {
         constexpr double cold = 0.1;
         take_from_flat();
-        if (active_set_.solve(system_)) return true;
+        if (active_set_.solve(system_, false, brief_ ? ActiveSet::brief : ActiveSet::usual)) {
+            return true;
+        }
         give_to_flat();
+        if (brief_) { // but for the last digits of what repeats itself, which the radii follow
+            interior_point_.solve(system_);
+            brief_ = active_set_.solve(system_, true);
+            if (brief_) return true;
+            give_to_flat();
+        }
         proximal_newton_.solve(system_, cold, false);
         const bool well = certificate(system_) <= solved_well * system_.scale();
         take_from_flat();
@@ -199,6 +210,7 @@ class LaggedFriction {
     Island flat_; ///< the island with discs in place of cones
     IslandSystem system_;
     ActiveSet active_set_;
+    InteriorPoint interior_point_;
     ProximalNewton proximal_newton_;
     numeric::Anderson ahead_;
     std::vector<std::size_t> contacts_;   ///< their blocks, here and there
@@ -206,6 +218,7 @@ class LaggedFriction {
     std::vector<IslandRow> rows_;         ///< what a way starts from, should it fail
     std::vector<IslandBlock> blocks_;
     int factorisations_ = 0;
+    bool brief_ = false; ///< the interior point serves, and was made exact whenever it was asked
 };
 
 } // namespace ductile::solve
