@@ -70,11 +70,12 @@
 #include "ductile/joint/link_types.hpp"
 #include "ductile/joint/swing.hpp"
 #include "ductile/surface/any_surface.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
 
-/// Not thread-safe. After construction nothing allocates or throws; O(1).
+/// Not thread-safe. After construction nothing but the first `keep` allocates or throws; O(1).
 template <std::floating_point S>
 class AnyLink {
   public:
@@ -134,9 +135,8 @@ class AnyLink {
 
     /// Keeps all that a step changes, for one put_back or more.
     void keep() {
-        kept_ = {pose_,        force_,           start_,         end_,
-                 before_blow_, swing_,           blow_,          rigid_residual_,
-                 unseen_turn_, island_unsolved_, rigid_unsolved_};
+        kept_.set({pose_, force_, start_, end_, before_blow_, swing_, blow_, rigid_residual_,
+                   unseen_turn_, island_unsolved_, rigid_unsolved_});
         keep_joint();
     }
     /// Everything is as it was at the last `keep`, bit for bit; the bodies have to be, too.
@@ -363,7 +363,7 @@ class AnyLink {
         bool rigid_unsolved;
     };
 
-    std::optional<Kept> kept_;
+    OnDemand<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'
     Vector6<S> turned_ = Vector6<S>::Zero();      ///< u' of the rows as they are now
     S length_ = 0;                                ///< of the last step [s]

@@ -43,14 +43,15 @@ void AnyLink<S>::teleport(const BodyState<S>& a, const BodyState<S>& b) noexcept
 template <std::floating_point S>
 const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, const BodyState<S>& b,
                                                        S dt, S rate, bool ahead) noexcept {
-    const Vector6<S> last = strain();
+    Vector6<S> before; // the rows of a part begin where they were before it
+    if (ahead) before = strain();
     pose_.look(a, b);
     on_surface_ = false;
     island_unsolved_ = 0;
     sound_ = pose_.finite();
     ahead_ = ahead;
     const Vector6<S> now = strain();
-    const Vector6<S> before = ahead ? last : now;
+    if (!ahead) before = now;
     turning_ =
         ahead ? pose_.turning(a, b, linear(offset()), dt, totals().flowing) : RowTurning<S>();
     if (sound_) start_ = turning_.before(pose_.twist(a, b));

@@ -11,6 +11,7 @@
 #include "ductile/fracture/event.hpp"
 #include "ductile/joint/joint_totals.hpp"
 #include "ductile/joint/work_share.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -110,7 +111,7 @@ class AxisJointOf final : public AxisJoint {
     [[nodiscard]] double least_travel() const noexcept override {
         return joint_.parameters().least_travel;
     }
-    void keep() override { kept_ = {joint_.state(), booked_}; }
+    void keep() override { kept_.set({joint_.state(), booked_}); }
     void put_back() noexcept override {
         joint_.restore(kept_->state);
         booked_ = kept_->booked;
@@ -135,7 +136,7 @@ class AxisJointOf final : public AxisJoint {
     };
     Joint joint_;
     BookedStep<Joint> booked_;
-    std::optional<Kept> kept_;
+    OnDemand<Kept> kept_;
 };
 
 } // namespace ductile

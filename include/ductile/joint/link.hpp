@@ -19,6 +19,7 @@
 #include "ductile/joint/any_link.hpp"
 #include "ductile/joint/work_share.hpp"
 #include "ductile/surface/any_surface.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 
 namespace ductile {
 
@@ -50,7 +51,8 @@ struct MetSurface<Joint> {
     AnySurfaceOf<std::remove_cvref_t<decltype(std::declval<const Joint&>().surface())>> surface;
 };
 
-/// Copyable. Not thread-safe. After construction nothing allocates or throws; O(1).
+/// Copyable. Not thread-safe. After construction nothing but the first `keep` allocates or throws;
+/// O(1).
 template <class Joint>
 class Link final : public AnyLink<typename Joint::Scalar> {
   public:
@@ -230,7 +232,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
         booked_.clear();
     }
 
-    void keep_joint() override { kept_joint_ = {joint_.state(), booked_}; }
+    void keep_joint() override { kept_joint_.set({joint_.state(), booked_}); }
     void put_joint_back() noexcept override {
         joint_.restore(kept_joint_->state);
         booked_ = kept_joint_->booked;
@@ -284,7 +286,7 @@ class Link final : public AnyLink<typename Joint::Scalar> {
     JointVector offset_ = JointVector::Zero(); ///< q_p at the start of the step
     JointVector back_ = JointVector::Zero();   ///< of the bias: the rows' turning before the solve
     BookedStep<Joint> booked_;
-    std::optional<KeptJoint> kept_joint_;
+    OnDemand<KeptJoint> kept_joint_;
 };
 
 template <class Joint>

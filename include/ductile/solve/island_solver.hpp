@@ -30,6 +30,7 @@
 // changes sides.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ductile/solve/active_set.hpp"
@@ -44,14 +45,12 @@
 
 namespace ductile::solve {
 
-/// One per island that lasts: it keeps the topology. Not thread-safe.
-class IslandSolver {
+/// The way of any island. Not thread-safe.
+class GeneralSolver {
   public:
-    /// Also leaves in the island whether it is solved.
     IslandReport solve(Island& island);
 
   private:
-    [[nodiscard]] IslandReport answer(Island& island);
     bool polished(IslandReport& report);
     bool coulomb(IslandReport& report);
     bool lagged(IslandReport& report, const std::vector<double>& from);
@@ -70,6 +69,18 @@ class IslandSolver {
     std::vector<double> start_, best_;
     std::vector<Side> sides_; ///< at the start, as are the blocks
     std::vector<IslandBlock> blocks_;
+};
+
+/// One per island that lasts: it keeps the topology. Not thread-safe.
+class IslandSolver {
+  public:
+    /// Also leaves in the island whether it is solved.
+    IslandReport solve(Island& island);
+
+  private:
+    [[nodiscard]] IslandReport answer(Island& island);
+
+    std::unique_ptr<GeneralSolver> general_; ///< 4.5 kB that no single joint needs
 };
 
 } // namespace ductile::solve

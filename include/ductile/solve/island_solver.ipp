@@ -52,6 +52,12 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
 DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
     IslandReport report;
     if (solve_one_pair(island, report)) return report;
+    if (general_ == nullptr) general_ = std::make_unique<GeneralSolver>();
+    return general_->solve(island);
+}
+
+DUCTILE_INLINE IslandReport GeneralSolver::solve(Island& island) {
+    IslandReport report;
     system_.open(island);
     report.scale = system_.scale();
     if (!std::isfinite(report.scale)) {
@@ -87,7 +93,7 @@ DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
     return report;
 }
 
-DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
+DUCTILE_INLINE bool GeneralSolver::polished(IslandReport& report) {
     const bool brief = InteriorPoint::serves(system_.island());
     const bool settled =
         active_set_.solve(system_, false, brief ? ActiveSet::brief : ActiveSet::usual);
@@ -96,7 +102,7 @@ DUCTILE_INLINE bool IslandSolver::polished(IslandReport& report) {
 }
 
 /// Where it does not settle all is as it was.
-DUCTILE_INLINE bool IslandSolver::coulomb(IslandReport& report) {
+DUCTILE_INLINE bool GeneralSolver::coulomb(IslandReport& report) {
     Island& island = system_.island();
     sides_.clear();
     for (const IslandRow& row : island.rows) sides_.push_back(row.side);
@@ -116,12 +122,12 @@ DUCTILE_INLINE bool IslandSolver::coulomb(IslandReport& report) {
 }
 
 /// With nothing kept of another way.
-DUCTILE_INLINE void IslandSolver::begin_from(const std::vector<double>& impulses) {
+DUCTILE_INLINE void GeneralSolver::begin_from(const std::vector<double>& impulses) {
     for (IslandSystem::Row& row : system_.rows()) row.shift = row.kept = 0;
     put(impulses);
 }
 
-DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report, const std::vector<double>& from) {
+DUCTILE_INLINE bool GeneralSolver::lagged(IslandReport& report, const std::vector<double>& from) {
     begin_from(from);
     const bool settled = lagged_friction_.solve(system_);
     report.factorisations += lagged_friction_.factorisations();
@@ -131,7 +137,7 @@ DUCTILE_INLINE bool IslandSolver::lagged(IslandReport& report, const std::vector
 /// The interior point where it serves, or else proximal Newton, polished by the active set; each
 /// pass goes on from the best so far, from where the lagged way often settles that did not from the
 /// start.
-DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
+DUCTILE_INLINE void GeneralSolver::fall_back(IslandReport& report, bool touch) {
     const int most = touch ? 2 : 4;
     constexpr double cold = 0.1, warm = 1e-4;
     double least = std::numeric_limits<double>::infinity();
@@ -160,7 +166,7 @@ DUCTILE_INLINE void IslandSolver::fall_back(IslandReport& report, bool touch) {
     }
 }
 
-DUCTILE_INLINE void IslandSolver::certify(IslandReport& report) {
+DUCTILE_INLINE void GeneralSolver::certify(IslandReport& report) {
     detail::project_impulses(system_);
     system_.update_velocities();
     system_.update_residuals();
@@ -173,7 +179,7 @@ DUCTILE_INLINE void IslandSolver::certify(IslandReport& report) {
 }
 
 /// Of the answer, the start and nothing the one that leaves the least energy.
-DUCTILE_INLINE void IslandSolver::give_up(IslandReport& report) {
+DUCTILE_INLINE void GeneralSolver::give_up(IslandReport& report) {
     take(best_);
     double least = system_.energy();
     for (const bool nothing : {false, true}) {
@@ -189,7 +195,7 @@ DUCTILE_INLINE void IslandSolver::give_up(IslandReport& report) {
     report.residual = certificate(system_);
 }
 
-DUCTILE_INLINE void IslandSolver::put(const std::vector<double>& impulses) {
+DUCTILE_INLINE void GeneralSolver::put(const std::vector<double>& impulses) {
     std::vector<IslandRow>& rows = system_.island().rows;
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i].impulse = impulses[i];
     detail::project_impulses(system_);
@@ -197,7 +203,7 @@ DUCTILE_INLINE void IslandSolver::put(const std::vector<double>& impulses) {
     system_.update_residuals();
 }
 
-DUCTILE_INLINE void IslandSolver::take(std::vector<double>& impulses) const {
+DUCTILE_INLINE void GeneralSolver::take(std::vector<double>& impulses) const {
     const std::vector<IslandRow>& rows = system_.island().rows;
     impulses.resize(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) impulses[i] = rows[i].impulse;

@@ -80,6 +80,22 @@ DUCTILE_INLINE bool passes(const solve::Island& island, const solve::IslandBlock
     return block.surface != nullptr ? block.surface->value(share) > 1 : share.squaredNorm() > 1;
 }
 
+/// True where the rows of a block are ruled anew, for a solver that meets their surface itself.
+DUCTILE_INLINE bool meet_surface(solve::Island& island, AnyLink<double>& link,
+                                 const RowOrder& order, const solve::IslandBlock& block,
+                                 double dt) {
+    if (block.count == 0) return false;
+    const AnyLink<double>::Limits alone = link.limits();
+    if (!link.meet_surface(dt, passes(island, block))) return false;
+    for (const JointAxis axis : link.axes()) {
+        solve::IslandRow& row = island.rows[std::size_t(block.first + order.place[index(axis)])];
+        const RowLimits<double>& limits = link.limits()[index(axis)];
+        row.target += limits.bias - alone[index(axis)].bias;
+        rule(row, limits, dt);
+    }
+    return true;
+}
+
 /// Rows that flowed in the last step, or stood at their bounds.
 DUCTILE_INLINE void begin_at_bounds(solve::Island& island, const AnyLink<double>& link,
                                     const RowOrder& order, int first) {
@@ -139,16 +155,9 @@ DUCTILE_INLINE int add_rows(solve::Island& island, AnyLink<double>& link, const 
         row.impulse = link.forces()[i] * dt; // so that contacts begin with slips near the answer's
     }
     const solve::IslandBlock block = detail::block_of(link, order, first, dt);
-    const AnyLink<double>::Limits alone = link.limits();
     // one that stands may have reached it too
     const bool reached = link.totals().flowing || link.utilisation() >= detail::at_bound;
-    if (block.count > 0 && link.meet_surface(dt, detail::passes(island, block))) {
-        for (const JointAxis axis : link.axes()) {
-            solve::IslandRow& row = island.rows[std::size_t(first + order.place[index(axis)])];
-            const RowLimits<double>& limits = link.limits()[index(axis)];
-            row.target += limits.bias - alone[index(axis)].bias;
-            detail::rule(row, limits, dt);
-        }
+    if (detail::meet_surface(island, link, order, block, dt)) {
         detail::add_block(island, block, reached);
     } else if (reached) {
         detail::begin_at_bounds(island, link, order, first);

@@ -83,14 +83,15 @@ class FrontSolver final : public btConstraintSolver {
     /// What a call of solveGroup works with.
     struct Room {
         TouchingIslands islands;
+        IslandSolver alone; ///< of joints that are all of their island: no topology to keep
     };
     /// The solver of an island, by its first plastic joint, or body: it keeps the topology.
     struct Kept {
         IslandSolver solver;
         bool used = true;
     };
-    void solve_plastic(IslandParts& island, const btContactSolverInfo& info, btIDebugDraw* drawer,
-                       btDispatcher* dispatcher);
+    void solve_plastic(IslandParts& island, IslandSolver& solver, const btContactSolverInfo& info,
+                       btIDebugDraw* drawer, btDispatcher* dispatcher);
     btScalar solve_usual(btCollisionObject** bodies, int body_count,
                          btPersistentManifold** manifolds, int manifold_count,
                          btTypedConstraint** constraints, int constraint_count,
@@ -98,7 +99,7 @@ class FrontSolver final : public btConstraintSolver {
                          btDispatcher* dispatcher);
     [[nodiscard]] std::unique_ptr<Room> borrow();
     void give_back(std::unique_ptr<Room> room);
-    [[nodiscard]] std::shared_ptr<Kept> solver_of(const void* first);
+    [[nodiscard]] std::shared_ptr<Kept> solver_of(const IslandParts& island);
 
     friend class FrontHold;
 

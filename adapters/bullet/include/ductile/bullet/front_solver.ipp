@@ -24,6 +24,12 @@ namespace detail {
     return constraint->isEnabled() && as_plastic(*constraint) != nullptr;
 }
 
+/// Of Bullet's joints and contacts it has none: it leaves nothing of itself in its solver.
+[[nodiscard]] DUCTILE_INLINE bool is_one_joint(const IslandParts& island) {
+    return island.manifolds.empty() && island.constraints.size() == 1 &&
+           is_plastic(island.constraints.front());
+}
+
 /// Bullet's own members are not public.
 struct SolverOfWorld : btDiscreteDynamicsWorld {
     static bool& owned(btDiscreteDynamicsWorld& world) {
@@ -200,32 +206,24 @@ DUCTILE_INLINE FrontSolver::~FrontSolver() {
     btAlignedFree(&usual_);
 }
 
-DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, const btContactSolverInfo& info,
+DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, IslandSolver& solver,
+                                               const btContactSolverInfo& info,
                                                btIDebugDraw* drawer, btDispatcher* dispatcher) {
     const detail::StruckContacts struck(island.manifolds.data(),
                                         kind_ == TickKind::blow ? int(island.manifolds.size()) : 0,
                                         double(info.m_restitutionVelocityThreshold));
     Lent<btScalar> lent;
     if (kind_ == TickKind::part) detail::end_rebounds(island.manifolds, lent);
-    const auto first =
-        std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
-    const void* key = first != island.constraints.end()
-                          ? static_cast<const void*>(*first)
-                          : static_cast<const void*>(island.bodies.front());
-    const std::shared_ptr<Kept> kept = solver_of(key);
-    kept->solver.set_held(held_);
-    kept->solver.set_ahead(kind_ == TickKind::part, kind_ == TickKind::blow, frame_);
+    solver.set_held(held_);
+    solver.set_ahead(kind_ == TickKind::part, kind_ == TickKind::blow, frame_);
     // else what overlaps deeply is pushed apart without the joints, which that would strain
     btContactSolverInfo with_joints = info;
     const bool by_depth = info.m_splitImpulsePenetrationThreshold < 0;
     if (kind_ == TickKind::part && by_depth) with_joints.m_splitImpulse = 0;
-    kept->solver.set_pushes_apart(kind_ == TickKind::step);
-    kept->solver.solveGroup(island.bodies.data(), int(island.bodies.size()),
-                            island.manifolds.data(), int(island.manifolds.size()),
-                            island.constraints.data(), int(island.constraints.size()), with_joints,
-                            drawer, dispatcher);
-    const std::lock_guard lock(mutex_);
-    own_.join(kept->solver.own());
+    solver.set_pushes_apart(kind_ == TickKind::step);
+    solver.solveGroup(island.bodies.data(), int(island.bodies.size()), island.manifolds.data(),
+                      int(island.manifolds.size()), island.constraints.data(),
+                      int(island.constraints.size()), with_joints, drawer, dispatcher);
 }
 
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(
@@ -270,7 +268,14 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     }
     rule_contacts();
     for (IslandParts& island : room->islands.chosen()) {
-        solve_plastic(island, info, drawer, dispatcher);
+        if (detail::is_one_joint(island)) {
+            solve_plastic(island, room->alone, info, drawer, dispatcher);
+            continue;
+        }
+        const std::shared_ptr<Kept> kept = solver_of(island);
+        solve_plastic(island, kept->solver, info, drawer, dispatcher);
+        const std::lock_guard lock(mutex_);
+        own_.join(kept->solver.own());
     }
     IslandParts& others = room->islands.others();
     btScalar residual = 0;
@@ -313,9 +318,14 @@ DUCTILE_INLINE void FrontSolver::give_back(std::unique_ptr<Room> room) {
     idle_.push_back(std::move(room));
 }
 
-DUCTILE_INLINE auto FrontSolver::solver_of(const void* first) -> std::shared_ptr<Kept> {
+DUCTILE_INLINE auto FrontSolver::solver_of(const IslandParts& island) -> std::shared_ptr<Kept> {
+    const auto first =
+        std::find_if(island.constraints.begin(), island.constraints.end(), detail::is_plastic);
+    const void* key = first != island.constraints.end()
+                          ? static_cast<const void*>(*first)
+                          : static_cast<const void*>(island.bodies.front());
     const std::lock_guard lock(mutex_);
-    std::shared_ptr<Kept>& kept = kept_[first];
+    std::shared_ptr<Kept>& kept = kept_[key];
     if (kept == nullptr) kept = std::make_shared<Kept>();
     kept->used = true;
     return kept;

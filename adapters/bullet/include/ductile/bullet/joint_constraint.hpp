@@ -32,6 +32,7 @@
 #include "ductile/bullet/plastic_constraint.hpp"
 #include "ductile/joint/any_link.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 #include "ductile/world/joint_checks.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
@@ -139,7 +140,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries {
     std::array<std::size_t, 6> order_;                 ///< axis of each row
     std::unique_ptr<Reading> reading_;                 ///< where Bullet ever solved the rows
     JointImpulse<double> handed_;                      ///< what Open::hand_back gives
-    Kept kept_;
+    OnDemand<Kept> kept_;
 };
 
 /// A constraint with a joint of a given type.

@@ -91,7 +91,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 
 DUCTILE_INLINE bool JointConstraint::turn_rows(solve::Island& island, const IslandSeat& a,
                                                const IslandSeat& b) {
-    if (first_row_ == no_rows) return false;
+    if (first_row_ == no_rows || !ahead_) return false; // a step as it is begins where rows are
     return ductile::turn_rows(island, link_, first_row_, leaving(island, a, body_motion(m_rbA)),
                               leaving(island, b, body_motion(m_rbB)), dt_);
 }
@@ -195,7 +195,7 @@ DUCTILE_INLINE void JointConstraint::keep_all() {
     settle_late(false);
     keep_life();
     link_.keep();
-    kept_ = {release_, forces_, told_};
+    kept_.set({release_, forces_, told_});
 }
 
 DUCTILE_INLINE void JointConstraint::put_all_back() {
@@ -203,9 +203,9 @@ DUCTILE_INLINE void JointConstraint::put_all_back() {
     booked_ = false;
     put_life_back();
     link_.put_back();
-    release_ = kept_.release;
-    forces_ = kept_.forces;
-    told_ = kept_.told;
+    release_ = kept_->release;
+    forces_ = kept_->forces;
+    told_ = kept_->told;
 }
 
 DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,

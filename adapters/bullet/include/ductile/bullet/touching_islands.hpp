@@ -113,6 +113,7 @@ class TouchingIslands {
                     return place(*x->getBody0(), *x->getBody1()) <
                            place(*y->getBody0(), *y->getBody1());
                 });
+            if (island.constraints.size() < 2) continue; // it would take memory for one
             std::stable_sort(island.constraints.begin(), island.constraints.end(),
                              [&place](const btTypedConstraint* x, const btTypedConstraint* y) {
                                  return place(x->getRigidBodyA(), x->getRigidBodyB()) <

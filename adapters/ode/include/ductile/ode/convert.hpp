@@ -151,14 +151,19 @@ inline void wake(dJointID joint) noexcept {
             .spin = angular_velocity(body)};
 }
 
+/// A body that can move, with its mass; `own`: its inertia, in its axes.
+inline void add_mass(BodyState<double>& body, const dMass& m, const Matrix3<double>& own) noexcept {
+    body.inverse_mass = 1 / double(m.mass);
+    body.inverse_inertia = sandwiched(body.orientation, numeric::inverse(own));
+}
+
 /// The body as a link sees it. A kinematic body moves but cannot be moved.
 [[nodiscard]] inline BodyState<double> body_state(dBodyID body) noexcept {
     BodyState<double> result = body_motion(body);
     if (!can_move(body)) return result;
     dMass m;
     dBodyGetMass(body, &m);
-    result.inverse_mass = 1 / double(m.mass);
-    result.inverse_inertia = sandwiched(result.orientation, numeric::inverse(matrix_to_core(m.I)));
+    add_mass(result, m, matrix_to_core(m.I));
     return result;
 }
 
@@ -177,13 +182,18 @@ inline void wake(dJointID joint) noexcept {
 /// A body that can move, with the velocities that ODE's step of `dt` [s] gives it where no row
 /// acts.
 [[nodiscard]] inline BodyState<double> free_state(dBodyID body, double dt) noexcept {
-    BodyState<double> result = body_state(body);
+    BodyState<double> result = body_motion(body);
+    dMass m;
+    dBodyGetMass(body, &m);
+    const Matrix3<double> own = matrix_to_core(m.I);
+    add_mass(result, m, own);
     Vector3<double> acceleration = scaled(result.inverse_mass, to_core(dBodyGetForce(body)));
     if (dBodyGetGravityMode(body) != 0) {
         acceleration = sum(acceleration, gravity_of(dBodyGetWorld(body)));
     }
-    const Vector3<double> turn = sum(scaled(dt, to_core(dBodyGetTorque(body))),
-                                     gyroscopic_impulse(body, inertia(body), result.spin, dt));
+    const Vector3<double> turn =
+        sum(scaled(dt, to_core(dBodyGetTorque(body))),
+            gyroscopic_impulse(body, sandwiched(result.orientation, own), result.spin, dt));
     result.velocity = sum(result.velocity, scaled(dt, acceleration));
     result.spin = sum(result.spin, times(result.inverse_inertia, turn));
     return result;

@@ -50,6 +50,7 @@
 #include "ductile/ode/world.hpp"
 #include "ductile/ode/world_life.hpp"
 #include "ductile/vocabulary/linkage.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 #include "ductile/world/joint_checks.hpp"
 #include "ductile/world/link_joint.hpp"
 #include "ductile/world/link_queries.hpp"
@@ -177,7 +178,7 @@ class JointConstraint : public PlasticConstraint, public LinkQueries, private Is
         DrivenPair driven;
         bool silent = true;
     };
-    Kept kept_;
+    OnDemand<Kept> kept_;
 };
 
 } // namespace ductile::ode

@@ -163,8 +163,13 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
 
 /// In a part of a frame begin_frame has looked.
 DUCTILE_INLINE std::array<BodyState<double>, 2> JointConstraint::at_start(double dt) {
-    const std::array<BodyState<double>, 2> bodies{driven_.at_start(0, a_, body_state(a_), dt),
-                                                  driven_.at_start(1, b_, body_state(b_), dt)};
+    // a part asks for masses as well, to know what is driven
+    const bool masses = ahead_ || link_.reads_mass();
+    const auto now = [masses](dBodyID body) {
+        return masses ? body_state(body) : body_motion(body);
+    };
+    const std::array<BodyState<double>, 2> bodies{driven_.at_start(0, a_, now(a_), dt),
+                                                  driven_.at_start(1, b_, now(b_), dt)};
     if (!ahead_ && !std::exchange(put_back_, false)) link_.teleport(bodies[0], bodies[1]);
     return bodies;
 }
@@ -281,16 +286,16 @@ DUCTILE_INLINE void JointConstraint::driven_begins(dBodyID body, const Vector3<d
 
 DUCTILE_INLINE void JointConstraint::keep_all() {
     link_.keep();
-    kept_ = {release_, outside_, driven_, silent_};
+    kept_.set({release_, outside_, driven_, silent_});
 }
 
 DUCTILE_INLINE void JointConstraint::put_all_back() {
     booked_ = acting_ = holds_on_ = false;
     link_.put_back();
-    release_ = kept_.release;
-    outside_ = kept_.outside;
-    driven_ = kept_.driven;
-    silent_ = kept_.silent;
+    release_ = kept_->release;
+    outside_ = kept_->outside;
+    driven_ = kept_->driven;
+    silent_ = kept_->silent;
 }
 
 DUCTILE_INLINE void JointConstraint::list_part_rows(std::size_t joint,

@@ -13,6 +13,7 @@
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/island_rows.hpp"
 #include "ductile/ode/stepped_constraint.hpp"
+#include "ductile/vocabulary/on_demand.hpp"
 #include "ductile/vocabulary/vector.hpp"
 #include "ductile/world/driven_velocity.hpp"
 #include "ductile/world/joint_queries.hpp"
@@ -33,9 +34,10 @@ class DrivenPair {
   public:
     [[nodiscard]] BodyState<double> at_start(int side, dBodyID body, const BodyState<double>& now,
                                              double dt) const {
-        if (!is_driven(body)) return now;
-        const Part& part = part_[std::size_t(side)];
-        if (!part.known) return velocity_[std::size_t(side)].at_start(now, dt);
+        const Courses* courses = courses_.get();
+        if (!is_driven(body) || courses == nullptr) return now;
+        const Part& part = courses->part[std::size_t(side)];
+        if (!part.known) return courses->velocity[std::size_t(side)].at_start(now, dt);
         BodyState<double> start = now;
         start.velocity = part.velocity;
         start.spin = part.spin;
@@ -43,14 +45,17 @@ class DrivenPair {
     }
     /// It has these velocities where the coming part of a frame begins.
     void begins_part(int side, const Vector3<double>& velocity, const Vector3<double>& spin) {
-        part_[std::size_t(side)] = {true, velocity, spin};
+        courses_.made().part[std::size_t(side)] = {true, velocity, spin};
     }
     void booked(int side, dBodyID body, double dt) {
-        if (is_driven(body)) velocity_[std::size_t(side)].booked(body_motion(body), dt);
+        if (!is_driven(body)) return;
+        courses_.made().velocity[std::size_t(side)].booked(body_motion(body), dt);
     }
     void forget() {
-        for (DrivenVelocity& velocity : velocity_) velocity.forget();
-        part_ = {};
+        Courses* courses = courses_.get();
+        if (courses == nullptr) return;
+        for (DrivenVelocity& velocity : courses->velocity) velocity.forget();
+        courses->part = {};
     }
     [[nodiscard]] static bool is_driven(dBodyID body) {
         return body != nullptr && dBodyIsKinematic(body) != 0;
@@ -62,8 +67,12 @@ class DrivenPair {
         Vector3<double> velocity{0, 0, 0}, spin{0, 0, 0};
     };
 
-    std::array<DrivenVelocity, 2> velocity_;
-    std::array<Part, 2> part_{};
+    struct Courses {
+        std::array<DrivenVelocity, 2> velocity;
+        std::array<Part, 2> part{};
+    };
+
+    OnDemand<Courses> courses_; ///< where a body is driven
 };
 
 class PlasticConstraint : public SteppedConstraint, public SharesWork {

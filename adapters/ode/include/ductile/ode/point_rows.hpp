@@ -29,6 +29,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
@@ -69,10 +70,7 @@ struct PointRow {
 
 class PointRows {
   public:
-    explicit PointRows(dWorldID world) : world_(world), group_(dJointGroupCreate(0)) {}
-    ~PointRows() { dJointGroupDestroy(group_); }
-    PointRows(const PointRows&) = delete;
-    PointRows& operator=(const PointRows&) = delete;
+    explicit PointRows(dWorldID world) : world_(world) {}
 
     /// Makes force rows on `a`, opposite on `b` (null: the static world), for the coming step.
     /// Directions at right angles to each other; rows without strength are left out.
@@ -101,7 +99,8 @@ class PointRows {
     /// What the rows did in the step, about the centres of mass; takes them away.
     [[nodiscard]] OutsideForce collect() {
         OutsideForce result;
-        for (const dJointFeedback& f : feedback_) {
+        if (made_ == nullptr) return result;
+        for (const dJointFeedback& f : made_->feedback) {
             result.force = sum(result.force, to_core(f.f1));
             result.torque_a = sum(result.torque_a, to_core(f.t1));
             result.torque_b = sum(result.torque_b, to_core(f.t2));
@@ -111,9 +110,10 @@ class PointRows {
     }
     /// Takes the rows away.
     void clear() {
-        dJointGroupEmpty(group_);
-        feedback_ = {};
-        contacts_ = 0;
+        if (made_ == nullptr || made_->contacts == 0) return;
+        dJointGroupEmpty(made_->group);
+        made_->feedback = {};
+        made_->contacts = 0;
     }
 
   private:
@@ -147,6 +147,7 @@ class PointRows {
         for (const PointRow& row : rows) {
             if (row.row.strength > 0) acting[count++] = &row;
         }
+        if (made_ == nullptr) made_ = std::make_unique<Made>();
         for (std::size_t i = 0; i < count; i += together) {
             const PointRow& first = *acting[i];
             const PointRow* second = together > 1 && i + 1 < count ? acting[i + 1] : nullptr;
@@ -160,16 +161,25 @@ class PointRows {
                 surface.motion2 = dReal(second->row.velocity * second->scale);
                 surface.slip2 = dReal(second->row.cfm * second->scale * second->scale);
             }
-            const dJointID joint = dJointCreateContact(world_, group_, &contact);
+            const dJointID joint = dJointCreateContact(world_, made_->group, &contact);
             dJointAttach(joint, a, b);
-            dJointSetFeedback(joint, &feedback_[contacts_++]);
+            dJointSetFeedback(joint, &made_->feedback[made_->contacts++]);
         }
     }
 
+    struct Made {
+        Made() = default;
+        ~Made() { dJointGroupDestroy(group); }
+        Made(const Made&) = delete;
+        Made& operator=(const Made&) = delete;
+
+        dJointGroupID group = dJointGroupCreate(0);
+        std::array<dJointFeedback, 5> feedback{}; ///< two of forces, three of moments
+        std::size_t contacts = 0;                 ///< made for this step
+    };
+
     dWorldID world_;
-    dJointGroupID group_;
-    std::array<dJointFeedback, 5> feedback_{}; ///< two of forces, three of moments
-    std::size_t contacts_ = 0;                 ///< made for this step
+    std::unique_ptr<Made> made_; ///< where ODE ever had rows to solve
 };
 
 } // namespace ductile::ode
