@@ -57,7 +57,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.least = judged.of_one = motion.closed_work;
     bool lets_go = false;  // a joint breaks: what its spring sets free is no misfit
     double held = h;       // until the first joint broke
-    double held_share = 0; // of its strength, by a rigid row
+    double held_share = motion.closed_share; // of its strength, by a rigid row
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         if (!breaks(i, motion)) continue;
         const PartRow& row = motion.rows[i];

@@ -235,8 +235,12 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const double struck_at = closes ? it.speed : it.comes; // past an edge
         const std::optional<SoftContact> soft = it.softness(named, frame);
         const double depth = soft ? soft->beginning(it.speed) : it.depth();
-        touches_.push_back({depth - double(named.contact.geom.depth), depth, it.speed, before,
-                            struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft});
+        const dContactGeom& geom = named.contact.geom;
+        const double thin =
+            soft ? std::min(detail::thickness(geom.g1), detail::thickness(geom.g2)) : 0;
+        touches_.push_back({depth - double(geom.depth), depth, it.speed, before,
+                            struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft,
+                            thin});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
@@ -256,7 +260,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
                 const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
                 if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;
                 touches_.push_back({axis.gap() + depth, depth, speed, speed,
-                                    speed * speed / (2 * axis.yields), false, true, true});
+                                    speed * speed / (2 * axis.yields), false, true, true, 0});
             }
         }
     }
@@ -331,8 +335,12 @@ DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
     double next = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        if (!touch.closes || touch.gap < touch.depth / 2 || !(touch.energy > apart)) continue;
-        next = std::min(next, touch.gap / touch.speed);
+        if (!touch.closes || !(touch.energy > apart)) continue;
+        if (!(touch.gap < touch.depth / 2)) {
+            next = std::min(next, touch.gap / touch.speed);
+        } else if (!touch.is_hard) { // no part is to carry it past what it presses
+            next = std::min(next, touch.thin / 2 / touch.speed);
+        }
     }
     return next;
 }
