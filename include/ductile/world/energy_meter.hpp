@@ -143,8 +143,8 @@ class EnergyMeter {
     [[nodiscard]] double stored() const noexcept { return last_.elastic; }
     /// What contacts of bodies that count took in it, but for those that give way [J].
     [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
-    /// Of bodies that are one's pieces, whose; null: nobody's. What gives way takes from one of them
-    /// and gives to another.
+    /// Of bodies that are one's pieces, whose; null: nobody's. What gives way takes from one of
+    /// them and gives to another.
     void set_owners(std::function<const void*(const void* body)> owner_of) {
         owner_of_ = std::move(owner_of);
     }

@@ -52,10 +52,10 @@ struct DivisibleTicks {
     std::vector<int> found{};
     std::vector<const btCollisionObject*> bodies{}; ///< as Members::owners_ has them
     int direct = 0;                                 ///< ticks for which it is still solved at once
-    double left = 0;    ///< of contacts in this tick, by sweeps [N s]; infinite: one gives way
-    bool asked = true;                              ///< for its report
-    bool watched = false;                           ///< in every tick
-    bool here = false;                              ///< in this one
+    double left = 0;      ///< of contacts in this tick, by sweeps [N s]; infinite: one gives way
+    bool asked = true;    ///< for its report
+    bool watched = false; ///< in every tick
+    bool here = false;    ///< in this one
 };
 
 class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
