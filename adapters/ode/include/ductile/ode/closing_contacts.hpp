@@ -150,7 +150,7 @@ class ClosingContactsFinder {
         bool is_new;   ///< the bodies had no contact when last remembered
         bool closes;   ///< else it leaves already, and closed since
         bool is_hard;
-        double thin; ///< of one that gives way: of the thinner of the two geoms [m]
+        double thin; ///< of the thinner of the two geoms [m]
 
         [[nodiscard]] bool strikes(double touching) const {
             return closes && is_hard && gap < depth / 2 && energy > touching;

@@ -41,6 +41,8 @@ namespace detail {
 
 /// Smallest extent of a geom; infinite for what has no other side [m].
 [[nodiscard]] DUCTILE_INLINE double thickness(dGeomID geom) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (geom == nullptr) return infinity; // contacts may be made without
     dReal radius = 0, length = 0;
     switch (dGeomGetClass(geom)) {
         case dSphereClass:
@@ -58,13 +60,11 @@ namespace detail {
             return std::min(2 * double(radius), double(length));
         case dPlaneClass:
         case dHeightfieldClass:
-            return std::numeric_limits<double>::infinity();
+            return infinity;
         default: {
-            constexpr double infinity = std::numeric_limits<double>::infinity();
             // of ground, and of a face alone, there is no telling from the other side
-            const bool ground =
-                dGeomGetClass(geom) == dTriMeshClass && dGeomGetBody(geom) == nullptr;
-            if (ground) return infinity;
+            const bool mesh = dGeomGetClass(geom) == dTriMeshClass;
+            if (mesh && dGeomGetBody(geom) == nullptr) return infinity;
             std::array<dReal, 6> bounds{};
             dGeomGetAABB(geom, bounds.data());
             const auto least = double(
@@ -235,10 +235,9 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const double struck_at = closes ? it.speed : it.comes; // past an edge
         const std::optional<SoftContact> soft = it.softness(named, frame);
         const double depth = soft ? soft->beginning(it.speed) : it.depth();
-        const dContactGeom& geom = named.contact.geom;
-        const double thin =
-            soft ? std::min(detail::thickness(geom.g1), detail::thickness(geom.g2)) : 0;
-        touches_.push_back({depth - double(geom.depth), depth, it.speed, before,
+        const auto [one, other] = touching_.back().second;
+        const double thin = std::min(detail::thickness(one), detail::thickness(other));
+        touches_.push_back({depth - double(named.contact.geom.depth), depth, it.speed, before,
                             struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft,
                             thin});
     }
@@ -335,12 +334,10 @@ DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
     double next = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        if (!touch.closes || !(touch.energy > apart)) continue;
-        if (!(touch.gap < touch.depth / 2)) {
-            next = std::min(next, touch.gap / touch.speed);
-        } else if (!touch.is_hard) { // no part is to carry it past what it presses
-            next = std::min(next, touch.thin / 2 / touch.speed);
-        }
+        const bool closed = touch.gap < touch.depth / 2;
+        if (!touch.closes || !(touch.energy > apart) || (closed && touch.is_hard)) continue;
+        // no part is to carry what gives way past what it presses
+        next = std::min(next, (closed ? touch.thin / 2 : touch.gap) / touch.speed);
     }
     return next;
 }
