@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adapters/bullet_engine.hpp"
+#include "adapters/soft_head.hpp"
 #include "core/member/strips.hpp"
 #include "ductile/bullet/bullet.hpp"
 #include "ductile/bullet/member_snapshot.hpp"
@@ -311,6 +312,13 @@ struct BallOnPost : Scene {
         world.add(*post, "post");
     }
 };
+
+/// Its contacts give way, in frames of any length.
+inline void soften(BallOnPost& scene, const SoftHead& as, double /*frame*/) {
+    constexpr double others_damping = 0.1; // as Bullet's bodies come
+    scene.ball->setContactStiffnessAndDamping(btScalar(as.stiffness),
+                                              btScalar(as.damping - others_damping));
+}
 
 /// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
 struct BallOnBar : Scene {

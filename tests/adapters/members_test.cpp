@@ -58,6 +58,35 @@ TEST_CASE("just in time a struck cantilever moves as one whose sections are alwa
     }
 }
 
+TEST_CASE("what gives way yields a post as it does a slider", "[member]") {
+    // it turns at the foot: by little it is a mass of I/z² on a slider of M_p/z
+    constexpr double strength = 2e4, stronger = 1e9, place = 1.9, half = 0.05;
+    const MemberSegment metre{.length = 1, .mass = 12, .inertia = {1, 1, 0.1}};
+    MemberParameters p;
+    p.segments = {{.length = 0, .mass = 0, .held = true}, metre, metre};
+    p.sections = {UsualAxisJoint(Perfect<double>({.strength = strength})),
+                  UsualAxisJoint(Perfect<double>({.strength = stronger}))};
+    const Member of(p);
+    constexpr double about_foot = 2 * 1 + 12 * (0.5 * 0.5 + 1.5 * 1.5);
+    for (SoftHead as : {SoftHead{.mass = 20, .speed = 6, .stiffness = 4e5, .damping = 200},
+                        SoftHead{.mass = 100, .speed = 3, .stiffness = 6e5, .damping = 0.1},
+                        SoftHead{.mass = 10, .speed = 8, .stiffness = 8e6, .damping = 0.1},
+                        SoftHead{.mass = 5, .speed = 30, .stiffness = 4e6, .damping = 500}}) {
+        as.head = about_foot / (place * place);
+        as.strength = strength / place;
+        const double absorbed = as.absorbed(0.5);
+        CHECK(absorbed > 20);
+        for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240, 1.0 / 1000}) {
+            BallOnPost scene(of, as.mass, as.speed, 0.01, half, 0.011, place, false);
+            soften(scene, as, frame);
+            scene.go(0.5, frame);
+            CAPTURE(as.mass, as.stiffness, frame, scene.world.run().brought_in);
+            CHECK(scene.post->absorbed_energy() == Approx(absorbed).epsilon(0.01));
+            CHECK(scene.world.run().believed());
+        }
+    }
+}
+
 TEST_CASE("a second and a third hit go on where the first one left it", "[member]") {
     const Member of = strip(10);
     Struck always(of, false), in_time(of, true);

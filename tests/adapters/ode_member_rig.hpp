@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
+#include "adapters/soft_head.hpp"
 #include "core/member/strips.hpp"
 #include "ductile/ode/member_snapshot.hpp"
 #include "ductile/ode/members.hpp"
@@ -26,8 +27,11 @@ inline const JointFrame<double> here{};
 
 /// Outlives its Worlds and members.
 struct Rig : OdeEngine {
+    dSurfaceParameters surface{}; ///< of contacts
+
     explicit Rig(const V3& gravity = {0, 0, 0}) {
         dRandSetSeed(0);
+        surface.mode = dContactApprox1;
         dWorldSetCFM(id, 1e-13);
         dWorldSetGravity(id, dReal(gravity.x()), dReal(gravity.y()), dReal(gravity.z()));
     }
@@ -84,9 +88,7 @@ struct Rig : OdeEngine {
     static void near(void* data, dGeomID a, dGeomID b) {
         auto& rig = *static_cast<Rig*>(data);
         if (are_joined(a, b)) return;
-        dSurfaceParameters surface{};
-        surface.mode = dContactApprox1;
-        rig.touch(a, b, surface, [&rig](dJointID joint, const dContact& contact) {
+        rig.touch(a, b, rig.surface, [&rig](dJointID joint, const dContact& contact) {
             rig.world_->add_contact(joint, contact);
         });
     }
@@ -309,6 +311,14 @@ struct BallOnPost : Scene {
         rig.meet(world);
     }
 };
+
+/// Contacts give way, in frames of `frame` [s].
+inline void soften(BallOnPost& scene, const SoftHead& as, double frame) {
+    dSurfaceParameters& surface = scene.rig.surface;
+    surface.mode |= dContactSoftERP | dContactSoftCFM;
+    surface.soft_erp = dReal(as.erp(frame));
+    surface.soft_cfm = dReal(as.cfm(frame));
+}
 
 /// A ball that strikes a bar that nothing holds, a box of 0.1 m across along z from the origin on.
 struct BallOnBar : Scene {

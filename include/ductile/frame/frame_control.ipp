@@ -167,8 +167,9 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
         run_.least = std::max(run_.least, judged.least); // of what sleeps too
         run_.of_one = std::max(run_.of_one, judged.of_one);
         const double error = detail::likely_error(judged, judged.most);
-        // of one that turned too far it says nothing, and such a part is no way out
-        if (tries == 0 && !(judged.turned > 0)) first_error = error;
+        // of one that turned too far, or through a gap, it says nothing, and such a part is no way
+        // out
+        if (tries == 0 && !(judged.turned > 0) && !(early > 0)) first_error = error;
         const bool good =
             judged.error <= judged.allowed && judged.closed == 0 && judged.turned == 0;
         jump = jump || (!good && tries == 0 && is_noise(engine, judged));
@@ -197,7 +198,8 @@ DUCTILE_INLINE double FrameControl::attempt(PartEngine& engine, double h, double
             h = jump ? first : shortest;
         } else {
             // nothing is known of what was before: a short part first
-            const bool start = tries == 0 && past_.empty() && judged.closed == 0;
+            const bool unknown = past_.empty() && !motion.rows.empty();
+            const bool start = tries == 0 && unknown && judged.closed == 0;
             const Shorter next = start ? Shorter{detail::start_share * h, false}
                                        : shorter(judged, motion, h, !stop_failed_);
             fresh_ = fresh_ || start;

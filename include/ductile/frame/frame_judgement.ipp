@@ -55,9 +55,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     double ahead = 0, of_flows = 0, largest = 0;
     double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
     judged.least = judged.of_one = motion.closed_work;
-    bool lets_go = false;  // a joint breaks: what its spring sets free is no misfit
-    double held = h;       // until the first joint broke
-    double held_share = 0; // of its strength, by a rigid row
+    bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
+    double held = h;      // until the first joint broke
+    double held_share = motion.closed_share; // of its strength, by a rigid row
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         if (!breaks(i, motion)) continue;
         const PartRow& row = motion.rows[i];

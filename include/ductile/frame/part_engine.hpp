@@ -87,6 +87,7 @@ struct PartMotion {
     /// Strength x travel that nobody misses, the least of what has no row as it is closed: sections
     /// of members; 0: there are none.
     double closed_work = 0;
+    double closed_share = 0;   ///< of their strength, that members may have borne at most [-]
     double rigid_work = 0;     ///< that rigid rows of plastic joints took, either sign [J]
     double others_work = 0;    ///< that rigid rows of the engine's joints took there, or gave where
                                ///< that is no drift that they pull back [J]

@@ -37,12 +37,16 @@ class Divisibles {
     [[nodiscard]] virtual const void* key_of(const Joint& /*joint*/, int& /*section*/) const {
         return nullptr;
     }
+    /// Whose body it is; null: no member's.
+    [[nodiscard]] virtual const void* owner_of(const void* /*body*/) const { return nullptr; }
     [[nodiscard]] virtual bool any_open() const { return false; }
     /// Of sections that are closed [J]; as PartMotion::closed_work.
     [[nodiscard]] virtual double closed_work() const { return 0; }
     /// Of those that are whole [J]; as PartMotion::idle_work.
     [[nodiscard]] virtual double idle_work() const { return 0; }
     [[nodiscard]] virtual double unmissed_work() const { return 0; }
+    /// As PartMotion::closed_share, in the step that was looked at.
+    [[nodiscard]] double closed_share() const noexcept { return share_; }
     /// Forces that were applied to members act in the coming solve, too; they do not any more.
     virtual void apply_forces() {}
     virtual void drop_forces() {}
@@ -58,6 +62,9 @@ class Divisibles {
     [[nodiscard]] virtual double count_vibration() const { return 0; }
     /// What opened and closed since the last call.
     virtual void tell(const Tell& /*tell*/) {}
+
+  protected:
+    double share_ = 0;
 };
 
 /// What there is. `None`: the adapter's Divisibles; `Course`: has `of`, the address of its

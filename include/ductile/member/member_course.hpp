@@ -98,14 +98,11 @@ class MemberCourse {
     /// Of closed sections: energy that they absorbed [J], plastic travel [rad].
     [[nodiscard]] double closed_work() const noexcept { return closed_work_; }
     [[nodiscard]] double closed_travel() const noexcept { return closed_travel_; }
-    /// Of closed sections, so that impulses that add up to less than a share of it load none
-    /// beyond [N m].
+    /// Of closed sections: impulses that add up to less than a share load none beyond [N m].
     [[nodiscard]] double least_strength() const noexcept { return least_strength_; }
-    /// The same times the travel that nobody misses [J].
+    /// Strength x travel that nobody misses, of its weakest section, open too; 0: none is closed.
     [[nodiscard]] double unmissed_work() const noexcept {
-        return least_strength_ == std::numeric_limits<double>::infinity()
-                   ? 0
-                   : least_strength_ * member_.section(0).parameters().least_travel;
+        return least_strength_ == std::numeric_limits<double>::infinity() ? 0 : unmissed_work_;
     }
     /// What blows leave in vibration of an elastic member, of what its sections did.
     [[nodiscard]] const MemberVibration& vibration() const noexcept { return vibration_; }
@@ -361,13 +358,16 @@ class MemberCourse {
         for (const MemberRun& run : runs(state_)) {
             pieces_.push_back(make_piece(member_, state_, run));
         }
-        least_strength_ = std::numeric_limits<double>::infinity();
+        least_strength_ = unmissed_work_ = std::numeric_limits<double>::infinity();
         closed_work_ = closed_travel_ = 0;
         for (int i = 0; i < member_.sections(); ++i) {
+            const UsualAxisJoint& as_new = member_.section(i);
+            const double strength = std::min(as_new.strength(1), as_new.strength(-1));
+            unmissed_work_ = std::min(unmissed_work_, strength * as_new.parameters().least_travel);
             if (section(i).open) continue;
             closed_work_ += section(i).joint.plastic_work;
             closed_travel_ += section(i).joint.plastic_travel;
-            UsualAxisJoint joint = member_.section(i);
+            UsualAxisJoint joint = as_new;
             joint.restore(section(i).joint);
             least_strength_ = std::min({least_strength_, joint.strength(1), joint.strength(-1)});
         }
@@ -379,7 +379,8 @@ class MemberCourse {
     std::vector<MemberPiece> pieces_, before_;
     std::vector<int> found_;
     InternalForces forces_;
-    double least_strength_ = 0, left_over_ = 0, closed_work_ = 0, closed_travel_ = 0;
+    double least_strength_ = 0, unmissed_work_ = 0, left_over_ = 0;
+    double closed_work_ = 0, closed_travel_ = 0;
     MemberVibration vibration_;
     RedundantForces redundant_;
     MemberRun locked_{0, no_section};                       ///< sections

@@ -25,6 +25,7 @@
 #include <cstddef>
 #include <functional>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "ductile/vocabulary/address_book.hpp"
@@ -142,6 +143,11 @@ class EnergyMeter {
     [[nodiscard]] double stored() const noexcept { return last_.elastic; }
     /// What contacts of bodies that count took in it, but for those that give way [J].
     [[nodiscard]] double step_of_contacts(const std::function<bool(const void*)>& counts) const;
+    /// Of bodies that are one's pieces, whose; null: nobody's. What gives way takes from one of
+    /// them and gives to another.
+    void set_owners(std::function<const void*(const void* body)> owner_of) {
+        owner_of_ = std::move(owner_of);
+    }
     /// What the bodies and elastic joints hold now. Potential energy is measured from the origin.
     [[nodiscard]] HeldEnergy<double> held() const;
 
@@ -227,6 +233,7 @@ class EnergyMeter {
     double sign_ = 1;     ///< -1: what is booked is taken back
     bool narrow_ = false; ///< the lists are of some of the bodies alone, and others were stepped
     PairAccounts pairs_;
+    std::function<const void*(const void* body)> owner_of_;
     HeldEnergy<double> outside_; ///< by bodies that are not listed
     Ledger<double> ledger_;
     double step_plastic_ = 0, step_others_ = 0; ///< [J]

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -337,8 +338,17 @@ DUCTILE_INLINE void EnergyMeter::book_contact(MeteredContact& contact) {
     add(Account::contact, taken);
     add(Account::friction, -dot(contact.tangential, twice) / 2);
     if (contact.driven) return;
-    book_pair({contact.a, contact.b}, is_plastic(contact.a) || is_plastic(contact.b),
-              contact.taken);
+    PairAccounts::Pair pair{contact.a, contact.b};
+    bool plastic = is_plastic(contact.a) || is_plastic(contact.b);
+    for (const void** body : {&pair.first, &pair.second}) {
+        const void* owner = contact.gives && owner_of_ ? owner_of_(*body) : nullptr;
+        if (owner == nullptr) continue;
+        *body = owner;
+        plastic = true;
+    }
+    // engines have the two in any order, and another one of another piece
+    if (std::less<const void*>()(pair.second, pair.first)) std::swap(pair.first, pair.second);
+    book_pair(pair, plastic, contact.taken);
 }
 
 DUCTILE_INLINE void EnergyMeter::book_pair(const PairAccounts::Pair& pair, bool plastic,

@@ -74,6 +74,9 @@ DUCTILE_INLINE ClosingContacts ClosingContactsFinder::find(btDiscreteDynamicsWor
         if (soft && !(points.nearest.away > closed_gap)) { // it is no blow, but swings
             note_found(*pair.a, *pair.b);
             open_.push_back({pair, stiffness, true, points.nearest.away, points.nearest.speed});
+            if (points.nearest.speed > 0) { // a part is not to carry it past what it presses
+                found.time = std::min(found.time, points.unseen / points.nearest.speed);
+            }
             continue;
         }
         if (pair.turns && !of_pair.strikes) look_ahead(world, pair, h, touching, apart, of_pair);

@@ -60,10 +60,10 @@ class Divisible : public ductile::Divisible<PlasticConstraint, Attachment> {
     virtual void sum_up(double dt) = 0;
     /// Something struck it, or may have, through what holds it.
     [[nodiscard]] virtual bool touched() const = 0;
-    /// Whether what acted on it could load a section beyond its strength. `before`: by place in the
-    /// world.
-    [[nodiscard]] virtual bool may_be_beyond(double dt, std::span<const BodyBefore> before,
-                                             const btVector3& gravity) const = 0;
+    /// Of the strength of a section that what acted on it could load it with, at most. `before`: by
+    /// place in the world.
+    [[nodiscard]] virtual double most_share(double dt, std::span<const BodyBefore> before,
+                                            const btVector3& gravity) const = 0;
     /// Sections to open after a tick, or a blow, by all that acted.
     virtual void find_beyond(double dt, std::span<const BodyBefore> before,
                              const btVector3& gravity, std::vector<int>& sections) = 0;

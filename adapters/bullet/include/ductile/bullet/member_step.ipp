@@ -54,8 +54,8 @@ DUCTILE_INLINE void Member::read(double dt, std::span<const BodyBefore> before,
 
 /// Whatever the arms of what acted on it: those of impulses and of the masses that they move, and
 /// of what moved it beside those. Where that says too little, along the member's axes.
-DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const BodyBefore> before,
-                                          const btVector3& gravity) const {
+DUCTILE_INLINE double Member::most_share(double dt, std::span<const BodyBefore> before,
+                                         const btVector3& gravity) const {
     constexpr double arms = 4; // of its length
     const MemberCourse& of = course_;
     const double length = of.member().length();
@@ -73,8 +73,10 @@ DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const BodyBefore>
                  double((body.getLinearVelocity() - was.velocity - fallen).length());
     }
     all += std::max(moved, sum_);
-    if (!solved || arms * all * length <= of.least_strength() * dt) return false;
-    return !is_plain() || largest_moment(dt, before, gravity) > of.least_strength() * dt;
+    const double strength = of.least_strength() * dt;
+    const double share = solved ? arms * all * length / strength : 0;
+    if (!(share > 1) || !is_plain()) return share;
+    return largest_moment(dt, before, gravity) / strength;
 }
 
 DUCTILE_INLINE bool Member::is_plain() const {

@@ -52,10 +52,10 @@ struct DivisibleTicks {
     std::vector<int> found{};
     std::vector<const btCollisionObject*> bodies{}; ///< as Members::owners_ has them
     int direct = 0;                                 ///< ticks for which it is still solved at once
-    double left = 0;                                ///< of contacts in this tick, by sweeps [N s]
-    bool asked = true;                              ///< for its report
-    bool watched = false;                           ///< in every tick
-    bool here = false;                              ///< in this one
+    double left = 0;      ///< of contacts in this tick, by sweeps [N s]; infinite: one gives way
+    bool asked = true;    ///< for its report
+    bool watched = false; ///< in every tick
+    bool here = false;    ///< in this one
 };
 
 class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
@@ -91,6 +91,10 @@ class Members final : public DivisibleList<Divisibles, DivisibleTicks> {
     [[nodiscard]] DUCTILE_INLINE double unmissed_work() const override;
     [[nodiscard]] bool is_member(const btCollisionObject& object) const override {
         return owners_.contains(&object);
+    }
+    [[nodiscard]] const void* owner_of(const void* body) const override {
+        const auto owner = owners_.find(static_cast<const btRigidBody*>(body));
+        return owner != owners_.end() ? members_[owner->second].of : nullptr;
     }
     [[nodiscard]] DUCTILE_INLINE std::vector<int> held_islands() const override;
     DUCTILE_INLINE void apply_forces() override;

@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "ductile/bullet/contact_load.hpp"
 #include "ductile/bullet/members.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/soft_contacts.hpp"
 
 namespace ductile::bullet {
 
@@ -212,6 +214,7 @@ DUCTILE_INLINE void Members::before_solve() {
 
 DUCTILE_INLINE double Members::noticed_impulse(const Course& course, double dt) {
     constexpr double noticed = 0.1; // of the strength, at an arm of its length
+    if (course.member == nullptr) return 0;
     const MemberCourse& of = course.member->course_;
     return noticed * of.least_strength() * dt / of.member().length();
 }
@@ -228,8 +231,10 @@ DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
                             (b.isActive() && !b.isStaticOrKinematicObject());
         if (!solved && blow) continue;
         double sum = 0;
+        bool gives = false;
         for (int k = 0; k < manifold.getNumContacts(); ++k) {
             const btManifoldPoint& point = manifold.getContactPoint(k);
+            gives = gives || gives_way(point);
             sum += std::abs(double(point.m_appliedImpulse)) +
                    std::abs(double(point.m_appliedImpulseLateral1)) +
                    std::abs(double(point.m_appliedImpulseLateral2));
@@ -245,7 +250,9 @@ DUCTILE_INLINE void Members::read_sums(double dt, bool blow) {
             }
             list(*course);
             course->of->touch({&manifold, side_a}, sum);
-            if (!blow && course->direct == 0 && course->member != nullptr) {
+            if (!blow && ahead_ && course->direct == 0 && gives) {
+                course->left = std::numeric_limits<double>::infinity(); // Bullet's own spring
+            } else if (!blow && course->direct == 0 && course->member != nullptr) {
                 course->left += detail::left_by_sweeps(manifold, dt, noticed_impulse(*course, dt),
                                                        2 * course->member->description().length());
             }
@@ -274,10 +281,13 @@ DUCTILE_INLINE bool Members::look(double dt) {
     read_sums(dt, false);
     const btVector3 gravity = world_.getGravity();
     bool any = false;
+    share_ = 0;
     for (Course* course : here_) {
         course->found.clear();
         const bool vain = course->left > 0 && course->left > noticed_impulse(*course, dt);
-        if (!vain && !course->of->may_be_beyond(dt, before_, gravity)) {
+        const double share = course->of->most_share(dt, before_, gravity);
+        share_ = std::max(share_, std::min(share, 1.0));
+        if (!vain && !(share > 1)) {
             if (course->direct > 0 && --course->direct == 0) {
                 note_bodies(std::size_t(course - members_.data()));
             }

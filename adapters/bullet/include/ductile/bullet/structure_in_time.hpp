@@ -145,8 +145,8 @@ class StructureInTime final : public SteppedStructure<StructureParts> {
     void touch(const ContactTouch& touch, double /*sum*/) override { touches_.push_back(touch); }
     void sum_up(double /*dt*/) override {}
     [[nodiscard]] bool touched() const override { return !touches_.empty() || is_held(); }
-    [[nodiscard]] DUCTILE_INLINE bool may_be_beyond(double dt, std::span<const BodyBefore> before,
-                                                    const btVector3& gravity) const override;
+    [[nodiscard]] DUCTILE_INLINE double most_share(double dt, std::span<const BodyBefore> before,
+                                                   const btVector3& gravity) const override;
     DUCTILE_INLINE void find_beyond(double dt, std::span<const BodyBefore> before,
                                     const btVector3& gravity, std::vector<int>& sections) override;
     DUCTILE_INLINE void find_struck(double dt, std::span<const BodyBefore> before,

@@ -225,10 +225,10 @@ DUCTILE_INLINE std::optional<Wrench> StructureInTime::given(const OpenJoint& ope
                 : Wrench{to_core(told.m_appliedForceBodyB), to_core(told.m_appliedTorqueBodyB)};
 }
 
-DUCTILE_INLINE bool StructureInTime::may_be_beyond(double /*dt*/,
-                                                   std::span<const BodyBefore> /*before*/,
-                                                   const btVector3& gravity) const {
-    return is_unproved(to_core(gravity));
+DUCTILE_INLINE double StructureInTime::most_share(double /*dt*/,
+                                                  std::span<const BodyBefore> /*before*/,
+                                                  const btVector3& gravity) const {
+    return is_unproved(to_core(gravity)) ? std::numeric_limits<double>::infinity() : 1;
 }
 DUCTILE_INLINE void StructureInTime::find_beyond(double dt, std::span<const BodyBefore> before,
                                                  const btVector3& gravity,

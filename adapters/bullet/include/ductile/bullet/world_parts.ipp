@@ -115,6 +115,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     time_ = 0;
     length_ = length;
     closing_.set_frame(length);
+    meter_.set_owners([this](const void* body) { return members_->owner_of(body); });
     looked_ = decided_ = local_ = closes_ = at_risk_ = false;
     for (int i = 0; i < world_.getNumConstraints(); ++i) {
         PlasticConstraint* plastic = as_plastic(*world_.getConstraint(i));
@@ -269,6 +270,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) try {
     motion_.others_work = metered ? std::abs(meter_.step_of_other_joints()) : 0;
     motion_.stored = metered ? meter_.stored() : 0;
     motion_.own = front_.own();
+    motion_.closed_share = members_->closed_share();
     motion_.contact_work = 0;
     if (metered && motion_.flows()) {
         motion_.contact_work = meter_.step_of_contacts([this](const void* body) {

@@ -121,7 +121,8 @@ class ClosingContactsFinder {
     }
     /// Among those looked at.
     [[nodiscard]] bool strikes(double touching) const;
-    /// When the first gap among those looked at closes with more energy than `apart` [J] [s].
+    /// When the first gap among those looked at closes with more energy than `apart` [J], or what
+    /// is closed and gives way is half through [s].
     [[nodiscard]] double next_gap(double apart) const;
     /// When the first gap closed, of those that close with more energy than `apart` [J], in a time
     /// that began `past` [s] ago; infinite: none did. `hurried` [s]: in which the bodies came to
@@ -149,6 +150,7 @@ class ClosingContactsFinder {
         bool is_new;   ///< the bodies had no contact when last remembered
         bool closes;   ///< else it leaves already, and closed since
         bool is_hard;
+        double thin; ///< of the thinner of the two geoms [m]
 
         [[nodiscard]] bool strikes(double touching) const {
             return closes && is_hard && gap < depth / 2 && energy > touching;

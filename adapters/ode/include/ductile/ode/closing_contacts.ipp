@@ -41,6 +41,8 @@ namespace detail {
 
 /// Smallest extent of a geom; infinite for what has no other side [m].
 [[nodiscard]] DUCTILE_INLINE double thickness(dGeomID geom) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (geom == nullptr) return infinity; // contacts may be made without
     dReal radius = 0, length = 0;
     switch (dGeomGetClass(geom)) {
         case dSphereClass:
@@ -58,13 +60,11 @@ namespace detail {
             return std::min(2 * double(radius), double(length));
         case dPlaneClass:
         case dHeightfieldClass:
-            return std::numeric_limits<double>::infinity();
+            return infinity;
         default: {
-            constexpr double infinity = std::numeric_limits<double>::infinity();
             // of ground, and of a face alone, there is no telling from the other side
-            const bool ground =
-                dGeomGetClass(geom) == dTriMeshClass && dGeomGetBody(geom) == nullptr;
-            if (ground) return infinity;
+            const bool mesh = dGeomGetClass(geom) == dTriMeshClass;
+            if (mesh && dGeomGetBody(geom) == nullptr) return infinity;
             std::array<dReal, 6> bounds{};
             dGeomGetAABB(geom, bounds.data());
             const auto least = double(
@@ -235,8 +235,11 @@ DUCTILE_INLINE void ClosingContactsFinder::look(std::span<const NamedContact> co
         const double struck_at = closes ? it.speed : it.comes; // past an edge
         const std::optional<SoftContact> soft = it.softness(named, frame);
         const double depth = soft ? soft->beginning(it.speed) : it.depth();
+        const auto [one, other] = touching_.back().second;
+        const double thin = std::min(detail::thickness(one), detail::thickness(other));
         touches_.push_back({depth - double(named.contact.geom.depth), depth, it.speed, before,
-                            struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft});
+                            struck_at * struck_at / (2 * it.yields()), is_new, closes, !soft,
+                            thin});
     }
     std::sort(pairs_.begin(), pairs_.end());
     std::sort(touching_.begin(), touching_.end());
@@ -256,7 +259,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
                 const double speed = std::abs(axis.rate), depth = detail::closing_depth(speed);
                 if (!(speed > 0 && axis.yields > 0) || !std::isfinite(axis.gap())) continue;
                 touches_.push_back({axis.gap() + depth, depth, speed, speed,
-                                    speed * speed / (2 * axis.yields), false, true, true});
+                                    speed * speed / (2 * axis.yields), false, true, true, 0});
             }
         }
     }
@@ -331,8 +334,10 @@ DUCTILE_INLINE bool ClosingContactsFinder::strikes(double touching) const {
 DUCTILE_INLINE double ClosingContactsFinder::next_gap(double apart) const {
     double next = std::numeric_limits<double>::infinity();
     for (const Touch& touch : touches_) {
-        if (!touch.closes || touch.gap < touch.depth / 2 || !(touch.energy > apart)) continue;
-        next = std::min(next, touch.gap / touch.speed);
+        const bool closed = touch.gap < touch.depth / 2;
+        if (!touch.closes || !(touch.energy > apart) || (closed && touch.is_hard)) continue;
+        // no part is to carry what gives way past what it presses
+        next = std::min(next, (closed ? touch.thin / 2 : touch.gap) / touch.speed);
     }
     return next;
 }

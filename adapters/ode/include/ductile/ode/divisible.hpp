@@ -65,6 +65,9 @@ class Divisible : public ductile::Divisible<PlasticConstraint, UserJoint> {
     /// Sections to open after a step of `dt` [s] on which these contacts acted, or a blow.
     virtual void find_beyond(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;
     virtual void find_struck(double dt, std::span<Touch> touches, std::vector<int>& sections) = 0;
+    /// Of the strength of a section that what acted in the step looked at could load it with, at
+    /// most.
+    [[nodiscard]] virtual double most_share() const { return 1; }
     /// Has a segment, or body of a plan, now.
     [[nodiscard]] virtual dBodyID body_of(int segment) const = 0;
 };

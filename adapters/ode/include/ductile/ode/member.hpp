@@ -159,7 +159,8 @@ class Member final : public SteppedMember<MemberParts> {
     // ---- a step
 
     [[nodiscard]] double sum_of_impulses(double dt, std::span<const Touch> touches) const;
-    [[nodiscard]] bool may_be_beyond(double dt, std::span<const Touch> touches) const;
+    [[nodiscard]] double share_by(double dt, std::span<const Touch> touches) const;
+    [[nodiscard]] double most_share() const override { return share_; }
     void read(double dt, std::span<Touch> touches);
     void read_steps(double dt);
     void add_load(const Wrench& wrench, int segment, double dt);
@@ -170,6 +171,7 @@ class Member final : public SteppedMember<MemberParts> {
     JointFrame<double> first_in_body_, whole_in_body_;
     std::unique_ptr<MemberGeoms> geoms_;
     World* world_ = nullptr;
+    double share_ = 0;                                   ///< as most_share
     bool is_missing_ = false;                            ///< the World does not have its body
     std::vector<std::pair<dJointID, MemberPlace>> told_; ///< which places joints hold
     std::vector<PieceCourse> before_;                    ///< by piece

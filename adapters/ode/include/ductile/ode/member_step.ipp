@@ -55,7 +55,7 @@ DUCTILE_INLINE double Member::sum_of_impulses(double dt, std::span<const Touch> 
 }
 
 /// Whatever the arms of what acted on it: those of impulses and of the masses that they move.
-DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touches) const {
+DUCTILE_INLINE double Member::share_by(double dt, std::span<const Touch> touches) const {
     constexpr double arms = 4; // of its length
     const double length = description().length();
     bool solved = description().clamped();
@@ -73,9 +73,9 @@ DUCTILE_INLINE bool Member::may_be_beyond(double dt, std::span<const Touch> touc
             difference(linear_velocity(pieces_[i].body), before_[i].motion.velocity);
         moved += course_.pieces()[i].mass * norm(difference(change, fallen));
     }
-    if (!solved) return false;
+    if (!solved) return 0;
     all += std::max(moved, sum_of_impulses(dt, touches));
-    return arms * all * length > course_.least_strength() * dt;
+    return arms * all * length / (course_.least_strength() * dt);
 }
 
 DUCTILE_INLINE void Member::add_load(const Wrench& wrench, int segment, double dt) {
@@ -162,7 +162,8 @@ DUCTILE_INLINE void Member::find_beyond(double dt, std::span<Touch> touches,
     } else {
         pressed_.forget();
     }
-    if (!may_be_beyond(dt, touches)) return;
+    share_ = share_by(dt, touches);
+    if (!(share_ > 1)) return;
     read(dt, touches);
     sections = course_.beyond(steps_, loads_, dt);
 }

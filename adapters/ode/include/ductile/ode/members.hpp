@@ -50,6 +50,10 @@ class Members final : public DivisibleList<Divisibles, DivisibleSteps> {
     [[nodiscard]] std::span<const dBodyID> bodies() const noexcept override { return bodies_; }
     [[nodiscard]] DUCTILE_INLINE const void* key_of(const PlasticConstraint& joint,
                                                     int& section) const override;
+    [[nodiscard]] const void* owner_of(const void* body) const override {
+        const std::size_t* owner = owners_.find(body);
+        return owner != nullptr ? members_[*owner].of : nullptr;
+    }
     DUCTILE_INLINE void body_left(dBodyID body) override;
     DUCTILE_INLINE void body_came(dBodyID body) override;
     [[nodiscard]] DUCTILE_INLINE bool hang_together(dBodyID a, dBodyID b) const override;

@@ -237,12 +237,14 @@ DUCTILE_INLINE void Members::begin_blow(double noticed) const {
 }
 DUCTILE_INLINE bool Members::look(double dt, bool blow) {
     bool any = false;
+    share_ = 0;
     for (Course& course : members_) {
         course.found.clear();
         if (blow) {
             course.of->find_struck(dt, course.touches, course.found);
         } else {
             course.of->find_beyond(dt, course.touches, course.found);
+            share_ = std::max(share_, std::min(course.of->most_share(), 1.0));
         }
         any = any || !course.found.empty();
     }

@@ -47,6 +47,7 @@ DUCTILE_INLINE void WorldParts::begin(double length) {
     leave(); // a frame that was not ended
     length_ = length;
     time_ = 0;
+    of_.meter.set_owners([this](const void* body) { return of_.members->owner_of(body); });
     begin_driven();
     moved();
     may_be_local_ = true;
@@ -283,6 +284,7 @@ DUCTILE_INLINE const PartMotion& WorldParts::part(double h) try {
     motion_.rigid_work = metered_ ? of_.meter.step_of_plastic_joints() : 0;
     motion_.others_work = metered_ ? of_.meter.step_of_other_joints() : 0;
     motion_.stored = metered_ ? of_.meter.stored() : 0;
+    motion_.closed_share = of_.members->closed_share();
     motion_.contact_lost = false;
     motion_.turned = 0;
     const bool stood = still_ && !motion_.flows() && is_still(h, apart_);
