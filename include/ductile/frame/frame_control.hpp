@@ -116,6 +116,7 @@ class FrameControl {
         bool moves = false;  ///< something was to be judged
         bool fitted = false; ///< rigid rows made velocities fit, without an error
     };
+    struct Tally;
     /// What is known of a row from the part before.
     struct Past {
         PartRow row;

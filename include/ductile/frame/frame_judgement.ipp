@@ -34,6 +34,44 @@ DUCTILE_INLINE bool FrameControl::is_noise(const PartEngine& engine,
     return tolerated_share() * engine.rounding(length_) > judged.tolerated;
 }
 
+/// Of all rows, or of those of one island [J].
+struct FrameControl::Tally {
+    double work = 0;       ///< plastic, so far
+    double ahead = 0;      ///< that those that move will still take
+    double of_flows = 0;   ///< of it: by what flows
+    double least = 0;      ///< strength x travel that nobody misses
+    double unmissed = 0;   ///< of it: of what is rigid
+    double of_springs = 0; ///< the same of the first spring that yields
+    double nearest = 0;    ///< share of its strength that a spring comes to [-]
+    double freed = 0;      ///< that springs held which broke
+    double error = 0;      ///< of an island, as Judgement has it
+    double unfit = 0;      ///< the same
+    bool moves = false;
+
+    void add(const PartRow& row) noexcept {
+        const double of_row = row.strength * row.least;
+        least += of_row;
+        if (row.elastic) {
+            of_springs = std::max(of_springs, of_row);
+        } else {
+            unmissed += of_row;
+        }
+    }
+    void add_moving(const PartRow& row, double h) noexcept {
+        const double coming = work_ahead(row, h);
+        moves = true;
+        ahead += coming;
+        if (!row.elastic || row.flows()) of_flows += coming;
+        if (row.elastic) nearest = std::max(nearest, row.share);
+    }
+    /// Springs near their strength may come to flow, by no more than they hold, `stored` [J].
+    [[nodiscard]] double near_flow(double scale, double stored) const noexcept {
+        if (!(nearest > detail::near_strength)) return scale;
+        return std::min(scale, of_flows + detail::of_stored * stored +
+                                   detail::unmissed * (unmissed + of_springs));
+    }
+};
+
 /// In the part before, at or near its strength.
 DUCTILE_INLINE bool FrameControl::flowed(std::size_t row, const PartMotion& motion) const noexcept {
     constexpr double near = 0.5;
@@ -51,10 +89,11 @@ DUCTILE_INLINE bool FrameControl::breaks(std::size_t row, const PartMotion& moti
 DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& motion, double h,
                                                            double shortest) const {
     Judgement judged;
-    const double work = motion.plastic_work - motion.idle_work;
-    double ahead = 0, of_flows = 0, largest = 0;
-    double unmissed = motion.closed_work, of_springs = 0, nearest = 0, freed = 0;
-    judged.least = judged.of_one = motion.closed_work;
+    Tally all{.work = motion.plastic_work - motion.idle_work,
+              .least = motion.closed_work,
+              .unmissed = motion.closed_work};
+    double largest = 0;
+    judged.of_one = motion.closed_work;
     bool lets_go = false; // a joint breaks: what its spring sets free is no misfit
     double held = h;      // until the first joint broke
     double held_share = motion.closed_share; // of its strength, by a rigid row
@@ -65,7 +104,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         const BrokeAlone broke = row.alone ? broke_alone(row, known, flowed(i, motion))
                                            : broke_with_others(row, h, known);
         judged.astray += broke.astray;
-        freed += row.freed;
+        all.freed += row.freed;
         held = std::min(held, broke.stop);
         if (broke.astray > largest) {
             largest = broke.astray;
@@ -74,14 +113,8 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     }
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
-        const double least = row.strength * row.least;
-        judged.least += least;
-        judged.of_one = std::max(judged.of_one, least);
-        if (row.elastic) { // the first one that yields
-            of_springs = std::max(of_springs, least);
-        } else {
-            unmissed += least;
-        }
+        all.add(row);
+        judged.of_one = std::max(judged.of_one, row.strength * row.least);
         judged.turned =
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
@@ -98,18 +131,14 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             judged.stop = held;
         }
         const Misplaced off = misplaced(row, h, before(i, motion));
-        const double error = misplaced_energy(row, off, work);
+        const double error = misplaced_energy(row, off, all.work);
         judged.error += error;
         judged.ended = judged.ended || off.ended;
         if (off.stop > 0 && error > largest) {
             largest = error;
             judged.stop = off.stop;
         }
-        judged.moves = true;
-        const double coming = work_ahead(row, h);
-        ahead += coming;
-        if (!row.elastic || row.flows()) of_flows += coming;
-        if (row.elastic) nearest = std::max(nearest, row.share);
+        all.add_moving(row, h);
         judged.of_rows = judged.error;
         judged.power += row.strength * std::abs(row.start + row.end) / 2;
         judged.most += row.strength * row.speed() * h;
@@ -120,8 +149,9 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     judged.error += judged.given + judged.astray;
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
     judged.struck = std::max(judged.struck, motion.rigid_work);
+    judged.least = all.least;
     const bool rested = judged.struck + std::min(taken_, 0.0) > judged.least;
-    judged.moves = judged.moves || (rested && unmissed > 0 && !lets_go);
+    judged.moves = all.moves || (rested && all.unmissed > 0 && !lets_go);
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
         judged.fitted = h <= shortest && judged.struck > 0 && !fitted_;
@@ -135,7 +165,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         if (motion.contact_lost) judged.error += judged.power * h / 2;
     }
     const double share = tolerated_share();
-    double scale = ahead + detail::unmissed * judged.least;
+    double scale = all.ahead + detail::unmissed * all.least;
     const bool near = held_share * motion.own.peak > detail::near_peak;
     if (near) {
         judged.error += motion.own.swings;
@@ -146,11 +176,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
         judged.error += motion.own.stops;
         if (motion.own.stops > largest) judged.stop = motion.own.stop;
     }
-    if (nearest > detail::near_strength) { // springs may come to flow, by no more than they hold
-        scale = std::min(scale, of_flows + detail::of_stored * motion.stored +
-                                    detail::unmissed * (unmissed + of_springs));
-    }
-    judged.tolerated = share * (work + scale + freed);
+    judged.tolerated = share * (all.work + all.near_flow(scale, motion.stored) + all.freed);
     judge_islands(motion, h, judged);
     judged.allowed = judged.tolerated;
     // a push that came too early took this share of the speed
@@ -166,11 +192,6 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
 /// the engine's joints took is judged for all of them together.
 DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double h,
                                                 Judgement& judged) const {
-    struct Island {
-        double work = 0, ahead = 0, of_flows = 0, least = 0, unmissed = 0, of_springs = 0;
-        double nearest = 0, error = 0, unfit = 0, freed = 0;
-        bool moves = false;
-    };
     const int first = motion.rows.empty() ? -1 : motion.rows.front().island;
     int last = first;
     bool one = true, members = motion.closed_work > 0; // which have no number
@@ -180,7 +201,7 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         members = members || row.island < 0;
     }
     if (one) return;
-    std::vector<Island> islands(std::size_t(last + 1));
+    std::vector<Tally> islands(std::size_t(last + 1));
     for (const PartRow& row : motion.rows) {
         if (row.island < 0) continue;
         islands[std::size_t(row.island)].work += row.work;
@@ -188,11 +209,8 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
     for (std::size_t i = 0; i < motion.rows.size(); ++i) {
         const PartRow& row = motion.rows[i];
         if (row.island < 0) continue;
-        Island& island = islands[std::size_t(row.island)];
-        const double least = row.strength * row.least;
-        island.least += least;
-        double& of_kind = row.elastic ? island.of_springs : island.unmissed;
-        of_kind = row.elastic ? std::max(of_kind, least) : of_kind + least;
+        Tally& island = islands[std::size_t(row.island)];
+        island.add(row);
         island.error += row.misfit + row.given;
         island.unfit += row.unfit;
         if (breaks(i, motion)) {
@@ -200,23 +218,16 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
             island.freed += row.freed;
         }
         if (!row.moves()) continue;
-        island.moves = true;
+        island.add_moving(row, h);
         const Misplaced off = misplaced(row, h, before(i, motion));
         island.error += misplaced_energy(row, off, island.work);
-        const double coming = work_ahead(row, h);
-        island.ahead += coming;
-        if (!row.elastic || row.flows()) island.of_flows += coming;
-        if (row.elastic) island.nearest = std::max(island.nearest, row.share);
     }
     double worst = 0, unfit = 0, share = judged.tolerated;
     double untouched = 0; // of all that never flowed
-    for (const Island& island : islands) {
+    for (const Tally& island : islands) {
         if (!(island.least > 0)) continue; // it has none, or none that holds
-        double scale = island.ahead + detail::unmissed * island.least;
-        if (island.nearest > detail::near_strength) {
-            scale = std::min(scale, island.of_flows + detail::of_stored * motion.stored +
-                                        detail::unmissed * (island.unmissed + island.of_springs));
-        }
+        const double scale =
+            island.near_flow(island.ahead + detail::unmissed * island.least, motion.stored);
         const double tolerated = tolerated_share() * (island.work + scale + island.freed);
         if (island.moves || island.work > 0) {
             share = std::min(share, tolerated);
