@@ -68,12 +68,10 @@ TEST_CASE("what gives way yields a post as it does a slider", "[member]") {
                   UsualAxisJoint(Perfect<double>({.strength = stronger}))};
     const Member of(p);
     constexpr double about_foot = 2 * 1 + 12 * (0.5 * 0.5 + 1.5 * 1.5);
-    for (SoftHead as : {SoftHead{.mass = 20, .speed = 6, .stiffness = 4e5, .damping = 200},
-                        SoftHead{.mass = 100, .speed = 3, .stiffness = 6e5, .damping = 0.1},
-                        SoftHead{.mass = 10, .speed = 8, .stiffness = 8e6, .damping = 0.1},
-                        SoftHead{.mass = 5, .speed = 30, .stiffness = 4e6, .damping = 500}}) {
-        as.head = about_foot / (place * place);
-        as.strength = strength / place;
+    constexpr double head = about_foot / (place * place), yields = strength / place;
+    for (const SoftHead& as :
+         {SoftHead{20, head, 6, 4e5, 200, yields}, SoftHead{100, head, 3, 6e5, 0.1, yields},
+          SoftHead{10, head, 8, 8e6, 0.1, yields}, SoftHead{5, head, 30, 4e6, 500, yields}}) {
         const double absorbed = as.absorbed(0.5);
         CHECK(absorbed > 20);
         for (const double frame : {1.0 / 30, 1.0 / 60, 1.0 / 240, 1.0 / 1000}) {

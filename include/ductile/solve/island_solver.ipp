@@ -156,7 +156,10 @@ DUCTILE_INLINE void GeneralSolver::fall_back(IslandReport& report, bool touch) {
     if (InteriorPoint::serves(system_.island())) {
         interior_point_.solve(system_);
         ++report.safe_ways;
-        if (keep() <= solved_well || polished(report) || keep() <= solved_well) return;
+        const bool well = keep() <= solved_well;
+        // what rigid rows give the active set alone takes out
+        if (well && report.gives <= solved_residual * report.scale) return;
+        if (polished(report) || keep() <= solved_well) return;
     }
     for (int pass = 0; pass < most; ++pass) {
         proximal_newton_.solve(system_, pass == 0 ? cold : warm, pass > 0);
