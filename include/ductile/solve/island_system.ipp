@@ -53,8 +53,12 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
                              island.blocks[std::size_t(block_of_[i])].kind == BlockKind::contact;
         row.rigid = !contact && !(given.softness > 0) && given.compliance <= softness;
         row.metric = row.own + row.compliance;
+        // what can only push asks for nothing while it opens: a gap over a short step is no speed
+        const bool opens =
+            given.target < 0 &&
+            (contact ? island.blocks[std::size_t(block_of_[i])].first == int(i) : given.lower == 0);
         const double size =
-            std::abs(given.target) + 0 * row.metric; // NaN and infinity come through
+            (opens ? 0 : std::abs(given.target)) + 0 * row.metric; // NaN and infinity come through
         if (row.own == 0) continue;
         if (!(size <= scale_) && !std::isnan(scale_)) scale_ = size;
         fastest_ = std::max(fastest_, size * row.own / row.metric);
