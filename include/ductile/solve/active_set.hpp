@@ -40,7 +40,7 @@ namespace detail {
 inline constexpr double exactness = 1e-12;  ///< of the largest velocity: a row is solved
 inline constexpr double sufficient = 1e-7;  ///< the same where round-off allows no more
 inline constexpr double acceptance = 1e-11; ///< of the largest velocity: a row is on the right side
-inline constexpr double settled = 1e-7;     ///< of the fastest row: a slip has settled
+inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip has settled
 
 /// What rows give adds up along a chain, as round-off does not [-].
 [[nodiscard]] inline double adds_up(const Island& island) noexcept {
@@ -74,7 +74,7 @@ class ActiveSet {
             // before a guess takes the place of what was solved
             const double moved = slips_.read(system);
             const int wrong = change_over() + (solved ? 0 : 1);
-            if (wrong == 0 && moved <= detail::settled * system.fastest()) return true;
+            if (wrong == 0 && moved <= detail::settled * system.scale()) return true;
             same = wrong == 0;
             if (wrong == 0) { // contacts alone have to settle
                 slips_.follow_ahead(system);
@@ -266,18 +266,19 @@ class ActiveSet {
         if (work.own == 0 || !(row.lower < row.upper)) return {row.side, 0};
         const double least = accepted();
         if (row.side != Side::free) {
-            const double off = row.side == Side::lower ? work.residual : -work.residual;
+            const double off =
+                work.share * (row.side == Side::lower ? work.residual : -work.residual);
             return {off > least ? Side::free : row.side, off};
         }
         double cap = 0;
         if (std::isfinite(row.lower)) cap = std::abs(row.lower);
         if (std::isfinite(row.upper)) cap = std::max(cap, std::abs(row.upper));
-        const double slack = 1e-10 * cap + least / work.metric;
+        const double slack = 1e-10 * cap + least / work.own;
         if (row.impulse < row.lower - slack) {
-            return {Side::lower, (row.lower - row.impulse) * work.metric};
+            return {Side::lower, (row.lower - row.impulse) * work.own};
         }
         if (row.impulse > row.upper + slack) {
-            return {Side::upper, (row.impulse - row.upper) * work.metric};
+            return {Side::upper, (row.impulse - row.upper) * work.own};
         }
         return {Side::free, 0};
     }

@@ -24,7 +24,7 @@ namespace ductile::solve {
         const IslandRow& row = island.rows[i];
         const double aim = row.impulse + work.residual / work.metric;
         const double to = aim < row.lower ? row.lower : aim > row.upper ? row.upper : aim;
-        see(std::abs(to - row.impulse) * work.metric);
+        see(std::abs(to - row.impulse) * work.own);
     }
     for (std::size_t k = 0; k < island.blocks.size(); ++k) {
         const BlockView view = view_of(system, k);

@@ -86,7 +86,7 @@ struct ContactForm {
             v.work[i].extra = -gap * normal / (normal + c) * unit * v.size(i);
         }
         // rows of no weight of their own are looked at here
-        return std::max(std::abs(gap) * v.work[0].metric, std::abs(v.work[0].right));
+        return std::max(std::abs(gap) * v.work[0].own, std::abs(v.work[0].right) * v.work[0].share);
     }
 
     static bool take(const BlockView& v) noexcept {
@@ -110,7 +110,7 @@ struct ContactForm {
 
     static bool change_over(const BlockView& v, double least) noexcept {
         Aim aim = aim_of(v);
-        const double slack = 1e-10 * std::abs(aim.normal) + least / v.work[0].metric;
+        const double slack = 1e-10 * std::abs(aim.normal) + least / v.work[0].own;
         const BlockState was = v.block.state;
         BlockState to = aim.closest();
         // what is at the edge stays where it is
@@ -152,14 +152,14 @@ struct ContactForm {
     static double off(const BlockView& v) noexcept {
         const double real = v.work[0].residual + v.work[0].shift, d = v.work[0].metric;
         const double normal = v.row[0].impulse;
-        double worst = std::abs(std::max(0.0, normal + real / d) - normal) * d;
+        double worst = std::abs(std::max(0.0, normal + real / d) - normal) * v.work[0].own;
         if (std::isnan(real)) return real;
         const Aim aim = aim_of(v);
         const double shrink = aim.length > normal ? normal / aim.length : 1;
         for (int i = 1; i < v.count(); ++i) {
             if (!v.live(i)) continue;
             const double to = aim.y[i] * shrink * v.size(i);
-            const double o = std::abs(to - v.row[i].impulse) * v.work[i].metric;
+            const double o = std::abs(to - v.row[i].impulse) * v.work[i].share * v.work[i].metric;
             if (!(o <= worst)) worst = o;
         }
         return worst;

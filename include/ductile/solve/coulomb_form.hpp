@@ -55,7 +55,7 @@ struct CoulombForm : ContactForm {
             v.work[i].right -= v.block.multiplier * unit / v.size(i);
             v.work[i].extra = -gap * v.tangent.terms[0].direction[i];
         }
-        return std::abs(gap) * v.work[0].metric;
+        return std::abs(gap) * v.work[0].own;
     }
 
     /// False where it left the range; against its slip it holds, to begin from where it would go.
@@ -77,7 +77,7 @@ struct CoulombForm : ContactForm {
 
     static bool change_over(const BlockView& v, double least) noexcept {
         const Aim aim = aim_of(v);
-        const double slack = 1e-10 * std::abs(aim.normal) + least / v.work[0].metric;
+        const double slack = 1e-10 * std::abs(aim.normal) + least / v.work[0].own;
         const BlockState was = v.block.state;
         const bool open = was == BlockState::apex ? aim.normal <= slack : aim.normal < -slack;
         const bool holds = aim.length <= aim.normal + (was == BlockState::inside ? slack : 0);

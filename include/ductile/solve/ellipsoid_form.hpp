@@ -64,7 +64,7 @@ struct EllipsoidForm {
                 continue;
             }
             v.work[i].right -= v.block.multiplier * v.row[i].impulse / (v.size(i) * v.size(i));
-            across = std::max(across, v.size(i) * v.work[i].metric);
+            across = std::max(across, v.size(i) * v.work[i].own);
         }
         return std::max(std::abs(gap) - round_off, 0.0) * across;
     }
@@ -91,7 +91,7 @@ struct EllipsoidForm {
         for (int i = 0; i < v.count(); ++i) {
             if (aim[i] == 0 || !v.live(i)) continue;
             square += (aim[i] / v.size(i)) * (aim[i] / v.size(i));
-            slack = std::max(slack, least / (metric[i] * v.size(i)));
+            slack = std::max(slack, least / (v.work[i].own * v.size(i)));
         }
         const double gauge = std::sqrt(square);
         if (v.on_surface()) {
@@ -131,7 +131,7 @@ struct EllipsoidForm {
         double worst = 0;
         for (int i = 0; i < v.count(); ++i) {
             if (v.work[i].own == 0) continue;
-            const double o = std::abs(to.point[i] - v.row[i].impulse) * metric[i];
+            const double o = std::abs(to.point[i] - v.row[i].impulse) * v.work[i].own;
             if (!(o <= worst)) worst = o;
         }
         return worst;

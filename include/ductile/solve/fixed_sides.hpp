@@ -42,7 +42,7 @@ inline void set_tangents(IslandSystem& system) {
         see(with_form(view, [&view](auto form) { return form.set_right(view); }));
     }
     for (const IslandSystem::Row& work : system.rows()) {
-        if (work.weight != 0) see(std::abs(work.right));
+        if (work.weight != 0) see(std::abs(work.right) * work.share);
     }
     return worst;
 }

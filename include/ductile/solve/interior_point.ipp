@@ -66,7 +66,7 @@ DUCTILE_INLINE void InteriorPoint::begin() {
         }
         const bool low = std::isfinite(row.lower), high = std::isfinite(row.upper);
         const double room = edge * (low && high ? row.upper - row.lower
-                                                : system_->scale() / system_->rows()[i].metric);
+                                                : system_->scale() / system_->rows()[i].own);
         if (low) row.impulse = std::max(row.impulse, row.lower + room);
         if (high) row.impulse = std::min(row.impulse, row.upper - room);
         rows_[i].lower.there = low;
@@ -157,7 +157,7 @@ DUCTILE_INLINE double InteriorPoint::flow(std::size_t k) const noexcept {
     for (int i = 0; i < v.count(); ++i) {
         if (!v.live(i)) continue;
         const double normal = std::abs(v.row[i].impulse) / (v.size(i) * v.size(i));
-        flow = std::max(flow, blocks_[k].multiplier * normal);
+        flow = std::max(flow, v.work[i].share * blocks_[k].multiplier * normal);
     }
     return flow;
 }

@@ -10,7 +10,7 @@ struct IslandReport {
     bool solved = true;
     double residual = 0; ///< worst violation of a row by what was answered [m/s | rad/s]
     double gives = 0;    ///< by what a chain of rigid rows still gives, all of them [m/s | rad/s]
-    double scale = 0;    ///< largest velocity that a row asked for [m/s | rad/s]
+    double scale = 0;    ///< largest velocity that a row gives by itself [m/s | rad/s]
     int rounds = 0;      ///< of the active set
     int factorisations = 0;
     int safe_ways = 0; ///< how often the active set did not settle, and a safe way was asked

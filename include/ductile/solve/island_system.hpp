@@ -43,6 +43,7 @@ class IslandSystem {
         bool rigid = false;    ///< C is least_softness, for the factors' sake
         double kept = 0;       ///< x' of a rigid row: impulse at which it gives nothing
         double metric = 0;     ///< own + C
+        double share = 0;      ///< own/metric: of the velocity that it lacks, what bodies follow by
         double shift = 0;      ///< taken from b: the slip of a contact, see contact_form.hpp
         double residual = 0;   ///< b - shift - J v - C (x - x')
         double weight = 0;     ///< W
@@ -74,11 +75,9 @@ class IslandSystem {
     [[nodiscard]] std::vector<Block>& blocks() noexcept { return blocks_; }
     /// True of rows that belong to no block.
     [[nodiscard]] bool alone(std::size_t row) const noexcept { return block_of_[row] < 0; }
-    /// Largest velocity that a row asks for [m/s | rad/s]; NaN where the input is not finite.
+    /// Largest velocity that a row gives its bodies by itself: a spring asks for q/h, and gives
+    /// next to nothing of that in a short step [m/s | rad/s]; NaN where the input is not finite.
     [[nodiscard]] double scale() const noexcept { return scale_; }
-    /// The largest velocity that a row gives its bodies by itself: a spring asks for q/h, and gives
-    /// next to nothing of that in a short step [m/s | rad/s].
-    [[nodiscard]] double fastest() const noexcept { return fastest_; }
     /// So many times the round-off of the last residuals, which is what the largest impulse makes
     /// of its bodies in the digits of a double; at most a thousandth of the scale [m/s | rad/s].
     [[nodiscard]] double round_off(double times) const noexcept {
@@ -135,7 +134,7 @@ class IslandSystem {
     numeric::BlockLdlt factors_;
     std::vector<Matrix6<double>> masses_; ///< M
     std::vector<Vector6<double>> change_; ///< dv
-    double scale_ = 0, fastest_ = 0, noise_ = 0;
+    double scale_ = 0, noise_ = 0;
     int factorisations_ = 0;
     bool current_ = false; ///< the factors are those of the rows' weights alone
 };

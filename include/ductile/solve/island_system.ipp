@@ -39,7 +39,7 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         const IslandBlock& block = island.blocks[k];
         for (int i = 0; i < block.count; ++i) block_of_[std::size_t(block.first + i)] = int(k);
     }
-    scale_ = fastest_ = 0;
+    scale_ = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         IslandRow& given = island.rows[i];
         Row& row = rows_[i];
@@ -53,15 +53,15 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
                              island.blocks[std::size_t(block_of_[i])].kind == BlockKind::contact;
         row.rigid = !contact && !(given.softness > 0) && given.compliance <= softness;
         row.metric = row.own + row.compliance;
+        row.share = row.own > 0 ? row.own / row.metric : 0;
         // what can only push asks for nothing while it opens: a gap over a short step is no speed
         const bool opens =
             given.target < 0 &&
             (contact ? island.blocks[std::size_t(block_of_[i])].first == int(i) : given.lower == 0);
-        const double size =
-            (opens ? 0 : std::abs(given.target)) + 0 * row.metric; // NaN and infinity come through
+        const double size = (opens ? 0 : std::abs(given.target) * row.share) +
+                            0 * row.metric; // NaN and infinity come through
         if (row.own == 0) continue;
         if (!(size <= scale_) && !std::isnan(scale_)) scale_ = size;
-        fastest_ = std::max(fastest_, size * row.own / row.metric);
     }
     for (const IslandBlock& block : island.blocks) {
         if (block.kind == BlockKind::contact) make_isotropic(block);
@@ -114,6 +114,7 @@ DUCTILE_INLINE void IslandSystem::make_isotropic(const IslandBlock& block) noexc
         const double f = block.size[std::size_t(i)];
         row.compliance = compliance / (f * f);
         row.metric = (own + compliance) / (f * f);
+        row.share = own > 0 ? own / (own + compliance) : 0;
     }
 }
 

@@ -45,12 +45,12 @@ class LaggedFriction {
     /// closest so far, half of the way each, for a while.
     [[nodiscard]] bool solve(IslandSystem& system) {
         constexpr int most = 160;                       // rounds
-        constexpr double settled = 1e-9, nearly = 1e-8; // of the largest velocity that a row gives
+        constexpr double settled = 1e-9, nearly = 1e-8; // of the largest velocity
         constexpr int patience = 10;                    // rounds without coming closer by half
         constexpr int most_wandered = 2, slow = 20;
         begin(system);
-        const double enough = std::max(system.round_off(40), settled * system.fastest()),
-                     fair = std::max(enough, nearly * system.fastest());
+        const double enough = std::max(system.round_off(40), settled * system.scale()),
+                     fair = std::max(enough, nearly * system.scale());
         double least = std::numeric_limits<double>::infinity();
         std::vector<double> closest; // radii
         int left = patience, wandered = 0, halved = 0;
@@ -165,16 +165,17 @@ class LaggedFriction {
             const auto first = std::size_t(cone.first);
             const double normal = std::max(flat_.rows[first].impulse, 0.0);
             normals_.push_back(normal);
-            double square = 0, metric = 0; // of t/f
+            double square = 0, own = 0; // of t/f
             for (std::size_t i = 1; i < std::size_t(cone.count); ++i) {
                 const double share = flat_.rows[first + i].impulse / cone.size[i];
                 square += share * share;
-                metric = std::max(metric, cone.size[i] * system_.rows()[first + i].metric);
+                const IslandSystem::Row& work = system_.rows()[first + i];
+                own = std::max(own, cone.size[i] * work.share * work.metric);
             }
             const bool held =
                 flat_.blocks[contacts_[c]].state == BlockState::inside && radii_[c] > 0;
             const double off = held ? std::sqrt(square) - normal : std::abs(normal - radii_[c]);
-            moved = std::max(moved, off * metric);
+            moved = std::max(moved, off * own);
         }
         return moved;
     }

@@ -57,7 +57,7 @@ struct SurfaceForm {
             for (std::size_t k = 0; k < 2; ++k) {
                 along[k] += v.tangent.terms[k].direction[i] * work.compliance * q[i];
             }
-            const double off = std::abs(v.work[i].right);
+            const double off = std::abs(q[i]) * work.own;
             if (!(off <= worst)) worst = off;
         }
         for (std::size_t k = 0; k < 2; ++k) {
@@ -91,7 +91,7 @@ struct SurfaceForm {
         const double gauge = v.block.surface->value(aim);
         double slack = 0;
         for (int i = 0; i < v.count(); ++i) {
-            if (v.live(i)) slack = std::max(slack, least / (v.work[i].metric * v.size(i)));
+            if (v.live(i)) slack = std::max(slack, least / (v.work[i].own * v.size(i)));
         }
         constexpr double round_off = 1e-10;
         if (v.on_surface() ? gauge > 1 : !(gauge > 1 + round_off + slack)) return false;
@@ -106,7 +106,7 @@ struct SurfaceForm {
         for (int i = 0; i < v.count(); ++i) {
             if (v.work[i].own == 0) continue;
             const double aim = v.live(i) ? to.point[i] * v.size(i) : 0;
-            const double o = std::abs(aim - v.row[i].impulse) * v.work[i].metric;
+            const double o = std::abs(aim - v.row[i].impulse) * v.work[i].own;
             if (!(o <= worst)) worst = o;
         }
         return worst;

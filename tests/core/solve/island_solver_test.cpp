@@ -197,6 +197,52 @@ TEST_CASE("Contacts that stay open make an answer no worse, however short the st
     }
 }
 
+TEST_CASE("Springs make an answer no worse, however much of their push is asked for as a velocity",
+          "[solve]") {
+    // in a short step a spring asks for q/h and is soft: what it gives is its push, which others
+    // may as well be given as it is
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    for (const bool sections : {false, true}) {
+        for (const double soft : {1e9, 1e12, 1e15}) { // its compliance, of its own effect
+            islands::Random make{std::mt19937(11), 1e-8, 1, sections};
+            for (int repeat = 0; repeat < 60; ++repeat) {
+                Island springs = make.island(2 + repeat % 30, true);
+                Island pushes = springs;
+                pushes.blocks.clear();
+                for (std::size_t k = 0; k < springs.blocks.size(); ++k) {
+                    IslandBlock& block = springs.blocks[k];
+                    if (k % 2 == 0) {
+                        pushes.blocks.push_back(block);
+                        continue;
+                    }
+                    for (int i = 0; i < block.count; ++i) {
+                        IslandRow& spring = springs.rows[std::size_t(block.first + i)];
+                        IslandRow& push = pushes.rows[std::size_t(block.first + i)];
+                        const double own = own_effect(springs, spring);
+                        push.lower = push.upper = 1e-6 * spring.target / own;
+                        push.target = push.compliance = 0;
+                        spring.compliance = soft * own;
+                        spring.target = push.upper * spring.compliance;
+                        block.size[std::size_t(i)] = 1e9;
+                        if (k % 4 == 1) continue;
+                        spring.lower = -infinite;
+                        spring.upper = infinite;
+                    }
+                }
+                for (std::size_t k = springs.blocks.size(); k-- > 0;) {
+                    if (k % 4 == 3)
+                        springs.blocks.erase(springs.blocks.begin() + std::ptrdiff_t(k));
+                }
+                const IslandReport report = IslandSolver().solve(springs);
+                const IslandReport pushed = IslandSolver().solve(pushes);
+                CHECK(report.solved);
+                CHECK(report.factorisations <= pushed.factorisations + 10);
+                CHECK(apart(springs, pushes) <= 1e-7);
+            }
+        }
+    }
+}
+
 TEST_CASE("The safe way alone solves what the active set solves", "[solve]") {
     for (const bool sections : {false, true}) {
         islands::Random make{std::mt19937(5), 1e-4, 5, sections};
