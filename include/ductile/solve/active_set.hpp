@@ -53,7 +53,8 @@ inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip
 /// Not thread-safe. Keeps room between solves.
 class ActiveSet {
   public:
-    /// Rounds without fewer rows in the wrong place; `brief`: where the way that follows is short.
+    /// Rounds without fewer rows in the wrong place; `brief`: where the way that follows is short,
+    /// with as few steps a round, as most that settle take.
     static constexpr int usual = 6, brief = 3;
 
     /// From the sides, impulses and multipliers in the island. True where each row is where it
@@ -63,6 +64,7 @@ class ActiveSet {
         constexpr int most = 30; // rounds
         system_ = &system;
         rounds_ = 0;
+        steps_ = patience == brief ? few_steps : usual_steps;
         begin();
         near_ = cautious_ = near;
         int fewest = std::numeric_limits<int>::max(), left = patience;
@@ -101,6 +103,8 @@ class ActiveSet {
     [[nodiscard]] int rounds() const noexcept { return rounds_; } ///< of the last solve
 
   private:
+    static constexpr int few_steps = 4, usual_steps = 12; ///< of Newton, a round
+
     /// Sides that are none, and what is not known of blocks on their surface.
     void begin() {
         Island& island = system_->island();
@@ -151,7 +155,6 @@ class ActiveSet {
     /// sides. What the factors were not made for, a surface that a block moved along, calls for
     /// others; round-off does not.
     [[nodiscard]] bool solve_free_rows(bool factored) {
-        constexpr int steps = 12;
         constexpr double slow = 0.1, stalled = 0.5;
         const std::vector<IslandBlock>& blocks = system_->island().blocks;
         const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
@@ -171,7 +174,7 @@ class ActiveSet {
             if (worst <= exact()) {
                 if (!harden()) return true;
                 again = true;
-            } else if (stay == Stay::left || std::isnan(worst) || step >= steps ||
+            } else if (stay == Stay::left || std::isnan(worst) || step >= steps_ ||
                        (step > 1 && !curved && worst > stalled * before)) {
                 if (stay != Stay::all ||
                     !(least_given_ < std::numeric_limits<double>::infinity())) {
@@ -195,8 +198,10 @@ class ActiveSet {
             system_->step();
             stay = take_step(*system_, near_);
         }
-        return stay == Stay::all &&
-               worst <= std::max(exact(), detail::sufficient * system_->scale());
+        const double enough = steps_ == usual_steps
+                                  ? std::max(exact(), detail::sufficient * system_->scale())
+                                  : exact();
+        return stay == Stay::all && worst <= enough;
     }
     /// Takes out what rigid rows give: they give nothing at the impulses that are kept, and are
     /// kept at those of the last answer, accelerated. False where nothing is left to do. Where rows
@@ -288,6 +293,7 @@ class ActiveSet {
     numeric::Anderson kept_;
     std::vector<double> keep_, best_kept_, impulses_; ///< of rigid rows
     int rounds_ = 0;
+    int steps_ = 0;                           ///< of Newton in a round, at most
     double least_given_ = 0, last_given_ = 0; ///< by a rigid row, with these sides [m/s | rad/s]
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
