@@ -4,10 +4,11 @@
 //
 // An elastic joint that keeps energy swings for ever. So a structure in which nothing has flowed
 // for a second, and that was not used more than before either, is damped until it rests
-// (rest_damping): what flows, or will soon, is not touched, be it loaded at once or slowly. Each
-// joint is compared with its own last while, so that a load on what has come to rest stirs it
-// again, wherever it acts. A structure that does not come to rest then is driven by something; it
-// is left alone until it rests by itself or flows.
+// (rest_damping), at first by next to nothing: a damper that begins at once pushes harder than the
+// swing that it ends, so that joints yield to it. What flows, or will soon, is not touched, be it
+// loaded at once or slowly. Each joint is compared with its own last while, so that a load on what
+// has come to rest stirs it again, wherever it acts. A structure that does not come to rest then is
+// driven by something; it is left alone until it rests by itself or flows.
 //
 // A joint rests once its utilisation has stayed within a band for a second, whatever its speed: an
 // engine's own threshold is met in the middle of a swing.
@@ -78,6 +79,8 @@ struct SwingState {
     }
     /// May be damped until it rests.
     [[nodiscard]] bool is_quiet() const noexcept { return quiet > waits && !driven; }
+    /// Since it may [s].
+    [[nodiscard]] S calm() const noexcept { return is_quiet() ? quiet - waits : S(0); }
     [[nodiscard]] bool rests() const noexcept { return still > waits; }
 
     static constexpr S band = S(0.002);    ///< [-]
@@ -86,8 +89,8 @@ struct SwingState {
     static constexpr S comes_to_rest = 60; ///< a structure that nothing drives [s]
 };
 
-/// τ of all elastic axes of a structure that is quiet, for each second since something stirred, so
-/// that slow swings end too [-].
+/// τ of all elastic axes of a structure that is quiet, for each second that it has been, so that
+/// slow swings end too [-].
 template <std::floating_point S>
 inline constexpr S rest_damping = S(0.05);
 

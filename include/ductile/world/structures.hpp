@@ -52,7 +52,7 @@ class Structures {
         members_.erase(found);
         changed_ = true;
     }
-    /// τ of a quiet structure, for each second since something stirred [-]; 0: none.
+    /// τ of a quiet structure, for each second that it has been [-]; 0: none.
     void set_damping(double damping) noexcept { damping_ = damping; }
     /// Before a step, and after it.
     void look() {
@@ -67,7 +67,7 @@ class Structures {
             const State& state = state_[member.structure];
             member.joint->swing()->share(state.stirs, state.flows);
             const bool calm = state.quiet && !state.stirs;
-            member.joint->damp(calm ? damping_ * member.joint->swing()->quiet : 0);
+            member.joint->damp(calm ? damping_ * member.joint->swing()->calm() : 0);
             if (!state.rests) member.joint->keep_awake();
         }
     }
