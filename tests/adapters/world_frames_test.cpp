@@ -229,6 +229,22 @@ TEST_CASE("Frames: a spring that yields within a frame takes what its way needs"
     }
 }
 
+TEST_CASE("Frames: an elastic motor of the engine's own is a spring, not the user's motor",
+          "[frame]") {
+    constexpr double inertia = 2, spin = 7, strength = 40, stiffness = 2000;
+    constexpr double taken = inertia * spin * spin / 2 - strength * strength / (2 * stiffness);
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rotor(rig, spin);
+        auto& motor = rig.motor(body, nullptr, V3::Zero(), law(strength, 1e9, stiffness));
+        rig.run(0.6, frame); // at rest after 0.35 s, it swings on
+        CHECK(motor.absorbed_energy() == Approx(taken).epsilon(0.002));
+        CHECK(rig.world().run().believed());
+        CHECK(rig.world().run().worst_frame < 40);
+    }
+}
+
 TEST_CASE("Frames: a spring that stops what is thrown in a small share of a frame yields",
           "[frame]") {
     constexpr double mass = 2, speed = 3, thrown = mass * speed * speed / 2;

@@ -28,12 +28,23 @@
 
 namespace ductile::ode {
 
+/// Of ODE's joints, what plastic ones go by.
+struct OurJoints {
+    AddressBook made;  ///< for themselves
+    AddressBook ruled; ///< the user's, with a motor that is a plastic row
+
+    void clear() noexcept {
+        made.clear();
+        ruled.clear();
+    }
+};
+
 class OwnSettings {
   public:
     /// Rules the joints of these bodies for a part of `h` [s] in a frame of `frame` [s], or a blow,
-    /// but for `ours`, which plastic joints made for themselves. Bodies are where they are solved,
-    /// with the velocities that they begin with.
-    void rule(std::span<const dBodyID> bodies, const AddressBook& ours, double h, double frame,
+    /// but for those that plastic joints made. Bodies are where they are solved, with the
+    /// velocities that they begin with.
+    void rule(std::span<const dBodyID> bodies, const OurJoints& ours, double h, double frame,
               bool blow) {
         put_back();
         springs_.clear();
@@ -43,7 +54,9 @@ class OwnSettings {
             for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
                 const dJointID joint = dBodyGetJoint(body, i);
                 const dBodyID first = dJointGetBody(joint, 0);
-                if ((first == body || first == nullptr) && !ours.has(joint)) rule(joint, part);
+                if ((first != body && first != nullptr) || ours.made.has(joint)) continue;
+                if (!blow && !ours.ruled.has(joint)) note_motor(joint);
+                rule(joint, part);
             }
         }
     }
@@ -123,14 +136,6 @@ class OwnSettings {
             lend(dParamERP, dParamCFM, {part_erp(own.erp, h), own.compliance}, blow);
         }
         if (calls.suspension) soften(dParamSuspensionERP, dParamSuspensionCFM);
-        const bool alone = type == dJointTypeHinge || type == dJointTypeSlider;
-        if (alone && !blow && calls.get(joint, dParamFMax) > 0) {
-            const StoppedAxis axis = stopped_axes(joint).axes[0];
-            if (axis.yields > 0) {
-                motors_.push_back({joint, double(calls.get(joint, dParamFMax)), 1 / axis.yields,
-                                   axis.rate - double(calls.get(joint, dParamVel))});
-            }
-        }
         for (int axis = 0; axis < calls.stops; ++axis) {
             const int group = dParamGroup * axis;
             const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
@@ -138,6 +143,17 @@ class OwnSettings {
             if (!stops || is_spring(joint, group, part)) continue;
             soften(dParamStopERP + group, dParamStopCFM + group);
         }
+    }
+    void note_motor(dJointID joint) {
+        const dJointType type = dJointGetType(joint);
+        if (type != dJointTypeHinge && type != dJointTypeSlider) return;
+        const JointCalls calls = joint_calls(type);
+        const auto strength = double(calls.get(joint, dParamFMax));
+        if (!(strength > 0)) return;
+        const StoppedAxis axis = stopped_axes(joint).axes[0];
+        if (!(axis.yields > 0)) return;
+        motors_.push_back(
+            {joint, strength, 1 / axis.yields, axis.rate - double(calls.get(joint, dParamVel))});
     }
     /// One that a frame could follow, which it is now.
     bool is_spring(dJointID joint, int group, const Part& part) {

@@ -29,6 +29,7 @@
 #include "ductile/frame/part_row.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/ode/local_scope.hpp"
+#include "ductile/ode/own_settings.hpp"
 #include "ductile/ode/plastic_constraint.hpp"
 #include "ductile/vocabulary/address_book.hpp"
 
@@ -82,7 +83,7 @@ class StandingWorld {
         const Vector3<double> gravity = std::exchange(gravity_, gravity_of(world));
         calm_ = as_left && gravity == gravity_ && rows_calm_.size() == joints.size() &&
                 std::all_of(bodies.begin(), bodies.end(), [&](dBodyID body) {
-                    return !can_move(body) || has_none_but(own_joints(joints), body);
+                    return !can_move(body) || has_none_but(our_joints(joints).made, body);
                 });
         for (std::size_t i = 0; calm_ && i < joints.size(); ++i) {
             PlasticConstraint& joint = *joints[i];
@@ -102,16 +103,16 @@ class StandingWorld {
     /// There are others.
     void forget_joints() noexcept {
         forget_rows();
-        own_known_ = false;
+        ours_known_ = false;
     }
-    /// What these made for themselves.
-    [[nodiscard]] const AddressBook& own_joints(std::span<PlasticConstraint* const> joints) {
-        if (std::exchange(own_known_, true)) return own_;
-        own_.clear();
+    [[nodiscard]] const OurJoints& our_joints(std::span<PlasticConstraint* const> joints) {
+        if (std::exchange(ours_known_, true)) return ours_;
+        ours_.clear();
         for (PlasticConstraint* joint : joints) {
-            if (joint->island_rows() != nullptr) own_.enter(joint->id());
+            if (joint->island_rows() != nullptr) ours_.made.enter(joint->id());
+            if (joint->motor() >= 0) ours_.ruled.enter(joint->id());
         }
-        return own_;
+        return ours_;
     }
     void note(std::span<const PartRow> of_joint) {
         rows_calm_.push_back(std::all_of(of_joint.begin(), of_joint.end(),
@@ -126,8 +127,8 @@ class StandingWorld {
         return true;
     }
 
-    AddressBook own_; ///< what plastic joints made for themselves
-    bool own_known_ = false;
+    OurJoints ours_;
+    bool ours_known_ = false;
     Vector3<double> gravity_{0, 0, 0};
     double mass_ = 0;
     std::vector<bool> rows_calm_; ///< by joint

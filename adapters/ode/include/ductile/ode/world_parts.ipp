@@ -23,7 +23,7 @@ class WorldParts::Settings {
         dWorldSetERP(world_, dReal(blow ? 0 : part_erp(double(erp_), h)));
         dWorldSetContactSurfaceLayer(world_, std::max(layer_, dReal(closed_depth)));
         if (blow) dWorldSetCFM(world_, cfm_ * dReal(blow_compliance(h)));
-        own_.rule(parts.bodies(), parts.standing_.own_joints(parts.of_.joints), h, parts.length_,
+        own_.rule(parts.bodies(), parts.standing_.our_joints(parts.of_.joints), h, parts.length_,
                   blow);
     }
     ~Settings() {
