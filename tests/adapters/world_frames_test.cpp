@@ -162,6 +162,19 @@ TEST_CASE("Frames: a strength that changes on the way to a break takes what it s
                OneAxisJoint(Perfect<double>({.strength = strength}),
                             SofteningDamage<double>({.onset = onset, .failure = failure})),
                strength * (onset + failure) / 2);
+        // both by the same way b, on a spring that yields after 0.4 mm: ∫ R (1 - x/b)² dx
+        thrown(frame,
+               OneAxisJoint(Softening<double>({.strength = strength, .exhaustion = failure}),
+                            SofteningDamage<double>({.onset = 0, .failure = failure}),
+                            {.stiffness = strength / 4e-4}),
+               strength * failure / 3);
+        // it falls to a half on the first tenth of the way
+        const double way = 0.05, fast = 200;
+        thrown(frame,
+               OneAxisJoint(
+                   Voce<double>({.strength = strength, .saturation = -strength / 2, .rate = fast}),
+                   TravelLimit<double>({.limit = way})),
+               strength / 2 * (way + (1 - std::exp(-fast * way)) / fast));
     }
 }
 
