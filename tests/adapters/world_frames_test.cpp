@@ -162,6 +162,41 @@ TEST_CASE("Frames: a strength that changes on the way to a break takes what it s
                OneAxisJoint(Perfect<double>({.strength = strength}),
                             SofteningDamage<double>({.onset = onset, .failure = failure})),
                strength * (onset + failure) / 2);
+        // both by the same way b, on a spring that yields after 0.4 mm: ∫ R (1 - x/b)² dx
+        thrown(frame,
+               OneAxisJoint(Softening<double>({.strength = strength, .exhaustion = failure}),
+                            SofteningDamage<double>({.onset = 0, .failure = failure}),
+                            {.stiffness = strength / 4e-4}),
+               strength * failure / 3);
+        // it falls to a half on the first tenth of the way
+        const double way = 0.05, fast = 200;
+        thrown(frame,
+               OneAxisJoint(
+                   Voce<double>({.strength = strength, .saturation = -strength / 2, .rate = fast}),
+                   TravelLimit<double>({.limit = way})),
+               strength / 2 * (way + (1 - std::exp(-fast * way)) / fast));
+    }
+}
+
+TEST_CASE("Frames: a break whose way had not the strength foretold is done again", "[frame]") {
+    // whole until half of the way, then it fades: the middle of the way knows nothing of that
+    constexpr double mass = 1, strength = 50, speed = 20, onset = 0.16, failure = 0.235;
+    constexpr double work = strength * (onset + failure) / 2;
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto body = rig.body(mass, V3::Constant(0.1), V3::Zero());
+        const OneAxisJoint joint(Perfect<double>({.strength = strength}),
+                                 SofteningDamage<double>({.onset = onset, .failure = failure}));
+        auto& slider = rig.slider(body, V3(0, 0, 1), joint);
+        WorldRig::set_velocity(body, V3(0, 0, speed));
+        rig.run(0.1, frame);
+        CHECK(slider.broken());
+        CHECK(slider.absorbed_energy() == Approx(work).epsilon(1e-2));
+        const double left = mass * speed * speed / 2 - work;
+        const double v = WorldRig::velocity(body).z();
+        CHECK(mass * v * v / 2 == Approx(left).margin(1e-2 * work));
+        CHECK(rig.world().run().believed());
     }
 }
 

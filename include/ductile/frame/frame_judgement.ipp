@@ -119,7 +119,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
             std::max(judged.turned, row.too_far / (detail::of_turns * small_turn<double>));
         judged.given += row.given;
         lets_go = lets_go || row.broke > 0;
-        judged.error += row.misfit;
+        if (!(row.broke > 0) || breaks(i, motion)) judged.error += row.misfit;
         judged.struck += row.unfit;
         if (!row.elastic && (row.starts() || !row.moves()))
             held_share = std::max(held_share, row.share);
@@ -211,10 +211,11 @@ DUCTILE_INLINE void FrameControl::judge_islands(const PartMotion& motion, double
         if (row.island < 0) continue;
         Tally& island = islands[std::size_t(row.island)];
         island.add(row);
-        island.error += row.misfit + row.given;
+        island.error += row.given;
         island.unfit += row.unfit;
+        if (!(row.broke > 0)) island.error += row.misfit;
         if (breaks(i, motion)) {
-            island.error += row.astray;
+            island.error += row.misfit + row.astray;
             island.freed += row.freed;
         }
         if (!row.moves()) continue;

@@ -112,11 +112,11 @@ class CoupledJoint {
 
     /// γ of the last step's forces on the present surface: 1 where it flows, or snaps [-].
     [[nodiscard]] Scalar utilisation() const noexcept {
-        const Scalar most = std::min(growth(0), cap());
+        const Scalar most = std::min(growth(), cap());
         return state_.broken ? Scalar(0) : surface_.value(state_.force) / most;
     }
     /// It snaps before it flows.
-    [[nodiscard]] bool snaps() const noexcept { return cap() < growth(0); }
+    [[nodiscard]] bool snaps() const noexcept { return cap() < growth(); }
     /// What broke the joint, or is the nearest to do so.
     [[nodiscard]] CriterionKind governing() const noexcept {
         const bool ended = state_.broken && faded(law_, state_.plastic_travel);
@@ -175,20 +175,15 @@ class CoupledJoint {
         return rigid_stiffness<Scalar> * parameters_.section_stiffness[i];
     }
 
-    /// R/R(0) of a step of the travel `ahead`, or of what is left of it, softened by the criterion.
-    [[nodiscard]] Scalar growth(Scalar ahead) const noexcept {
-        ahead = std::min(ahead, travel_to_nothing(law_, state_.plastic_travel));
-        const Scalar strength = strength_ahead(law_, state_.plastic_travel, ahead);
-        return strength / first_strength_ *
-               midway_factor(criterion_, state_.criterion, ahead, strength);
-    }
-
-    /// R of flow by `travel` that was, softened by the criterion [N | N m].
+    /// R of flow by the coming `travel`, softened by the criterion [N | N m].
     [[nodiscard]] Scalar mean_strength_of(Scalar travel) const noexcept {
         const Scalar from = state_.plastic_travel;
-        const Scalar strength = mean_strength(law_, from, from + travel);
-        return strength * mean_factor(criterion_, state_.criterion, travel, strength);
+        const auto at = [&](Scalar way) noexcept { return law_.value(from + way); };
+        return mean_strength(law_, from, from + travel) *
+               mean_factor(criterion_, state_.criterion, travel, at);
     }
+    /// R/R(0) now.
+    [[nodiscard]] Scalar growth() const noexcept { return mean_strength_of(0) / first_strength_; }
 
     void bound(const Motion& motion, Scalar dt) noexcept {
         using Met = Impedance<Scalar, dimension>;
@@ -198,7 +193,7 @@ class CoupledJoint {
             compliance[i] = 1 / (parameters_.stiffness[i] * share * dt * dt);
         }
         const Met impedance = all_rigid_ ? Met(motion.mass, dt) : Met(motion.mass, dt, compliance);
-        const Grown<Surface> now{surface_, growth(0)};
+        const Grown<Surface> now{surface_, growth()};
         // an elastic row starts from its spring: a resolved one acts a step late, and a box around
         // its last force would let it follow at half the rate
         Vector predicted = state_.force;
@@ -228,9 +223,11 @@ class CoupledJoint {
         const Scalar after = std::abs(numeric::dot(predicted, state_.velocity));
         const Scalar least = travel_ahead(power, before, after, state_.flowing, rate);
         const bool fades = ExhaustibleLaw<Law> && state_.flowing; // where a slope may be steep
-        grown_ = flows ? growth(fades ? least : power * rate) : now.by;
-        left_ = criterion_.remaining(state_.criterion, first_strength_ * grown_, 0);
+        const Scalar ahead = fades ? least : power * rate;
+        left_ = travel_to_break(criterion_, state_.criterion, ahead, Scalar(0),
+                                [&](Scalar way) noexcept { return mean_strength_of(way); });
         left_ = std::min(left_, travel_to_nothing(law_, state_.plastic_travel));
+        grown_ = flows ? mean_strength_of(std::min(ahead, left_)) / first_strength_ : now.by;
         if (flows && lives_.limited()) { // along the normal a travel of one has the work R
             const Scalar life = lives_.of(first_strength_ * surface_.normal(predicted));
             left_ = std::min(left_, travel_left(Scalar(1), life, state_.life));

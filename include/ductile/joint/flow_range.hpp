@@ -12,7 +12,6 @@
 #include <concepts>
 
 #include "ductile/law/cyclic.hpp"
-#include "ductile/law/law.hpp"
 
 namespace ductile {
 
@@ -31,16 +30,5 @@ struct FlowRange : ForceRange<S> {
         return against(direction) > std::max((this->upper - this->lower) / 4, least);
     }
 };
-
-/// What flow by the signed `increment` != 0 dissipates per travel: the `resistance`, without what a
-/// back force keeps or gives [N | N m]. `cyclic`: the cyclic form of Law.
-template <class Law, CyclicLaw Cyclic>
-[[nodiscard]] typename Cyclic::Scalar dissipation(const Cyclic& cyclic,
-                                                  typename Cyclic::State state,
-                                                  typename Cyclic::Scalar increment,
-                                                  typename Cyclic::Scalar resistance) noexcept {
-    if constexpr (StrengthLaw<Law>) return resistance;
-    return cyclic.commit(state, increment).dissipated / std::abs(increment);
-}
 
 } // namespace ductile

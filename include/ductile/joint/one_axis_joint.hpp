@@ -160,24 +160,34 @@ class OneAxisJoint {
         const Scalar direction = std::copysign(Scalar(1), start_), speed = std::abs(start_);
         const Scalar least = travel_ahead(speed, std::abs(state_.start_velocity),
                                           std::abs(state_.velocity), state_.flowing, dt);
-        const bool fades = ExhaustibleLaw<Law> && state_.flowing; // where a slope may be steep
-        const Scalar ahead = std::min(fades ? least : speed * dt, fading);
-        flow_ = {law_.prepare(state_.law, direction * ahead)};
-        const Scalar strength = flow_.resistance(direction);
-        fade_ = midway_factor(criterion_, state_.criterion, ahead, strength);
-        flow_ = {{flow_.lower * fade_, flow_.upper * fade_}};
+        const bool fades = ExhaustibleLaw<Law> || // where a slope may be steep
+                           criterion_.strength_factor(state_.criterion, speed * dt) < 1;
+        const Scalar ahead = std::min(fades && state_.flowing ? least : speed * dt, fading);
         const Scalar travel = std::max(ahead, parameters_.absolute_residual * dt);
         const auto loss = [&](Scalar way) noexcept {
-            const FlowRange<Scalar> there{law_.prepare(state_.law, direction * way)};
-            return fade_ *
-                   dissipation<Law>(law_, state_.law, direction * way, there.resistance(direction));
+            auto state = state_.law;
+            return faded_over(direction * way) * law_.commit(state, direction * way).dissipated /
+                   way;
         };
         left_ = std::min(travel_to_break(criterion_, state_.criterion, travel, direction, loss),
                          fading);
+        const Scalar way = direction * std::min(ahead, left_); // beyond it there is no strength
+        fade_ = faded_over(way);
+        flow_ = {law_.prepare(state_.law, way)};
+        flow_ = {{flow_.lower * fade_, flow_.upper * fade_}};
         share_ = unspent_share(left_, least);
         upper_ = std::min(-flow_.lower * share_, cap(1));
         lower_ = std::max(-flow_.upper * share_, -cap(-1));
         tolerance_ = bound_tolerance * std::max(std::abs(upper_), std::abs(lower_));
+    }
+
+    /// Of the strength over a flow of the signed travel, what the criterion leaves [-].
+    [[nodiscard]] Scalar faded_over(Scalar travel) const noexcept {
+        const Scalar direction = std::copysign(Scalar(1), travel);
+        const auto at = [&](Scalar way) noexcept {
+            return std::abs(law_.resistance(state_.law, way, direction));
+        };
+        return mean_factor(criterion_, state_.criterion, std::abs(travel), at);
     }
 
     /// A spring that reaches its strength within the part has less than that at the mean: by
@@ -321,9 +331,7 @@ class OneAxisJoint {
         travel *= booked;
         const bool last = spent || uses_up(std::abs(travel), left_);
         if (last) travel = std::copysign(std::min(std::abs(travel), left_), travel);
-        const Scalar strength = flow_.resistance(travel);
-        const Scalar faded_by =
-            mean_factor(criterion_, state_.criterion, std::abs(travel), strength);
+        const Scalar faded_by = faded_over(travel);
         const FlowWork<Scalar> done = law_.commit(state_.law, travel);
         step.plastic_work = done.dissipated * fade_;
         step.elastic += done.stored * fade_;

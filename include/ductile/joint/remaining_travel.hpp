@@ -26,36 +26,26 @@
 
 namespace ductile {
 
-/// Strength factor of a criterion midway through the travel `ahead` >= 0 [m | rad], or through what
-/// it leaves of it: beyond its end there is no strength to take [-]. `strength` without it [N | N
-/// m].
-template <FractureCriterion Criterion>
-[[nodiscard]] typename Criterion::Scalar midway_factor(
-    const Criterion& criterion, const typename Criterion::State& state,
-    typename Criterion::Scalar ahead, typename Criterion::Scalar strength) noexcept {
-    using S = typename Criterion::Scalar;
-    const S factor = criterion.strength_factor(state, ahead / 2);
-    if (!(factor < 1)) return factor;
-    const S left = criterion.remaining(state, strength * factor, S(0));
-    return left < ahead ? criterion.strength_factor(state, left / 2) : factor;
-}
-
-/// Mean of that over the whole `travel` >= 0 that was flowed, or what of it there was strength for
-/// [-].
-template <FractureCriterion Criterion>
+/// Mean over the coming `travel` >= 0 [m | rad] of what a criterion leaves of the strength,
+/// weighted by that strength: `at(way)` [N | N m] is what it would be after the first `way` [-].
+template <FractureCriterion Criterion, class Strength>
 [[nodiscard]] typename Criterion::Scalar mean_factor(const Criterion& criterion,
                                                      const typename Criterion::State& state,
                                                      typename Criterion::Scalar travel,
-                                                     typename Criterion::Scalar strength) noexcept {
+                                                     Strength&& at) noexcept {
     using S = typename Criterion::Scalar;
-    if (!(criterion.strength_factor(state, travel) < 1)) return 1;
-    constexpr int pieces = 8; // a kink in one of them is off by a sixty-fourth of what it would be
-    travel = std::min(travel, criterion.remaining(state, strength, S(0)));
-    S sum = 0;
-    for (int i = 0; i < pieces; ++i) {
-        sum += criterion.strength_factor(state, travel * (S(i) + S(0.5)) / pieces);
+    const S now = criterion.strength_factor(state, S(0));
+    if (criterion.strength_factor(state, travel) == now) return now; // it never grows
+    constexpr int pieces = 24; // of two points of Gauss: exact but for the piece of a kink
+    constexpr S beside = S(0.28867513459481287); // of the middle, 1/√12
+    S softened = 0, whole = 0;
+    for (int i = 0; i < 2 * pieces; ++i) {
+        const S way = travel * (S(i / 2) + S(0.5) + (i % 2 ? beside : -beside)) / pieces;
+        const S strength = at(way);
+        softened += strength * criterion.strength_factor(state, way);
+        whole += strength;
     }
-    return sum / pieces;
+    return whole > 0 ? softened / whole : S(0);
 }
 
 /// Plastic travel that a criterion leaves; where that ends within the way `ahead` >= 0, at the

@@ -71,7 +71,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
     // waves along the axes of a section are for its dampers to end
     const bool spring = link.axes().size() == 1 && !link.all_rigid();
     double given = acts ? std::max(0.0, -link.last().damped) : 0;
-    double misfit = acts ? link.last().misfit : 0, freed = link.last().lost;
+    double misfit = link.last().misfit, freed = link.last().lost;
     double unfit = acts ? link.unfit() : 0;
     double astray = 0; // by its break
     const std::size_t first = rows.size();
@@ -94,6 +94,7 @@ inline void add_part_rows(const AnyLink<double>& link, std::size_t joint, bool a
         if (row.broke > 0) {
             row.freed = std::exchange(freed, 0);
             row.astray = std::exchange(astray, 0);
+            row.misfit = std::exchange(misfit, 0);
             row.alone = alone && flowed;
             row.snapped = !flowed;
             row.run = link.last().run;
@@ -147,10 +148,10 @@ inline void add_part_row(const AxisJoint& axis, double force, double carried, st
     row.force = force;
     if (row.broke > 0) row.astray = axis.last().plastic_work + released_late(axis.last());
     if (!acts && !(row.broke > 0)) return;
+    row.misfit = axis.last().misfit;
     row.start = axis.start_velocity();
     row.end = axis.velocity();
     if (!acts || axis.broken()) return;
-    row.misfit = axis.last().misfit;
     row.strength = axis.strength(force > 0 ? -1 : 1);
     row.share = axis.utilisation(force);
     row.swings = row.elastic && swings(axis.totals().flowing, row.share);

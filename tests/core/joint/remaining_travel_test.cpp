@@ -59,9 +59,22 @@ TEST_CASE("what is left of an energy is the way that takes it, at a strength tha
 
 TEST_CASE("the mean of a strength that damage takes is that of the way", "[joint][break]") {
     const SofteningDamage<double> damage({.onset = 1, .failure = 3});
-    CHECK(mean_factor(damage, {}, 0.8, 1.0) == 1);
-    CHECK(mean_factor(damage, {.travel = 1}, 0.5, 1.0) == Approx(0.875).epsilon(1e-14));
-    CHECK(mean_factor(damage, {.travel = 1}, 9.0, 1.0) == Approx(0.5).epsilon(1e-14));
-    // over the onset: 1 - 0.5²/(2 × 2), by eight pieces
-    CHECK(mean_factor(damage, {.travel = 0.5}, 1.0, 1.0) == Approx(1 - 0.0625).epsilon(2e-3));
+    const auto mean = [&](double from, double travel) {
+        return mean_factor(damage, {.travel = from}, travel, [](double) { return 7.0; });
+    };
+    CHECK(mean(0, 0.8) == 1);
+    CHECK(mean(2, 0) == 0.5);
+    CHECK(mean(1, 0.5) == Approx(0.875).epsilon(1e-14));
+    CHECK(mean(1, 8) == Approx(1.0 / 8).epsilon(1e-3)); // nothing is left after 2
+    // over the onset: 1 - 0.5²/(2 × 2)
+    CHECK(mean(0.5, 1) == Approx(1 - 0.0625).epsilon(2e-4));
+}
+
+TEST_CASE("the mean of what damage leaves is weighted by the strength", "[joint][break]") {
+    // both fall by the same way: ∫(1 - x)² over ∫(1 - x)
+    const SofteningDamage<double> damage({.onset = 1, .failure = 3});
+    const auto falls = [](double way) { return 2 - way; };
+    CHECK(mean_factor(damage, {.travel = 1}, 2.0, falls) == Approx(2.0 / 3).epsilon(1e-14));
+    const auto none = [](double) { return 0.0; };
+    CHECK(mean_factor(damage, {.travel = 1}, 2.0, none) == 0);
 }
