@@ -369,12 +369,12 @@ TEST_CASE("rows that are damped otherwise flow along the normal of their surface
                        TravelLimit<double>(), {.stiffness = V2(4e5, 3e5), .damping_time = tau});
     V2 x = V2::Zero(), force = x;
     for (int i = 0; i < 2000; ++i) {
-        joint.prepare({.position = x + u * h / 2,
-                       .velocity = u,
-                       .mass = 1e3 * Eigen::Matrix2d::Identity(),
-                       .ahead = true,
-                       .before = x},
-                      h);
+        static_cast<void>(joint.prepare({.position = x + u * h / 2,
+                                         .velocity = u,
+                                         .mass = 1e3 * Eigen::Matrix2d::Identity(),
+                                         .ahead = true,
+                                         .before = x},
+                                        h));
         const auto rows = *joint.meet_surface(h);
         Vector6<double> wanted = Vector6<double>::Zero(), metric = wanted;
         for (int k = 0; k < 2; ++k) {
