@@ -21,6 +21,8 @@
 
 #include <algorithm>
 
+#include "ductile/vocabulary/damper_share.hpp"
+
 namespace ductile {
 
 /// Length that an engine is told of a blow, in which no time passes [s].
@@ -66,17 +68,12 @@ struct LawRow {
     double target, compliance;
 };
 
-/// θ of the coming row.
-[[nodiscard]] inline double damper_share(double damps, double mass) noexcept {
-    return damps > 2 * mass ? 1 - mass / damps : 0.5;
-}
-
 /// Of a spring k and a damper d beside it, whose strain x grows with the row's velocity u,
 ///
 ///   λ = -k h (x + h (u' - u)/4) - d h (θ u' + (1 - θ) u)
 ///
-/// x in the middle of a part of `h` [s], u as it begins; θ = 1/2, more where the damper takes u
-/// within the part and would turn it round. k -> ∞: u' = u - 4 x/h. Not both are 0.
+/// x in the middle of a part of `h` [s], u as it begins; θ: damper_share.hpp. k -> ∞: u' = u - 4
+/// x/h. Not both are 0.
 /// @param mass that the row feels [kg | kg m²]
 [[nodiscard]] inline LawRow law_row(double stiffness, double damping, double mass, double strain,
                                     double velocity, double h) noexcept {

@@ -189,8 +189,8 @@ class CoupledJoint {
         using Met = Impedance<Scalar, dimension>;
         Vector compliance;
         for (int i = 0; i < dimension; ++i) {
-            const Scalar share = (ahead_ ? mean_share<Scalar> : Scalar(1)) + damping(i) / dt;
-            compliance[i] = 1 / (parameters_.stiffness[i] * share * dt * dt);
+            const Scalar lead = ahead_ ? spring(i, dt).lead : dt + damping(i);
+            compliance[i] = 1 / (parameters_.stiffness[i] * lead * dt);
         }
         const Met impedance = all_rigid_ ? Met(motion.mass, dt) : Met(motion.mass, dt, compliance);
         const Grown<Surface> now{surface_, growth()};
@@ -252,7 +252,8 @@ class CoupledJoint {
     [[nodiscard]] SpringRow<Scalar> spring(int i, Scalar dt) const noexcept {
         using Spring = SpringRow<Scalar>;
         const Scalar k = parameters_.stiffness[i];
-        return ahead_ ? Spring::half_ahead(k, damping(i), elastic_[i], middle_[i], dt)
+        return ahead_ ? Spring::half_ahead(k, damping(i), elastic_[i], middle_[i], mass_[i],
+                                           start_[i], dt)
                       : Spring::now(k, damping(i), elastic_[i], implicit_[i], dt);
     }
 
@@ -389,6 +390,7 @@ class CoupledJoint {
     bool passes_ = false;    ///< as meet_surface was told
     Scalar turning_ = 0, damping_ = 0; ///< Motion's
     Vector drift_ = Vector::Zero();    ///< Motion's
+    Vector mass_ = Vector::Zero();     ///< of each row, the others held
 };
 } // namespace ductile
 

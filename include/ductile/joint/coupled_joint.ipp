@@ -48,6 +48,7 @@ auto CoupledJoint<Surface, Law, Criterion>::prepare(const Motion& motion, Scalar
     turning_ = motion.turning;
     damping_ = motion.damping;
     drift_ = motion.drift;
+    mass_ = motion.mass.diagonal();
     middle_ = elastic_;
     if (ahead_) elastic_ = motion.before - state_.plastic_offset;
     sound_ = is_finite(motion, dt);

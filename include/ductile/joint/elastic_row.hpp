@@ -28,6 +28,7 @@
 
 #include "ductile/law/cyclic.hpp"
 #include "ductile/law/root.hpp"
+#include "ductile/vocabulary/damper_share.hpp"
 #include "ductile/vocabulary/row.hpp"
 
 namespace ductile {
@@ -75,11 +76,14 @@ inline constexpr S mean_share = S(0.25);
 ///   f = -k (q + g u' - c Δ)   <=>   C = 1/(g k dt),  b = -q/g
 ///
 ///   as it is          q = q_e,           g = θ dt + τ,    c = 1 + τ/dt
-///   half a step ahead q = (q_e + q_m)/2, g = dt/4 + τ,    c = 1/2 + τ/dt
+///   half a step ahead q = (q_e + q_m)/2 + (1 - θ) τ u, g = dt/4 + θ τ, c = 1/2 + τ/dt
 ///
 /// q_m is q_e in the middle of the step: its force is then the mean of those at the start and the
-/// end, whose work is exactly what it stores, at any step and stiffness; with a damper k → ∞ keeps
-/// the share 1/(1 + 4 τ/dt) of what vibrates in a step. g = 0: the force is given.
+/// end, whose work is exactly what it stores, at any step and stiffness. The damper's is that of
+/// its mean speed, θ = 1/2, of second order as the spring's, and c/g = 2/dt whatever τ: rows that
+/// are damped otherwise flow along the normal of their surface all the same. Where it takes more
+/// than its speed within the step θ is more (damper_share.hpp); k → ∞ then keeps the share
+/// 1/(1 + 4 τ/dt) of what vibrates in a step. g = 0: the force is given.
 template <std::floating_point S>
 struct SpringRow {
     S stiffness; ///< k [N/m | N m/rad]
@@ -88,19 +92,25 @@ struct SpringRow {
     S reach;     ///< q [m | rad]
     S lead;      ///< g [s]
     S give;      ///< c [-]
+    S later = 1; ///< θ of the damper [-]
+    S rate = 0;  ///< (1 - θ) u [m/s | rad/s]
 
     [[nodiscard]] static constexpr SpringRow now(S stiffness, S damping, S elastic, S implicit,
                                                  S dt) noexcept {
         return {stiffness, damping, elastic, elastic, implicit * dt + damping, 1 + damping / dt};
     }
+    /// @param mass, velocity  that the row feels [kg | kg m²], and u that it begins with
     [[nodiscard]] static constexpr SpringRow half_ahead(S stiffness, S damping, S elastic, S middle,
-                                                        S dt) noexcept {
+                                                        S mass, S velocity, S dt) noexcept {
+        const S later = damper_share(stiffness * damping * dt, mass), rate = (1 - later) * velocity;
         return {stiffness,
                 damping,
                 elastic,
-                (elastic + middle) / 2,
-                mean_share<S> * dt + damping,
-                S(0.5) + damping / dt};
+                (elastic + middle) / 2 + damping * rate,
+                mean_share<S> * dt + later * damping,
+                S(0.5) + damping / dt,
+                later,
+                rate};
     }
     /// Its force stays within [lower, upper] [N | N m].
     [[nodiscard]] constexpr RowLimits<S> limits(S lower, S upper, S dt) const noexcept {
@@ -121,7 +131,7 @@ struct SpringRow {
     }
     /// What the damper took, the row having flowed by `flow` and being strained by `end` now [J].
     [[nodiscard]] constexpr S damped(S velocity, S flow, S end, S dt) const noexcept {
-        return stiffness * damping * (velocity - flow / dt) * (end - start);
+        return stiffness * damping * (later * velocity + rate - flow / dt) * (end - start);
     }
 };
 

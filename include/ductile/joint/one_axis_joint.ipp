@@ -32,8 +32,9 @@ auto OneAxisJoint<Law, Criterion>::prepare(const Motion<Scalar>& motion, Scalar 
         // the springs of steps as they are lose more than steel by themselves
         const Scalar material = std::max(parameters_.damping_time, motion.damping);
         if (ahead_) reach_strength(dt);
-        spring_ = ahead_ ? Spring::half_ahead(k, material, elastic_, middle, dt)
-                         : Spring::now(k, motion.damping, elastic_, implicit_, dt);
+        spring_ = ahead_
+                      ? Spring::half_ahead(k, material, elastic_, middle, motion.mass, start_, dt)
+                      : Spring::now(k, motion.damping, elastic_, implicit_, dt);
         row = spring_.limits(lower_, upper_, dt);
     }
     given_ = !rigid() && row.lower == row.upper;

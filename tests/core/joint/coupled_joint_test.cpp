@@ -14,6 +14,7 @@
 #include "ductile/law/linear.hpp"
 #include "ductile/law/perfect.hpp"
 #include "ductile/numeric/lu.hpp"
+#include "ductile/solve/ellipsoid_return.hpp"
 #include "ductile/surface/ellipsoid.hpp"
 #include "ductile/surface/rectangle_axial_bending.hpp"
 #include "ductile/surface/scaled.hpp"
@@ -323,6 +324,72 @@ TEST_CASE("half a step ahead, elastic rows follow the ellipse too", "[coupled_jo
     CHECK(-force[0] / capacity[0] == Approx(1 / std::cosh(delta)).epsilon(0.005));
     CHECK(-force[1] / capacity[1] == Approx(std::tanh(delta)).epsilon(0.005));
     CHECK(joint.state().plastic_work == Approx(work).epsilon(0.005));
+}
+
+TEST_CASE("half a step ahead, the damper of an elastic row is of second order", "[coupled_joint]") {
+    // x'' + ω² τ x' + ω² x = 0, thrown, for three swings at ω h = 0.2 and 0.1
+    constexpr double m = 2, k = 2e6, omega = 1e3, tau = 1e-4, time = 0.02, speed = 1;
+    const double decay = omega * omega * tau / 2, own = std::sqrt(omega * omega - decay * decay);
+    const double exact = speed / own * std::exp(-decay * time) * std::sin(own * time);
+    double off = 0;
+    for (const double h : {2e-4, 1e-4}) {
+        CoupledJoint joint(Ellipse({.capacity = V2(1e9, 1e9)}), Perfect<double>({.strength = 1}),
+                           TravelLimit<double>(),
+                           {.stiffness = V2(k, k), .damping_time = V2(tau, 0)});
+        double x = 0, u = speed, damped = 0;
+        for (int i = 0; i < int(std::lround(time / h)); ++i) {
+            const auto rows = joint.prepare({.position = V2(x + u * h / 2, 0),
+                                             .velocity = V2(u, 0),
+                                             .mass = m * Eigen::Matrix2d::Identity(),
+                                             .ahead = true,
+                                             .before = V2(x, 0)},
+                                            h);
+            const double impulse = (rows[0].bias - u) / (1 / m + rows[0].compliance);
+            const double after = u + impulse / m;
+            x += (u + after) / 2 * h;
+            damped += joint.commit({V2(impulse / h, 0), V2(after, 0), V2(x, 0)}, h).damped;
+            u = after;
+        }
+        const double now = std::abs(x - exact);
+        CAPTURE(h, x, exact);
+        if (off > 0) CHECK(now == Approx(off / 4).epsilon(0.1));
+        off = now;
+        const double left = m * u * u / 2 + joint.state().stored;
+        CHECK(left + damped == Approx(m * speed * speed / 2).epsilon(1e-9));
+    }
+    CHECK(off < 0.01 * speed / omega);
+}
+
+TEST_CASE("rows that are damped otherwise flow along the normal of their surface",
+          "[coupled_joint]") {
+    // dragged on with one velocity the force is the one whose normal that is
+    const V2 capacity(40, 30), u(0.3, -0.4), tau(1e-4, 3e-6);
+    const double h = GENERATE(1e-5, 7e-5, 1e-3);
+    CoupledJoint joint(Ellipse({.capacity = capacity}), Perfect<double>({.strength = 1}),
+                       TravelLimit<double>(), {.stiffness = V2(4e5, 3e5), .damping_time = tau});
+    V2 x = V2::Zero(), force = x;
+    for (int i = 0; i < 2000; ++i) {
+        static_cast<void>(joint.prepare({.position = x + u * h / 2,
+                                         .velocity = u,
+                                         .mass = 1e3 * Eigen::Matrix2d::Identity(),
+                                         .ahead = true,
+                                         .before = x},
+                                        h));
+        const auto rows = *joint.meet_surface(h);
+        Vector6<double> wanted = Vector6<double>::Zero(), metric = wanted;
+        for (int k = 0; k < 2; ++k) {
+            const auto& row = rows[std::size_t(k)];
+            metric[k] = row.compliance;
+            wanted[k] = (row.bias - u[k]) / (row.compliance * h);
+        }
+        force = solve::closest_on_ellipsoid(wanted, metric, capacity.data(), 2).point.head<2>();
+        x += u * h;
+        joint.commit({force, u, x, true}, h);
+    }
+    const V2 held =
+        -capacity.cwiseProduct(capacity).cwiseProduct(u) / capacity.cwiseProduct(u).norm();
+    CHECK(force[0] == Approx(held[0]).epsilon(1e-6));
+    CHECK(force[1] == Approx(held[1]).epsilon(1e-6));
 }
 
 TEST_CASE("six axes with one life: random loads create no energy, no NaN, no mending",
