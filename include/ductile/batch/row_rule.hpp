@@ -87,9 +87,10 @@ struct RowLaw {
     S limit;
 
     constexpr S value(S travel) const noexcept { return strength + hardening * travel; }
-    /// R half a step ahead.
+    /// R half a step ahead, or of the way that is left.
     constexpr S midpoint(S travel, S speed, S half_dt) const noexcept {
-        return value(travel + speed * half_dt);
+        const S half = speed * half_dt, left = remaining(travel) / 2;
+        return value(travel + select(mask<S>(left < half), left, half));
     }
     constexpr S remaining(S travel) const noexcept {
         return only(mask<S>(travel < limit), limit - travel);
