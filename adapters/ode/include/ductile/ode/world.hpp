@@ -81,8 +81,8 @@ struct WorldParameters {
     double tolerance = 0;
     int budget = 256; ///< solves of a frame, >= 4
     /// Elastic structures that have been quiet for a second are damped until they rest: τ of their
-    /// springs for each second after that [-], >= 0 (joint/swing.hpp). 0 where a structure is driven
-    /// to vibrate, of which this would take for a minute.
+    /// springs for each second after that [-], >= 0 (joint/swing.hpp). 0 where a structure is
+    /// driven to vibrate, of which this would take for a minute.
     double rest_damping = ductile::rest_damping<double>;
     Warn warn = warn_on_stderr; ///< a line of the worst joint; empty: nothing is said
 };
