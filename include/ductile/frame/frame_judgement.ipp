@@ -150,7 +150,7 @@ DUCTILE_INLINE FrameControl::Judgement FrameControl::judge(const PartMotion& mot
     // velocities that did not fit may rest in the part untold by rigid rows; a spring still moves
     judged.struck = std::max(judged.struck, motion.rigid_work);
     judged.least = all.least;
-    const bool rested = judged.struck + std::min(taken_, 0.0) > judged.least;
+    const bool rested = judged.struck + std::min(taken_, 0.0) > detail::unmissed * judged.least;
     judged.moves = all.moves || (rested && all.unmissed > 0 && !lets_go);
     if (judged.moves) {
         // velocities that did not fit are struck too, once; what rows give is never a blow
