@@ -193,6 +193,7 @@ class WorldRig {
         b->applyCentralForce(bullet::to_bullet(force));
     }
     /// `arm`: from the centre of mass, at the start.
+    void push(Body b, const V3& force, const V3& at) { world().apply_force(*b, force, at); }
     static void apply_force_at(Body b, const V3& force, const V3& arm) {
         b->applyForce(bullet::to_bullet(force),
                       b->getWorldTransform().getBasis() * bullet::to_bullet(arm));

@@ -166,6 +166,7 @@ class WorldRig {
         dBodyAddForce(b, dReal(force.x()), dReal(force.y()), dReal(force.z()));
     }
     /// `arm`: from the centre of mass, at the start.
+    void push(Body b, const V3& force, const V3& at) { world().apply_force(b, force, at); }
     static void apply_force_at(Body b, const V3& force, const V3& arm) {
         dBodyAddForceAtRelPos(b, dReal(force.x()), dReal(force.y()), dReal(force.z()),
                               dReal(arm.x()), dReal(arm.y()), dReal(arm.z()));

@@ -237,6 +237,35 @@ TEST_CASE("Frames: a kick that joints bear does not open them for the next one",
     }
 }
 
+TEST_CASE("Frames: a force at a place goes along with it", "[frame]") {
+    // it keeps its direction, and turns a rod about a hinge by 0.6 rad: I a = F L cos(turned) - R
+    constexpr double mass = 30, length = 1.2, strength = 100, force = 400, duration = 0.2;
+    constexpr double inertia = mass * (length * length / 3 + 0.04 * 0.04 / 3);
+    double turned = 0, spin = 0;
+    for (int i = 0; i < 100000; ++i) { // by midpoints
+        constexpr double h = duration / 100000;
+        const double middle = turned + h / 2 * spin;
+        spin += h * (force * length * std::cos(middle) - strength) / inertia;
+        turned = middle + h / 2 * spin;
+    }
+    for (const double frame : all_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        const auto rod = rig.box(mass, V3(length / 2, 0.04, 0.04), V3(length / 2, 0, 0));
+        auto& hinge = rig.hinge(rod, nullptr, V3::Zero(), law(strength), "hinge");
+        while (rig.world().time() < duration - 1e-9) {
+            rig.push(rod, V3(0, force, 0), 2 * WorldRig::position(rod));
+            rig.world().step(frame);
+        }
+        CHECK(std::abs(hinge.rotation()) == Approx(turned).epsilon(1e-3));
+        CHECK(WorldRig::spin(rod).z() == Approx(spin).epsilon(1e-3));
+        CHECK(rig.world().run().believed());
+        CHECK(std::abs(rig.world().ledger().unexplained()) < 1e-3 * force * length);
+        CHECK(rig.world().ledger().supplied() ==
+              Approx(force * length * std::sin(turned)).epsilon(2e-3));
+    }
+}
+
 TEST_CASE("Frames: an elastic row keeps its energy at any stiffness and frame", "[frame]") {
     constexpr double mass = 10, speed = 2, strength = 1e7; // never yields
     for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {

@@ -60,8 +60,8 @@ class BuiltStructure {
 
     // ---- what is done to it
 
-    /// Applies a force at a node for the coming step, world [N]. A node that is the ground takes
-    /// it.
+    /// Applies a force at a node for the coming step, world [N]; through the parts of a frame it
+    /// goes along with the node. A node that is the ground takes it.
     /// @throws std::invalid_argument as place(), and where the force is not finite.
     void apply(NodeId node, const Vector3<double>& force);
     void apply(std::string_view member, double share, const Vector3<double>& force);

@@ -111,6 +111,8 @@ DUCTILE_INLINE void EnergyMeter::bodies_ahead() {
         ledger_.book(Account::integration, course->ahead);
         start.position = body.position;
         start.inertia = body.inertia;
+        start.force = body.force;
+        start.torque = body.torque;
     }
 }
 

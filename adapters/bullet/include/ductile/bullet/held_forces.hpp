@@ -8,8 +8,12 @@
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 #include <LinearMath/btVector3.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "ductile/bullet/convert.hpp"
+#include "ductile/world/placed_forces.hpp"
 
 namespace ductile::bullet {
 
@@ -40,14 +44,22 @@ class HeldForces {
             const btVector3 torque = unweighted(body->getTotalTorque(), body->getAngularFactor());
             held_.push_back({body, force, torque});
         }
+        placed_.begin([this](const btRigidBody* body) { return holds(body); });
         return held_ == before_;
+    }
+    /// One that was applied at a place, world [N, m]: for the coming frame it goes along with that.
+    void place(btRigidBody& body, const Vector3<double>& force, const Vector3<double>& at) {
+        placed_.add(&body, to_core(body.getCenterOfMassTransform()),
+                    force.cwiseProduct(to_core(body.getLinearFactor())), at);
     }
     /// What acted on bodies that are not in the world any more.
     void forget_gone(const btCollisionWorld& world) {
         const auto& objects = world.getCollisionObjectArray();
-        std::erase_if(held_, [&objects](const Held& held) {
-            return objects.findLinearSearch2(held.body) < 0;
-        });
+        const auto is_gone = [&objects](btRigidBody* body) {
+            return objects.findLinearSearch2(body) < 0;
+        };
+        std::erase_if(held_, [&](const Held& held) { return is_gone(held.body); });
+        placed_.forget(is_gone);
     }
     void apply() const {
         apply([](const btRigidBody&) { return true; });
@@ -61,6 +73,17 @@ class HeldForces {
             body->applyTorque(torque);
         }
     }
+    /// Of these bodies, where they are now, as the places of forces went along.
+    template <class IsMeant>
+    void follow(const IsMeant& is_meant) const {
+        placed_.follow(
+            [](const btRigidBody* body) {
+                return to_core(body->getCenterOfMassTransform().getBasis());
+            },
+            [&](btRigidBody* body, const Vector3<double>& torque) {
+                if (is_meant(*body)) body->applyTorque(to_bullet(torque));
+            });
+    }
 
   private:
     struct Held {
@@ -71,7 +94,13 @@ class HeldForces {
         }
     };
 
+    [[nodiscard]] bool holds(const btRigidBody* body) const {
+        return std::any_of(held_.begin(), held_.end(),
+                           [body](const Held& held) { return held.body == body; });
+    }
+
     std::vector<Held> held_, before_;
+    PlacedForces<btRigidBody*> placed_;
 };
 
 } // namespace ductile::bullet

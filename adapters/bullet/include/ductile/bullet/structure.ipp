@@ -80,9 +80,7 @@ DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) cons
 
 DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
                                     const Vector3<double>& at_place) {
-    btRigidBody& body = *at(seat);
-    body.activate();
-    body.applyForce(to_bullet(force), to_bullet(at_place) - body.getCenterOfMassPosition());
+    world_.apply_force(*at(seat), force, at_place);
 }
 
 DUCTILE_INLINE void Structure::drop_body(std::size_t body) {

@@ -109,6 +109,11 @@ class World final : public SteppedWorld {
     void look_after_rest(PlasticConstraint& joint) {
         keep(joint, [] {});
     }
+    /// Applies a force to a body for the coming step, at a place, both world [N, m]: through the
+    /// parts of a frame it goes along with that place, where the torque of Bullet's own applyForce
+    /// stays as it is. Wakes the body.
+    /// @throws std::invalid_argument where one is not finite.
+    void apply_force(btRigidBody& body, const Vector3<double>& force, const Vector3<double>& at);
     /// Takes a joint out of Bullet's world too. What is not here is left alone.
     void remove(PlasticConstraint& joint);
     void remove(MultiBodyPlasticConstraint& joint);

@@ -143,6 +143,14 @@ DUCTILE_INLINE void World::tell_of_members() {
     });
 }
 
+DUCTILE_INLINE void World::apply_force(btRigidBody& body, const Vector3<double>& force,
+                                       const Vector3<double>& at) {
+    check_placed_force(force, at);
+    body.activate();
+    body.applyForce(to_bullet(force), to_bullet(at) - body.getCenterOfMassPosition());
+    if (parts_ != nullptr) parts_->place(body, force, at);
+}
+
 DUCTILE_INLINE void World::remove(PlasticConstraint& joint) {
     if (!supervisor().knows(detail::address(joint))) return;
     let_go(joint);

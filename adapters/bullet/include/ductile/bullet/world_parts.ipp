@@ -195,10 +195,9 @@ DUCTILE_INLINE void WorldParts::put_back() {
 }
 
 DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
-    if (!std::exchange(forces_act_, false)) {
-        forces_.apply([this](const btRigidBody& body) { return !local_ || scope_.has(body); });
-    }
-    members_->apply_forces();
+    const auto is_meant = [this](const btRigidBody& body) { return !local_ || scope_.has(body); };
+    if (!std::exchange(forces_act_, false)) forces_.apply(is_meant);
+    if (!ahead) members_->apply_forces();
     const bool metered = keeps_ledger_ || at_risk_;
     if (metered) meter_.before_step();
     PartStops stops;
@@ -211,6 +210,8 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         held_.let_go(manifolds(), half_ + h / 2,
                      [this](const auto& body) { return concerns(body); });
         time_ += h;
+        forces_.follow(is_meant); // to where their places are now
+        members_->apply_forces();
         if (metered) meter_.bodies_ahead();
         keep_spins(h);
     }

@@ -65,10 +65,7 @@ DUCTILE_INLINE JointFrame<double> Structure::frame_of(const PlanSeat& seat) cons
 
 DUCTILE_INLINE void Structure::push(const PlanSeat& seat, const Vector3<double>& force,
                                     const Vector3<double>& at_place) {
-    dBodyID body = at(seat);
-    dBodyEnable(body);
-    dBodyAddForceAtPos(body, dReal(force.x()), dReal(force.y()), dReal(force.z()),
-                       dReal(at_place.x()), dReal(at_place.y()), dReal(at_place.z()));
+    world_.apply_force(at(seat), force, at_place);
 }
 
 DUCTILE_INLINE void Structure::drop_body(std::size_t body) {

@@ -122,6 +122,11 @@ class World final : public SteppedWorld {
     void add(dBodyID body);
     /// To be called before the body is destroyed.
     void remove(dBodyID body);
+    /// Applies a force to a body for the coming step, at a place, both world [N, m]: through the
+    /// parts of a frame it goes along with that place, where the torque of dBodyAddForceAtPos stays
+    /// as it is. Enables the body.
+    /// @throws std::invalid_argument where one is not finite, or the body is null.
+    void apply_force(dBodyID body, const Vector3<double>& force, const Vector3<double>& at);
     /// Names a contact joint of the coming step and what it was made of, for the ledger and so that
     /// islands with plastic joints are solved with it (island_solver.hpp). One between two bodies
     /// that a plastic joint holds together, until that breaks, or of a member that hang together,

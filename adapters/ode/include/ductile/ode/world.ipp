@@ -151,6 +151,17 @@ DUCTILE_INLINE void World::remove(dBodyID body) {
     if (parts_ != nullptr) parts_->forget(body);
 }
 
+DUCTILE_INLINE void World::apply_force(dBodyID body, const Vector3<double>& force,
+                                       const Vector3<double>& at) {
+    if (body == nullptr) {
+        throw std::invalid_argument("World.apply_force.body = null: must be a body");
+    }
+    check_placed_force(force, at);
+    dBodyEnable(body);
+    add_force(body, force, cross(difference(at, to_core(dBodyGetPosition(body))), force));
+    if (parts_ != nullptr) parts_->place(body, force, at);
+}
+
 DUCTILE_INLINE bool World::are_joined(dBodyID a, dBodyID b) const {
     if (a == nullptr || b == nullptr) return false;
     for (int i = 0; i < dBodyGetNumJoints(a); ++i) {

@@ -74,6 +74,10 @@ class WorldParts final : public PartEngine {
     WorldParts(const WorldParts&) = delete;
     WorldParts& operator=(const WorldParts&) = delete;
 
+    /// A force that was applied at a place, as HeldForces::place.
+    void place(dBodyID body, const Vector3<double>& force, const Vector3<double>& at) {
+        forces_.place(body, force, at);
+    }
     /// A frame of `length` [s] begins, with the forces that are applied for it.
     void begin(double length);
     /// It is over.

@@ -206,10 +206,11 @@ DUCTILE_INLINE void WorldParts::put_back() {
 /// Into the middle of a part.
 DUCTILE_INLINE void WorldParts::go_ahead(double h, double half) {
     forces_.apply_to(bodies());
-    if (!out_) of_.members->apply_forces();
     if (metered_) of_.meter.before_step(false); // contacts are to come
     const bool moved = half_ahead_.move(bodies(), half);
-    if (moved && metered_) of_.meter.bodies_ahead();
+    if (half > 0) forces_.follow(bodies()); // to where their places are now
+    if (!out_) of_.members->apply_forces();
+    if (metered_ && (moved || !of_.members->empty())) of_.meter.bodies_ahead();
     if (half > 0) keep_spins(h);
 }
 
