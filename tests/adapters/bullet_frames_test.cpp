@@ -879,6 +879,39 @@ TEST_CASE("Frames: a motor of Bullet's has its moment in every part", "[frame]")
 }
 
 /// Beside a hinge that flows to and fro, so that frames have several parts.
+TEST_CASE("Frames: a slider of Bullet's drives nothing, whichever frame it goes by", "[frame]") {
+    // a bead on a rotor's bar: ((I + J + m r²) ω)' = -M, r'' = r ω²
+    constexpr double inertia = 2, of_bead = 0.3, mass = 4, moment = 4, first = 0.3, begins = 4;
+    double turned = 0, spin = begins, at_bar = first, outwards = 0;
+    constexpr double end = 0.4, tiny = 1e-6;
+    for (double time = 0; time < end - tiny / 2; time += tiny) {
+        const double all = inertia + of_bead + mass * at_bar * at_bar;
+        outwards += tiny * at_bar * spin * spin;
+        spin -= tiny * (moment + 2 * mass * at_bar * outwards * spin) / all;
+        at_bar += tiny * outwards;
+        turned += tiny * spin;
+    }
+    const bool by_a = GENERATE(true, false);
+    for (const double frame : {1.0 / 2000, 1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(by_a, frame);
+        Rig rig;
+        btRigidBody& rotor = rig.body(5, {1, 1, btScalar(inertia)}, {0, 0, 0});
+        btRigidBody& bead = rig.body(mass, {1, 1, btScalar(of_bead)}, {btScalar(first), 0, 0});
+        auto slider =
+            std::make_unique<btSliderConstraint>(bead, rotor, at({0, 0, 0}), at({0, 0, 0}), by_a);
+        rig.engine.addConstraint(slider.get(), true);
+        rig.guides.push_back(std::move(slider));
+        Hinge hinge(rotor, at({0, 0, 0}), law(moment));
+        rig.world->add(hinge);
+        rotor.setAngularVelocity({0, 0, btScalar(begins)});
+        bead.setAngularVelocity({0, 0, btScalar(begins)});
+        bead.setLinearVelocity({0, btScalar(begins * first), 0});
+        rig.run(end, frame);
+        CHECK(hinge.absorbed_energy() == Approx(moment * turned).epsilon(0.01));
+        CHECK(rig.world->run().believed());
+    }
+}
+
 TEST_CASE("Frames: a vehicle brakes once in all parts of a frame", "[frame]") {
     constexpr double mass = 1000, speed = 20, brake = 15, frame = 1.0 / 60; // [kg] [m/s] [N s] [s]
     Rig rig;

@@ -132,7 +132,7 @@ DUCTILE_INLINE void IslandSolver::convertJoints(btTypedConstraint** constraints,
             others_.push_back(constraints[i]);
         }
     }
-    const detail::PinsInWorld pins(others_, ahead_);
+    const detail::PlainFrames frames(others_, ahead_);
     look_ahead(info);
     btSequentialImpulseConstraintSolver::convertJoints(others_.data(), int(others_.size()), info);
 }
