@@ -14,6 +14,7 @@
 #include <limits>
 #include <vector>
 
+#include "ductile/bullet/island_solver_held.ipp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
@@ -149,6 +150,8 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
         const btScalar half = info.m_timeStep / 2;
         btRigidBody &of_a = constraint->getRigidBodyA(), &of_b = constraint->getRigidBodyB();
         const detail::BodyAhead a(of_a, half), b(of_b, half);
+        detail::HeldAxes held;
+        held.take(*constraint);
         const bool led = detail::is_led(of_a) || detail::is_led(of_b);
         if (constraint->isEnabled() && !led) constraint->getInfo1(&size);
         count_at_end_.push_back(size.m_numConstraintRows);
