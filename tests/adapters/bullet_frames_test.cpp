@@ -879,6 +879,112 @@ TEST_CASE("Frames: a motor of Bullet's has its moment in every part", "[frame]")
 }
 
 /// Beside a hinge that flows to and fro, so that frames have several parts.
+TEST_CASE("Frames: a slider of Bullet's drives nothing, whichever frame it goes by", "[frame]") {
+    // a bead on a rotor's bar: ((I + J + m r²) ω)' = -M, r'' = r ω²
+    constexpr double inertia = 2, of_bead = 0.3, mass = 4, moment = 4, first = 0.3, begins = 4;
+    double turned = 0, spin = begins, at_bar = first, outwards = 0;
+    constexpr double end = 0.4, tiny = 1e-6;
+    for (double time = 0; time < end - tiny / 2; time += tiny) {
+        const double all = inertia + of_bead + mass * at_bar * at_bar;
+        outwards += tiny * at_bar * spin * spin;
+        spin -= tiny * (moment + 2 * mass * at_bar * outwards * spin) / all;
+        at_bar += tiny * outwards;
+        turned += tiny * spin;
+    }
+    const bool by_a = GENERATE(true, false);
+    for (const double frame : {1.0 / 2000, 1.0 / 240, 1.0 / 60, 1.0 / 30}) {
+        CAPTURE(by_a, frame);
+        Rig rig;
+        btRigidBody& rotor = rig.body(5, {1, 1, btScalar(inertia)}, {0, 0, 0});
+        btRigidBody& bead = rig.body(mass, {1, 1, btScalar(of_bead)}, {btScalar(first), 0, 0});
+        auto slider =
+            std::make_unique<btSliderConstraint>(bead, rotor, at({0, 0, 0}), at({0, 0, 0}), by_a);
+        rig.engine.addConstraint(slider.get(), true);
+        rig.guides.push_back(std::move(slider));
+        Hinge hinge(rotor, at({0, 0, 0}), law(moment));
+        rig.world->add(hinge);
+        rotor.setAngularVelocity({0, 0, btScalar(begins)});
+        bead.setAngularVelocity({0, 0, btScalar(begins)});
+        bead.setLinearVelocity({0, btScalar(begins * first), 0});
+        rig.run(end, frame);
+        CHECK(hinge.absorbed_energy() == Approx(moment * turned).epsilon(0.01));
+        CHECK(rig.world->run().believed());
+    }
+}
+
+/// Of Bullet's own, all of whose axes but those of the universal's turns are held.
+enum class Holds { universal, six, slider_along, slider_about, hinge };
+
+[[nodiscard]] std::unique_ptr<btTypedConstraint> that_holds(Holds kind, btRigidBody& a,
+                                                            btRigidBody& b,
+                                                            const btVector3& place) {
+    const btQuaternion x_to_z(btVector3(0, 1, 0), -SIMD_HALF_PI),
+        z_to_y(btVector3(1, 0, 0), -SIMD_HALF_PI), x_to_y(btVector3(0, 0, 1), SIMD_HALF_PI);
+    const auto in = [&](const btRigidBody& body, const btQuaternion& turned) {
+        return body.getCenterOfMassTransform().inverse() * btTransform(turned, place);
+    };
+    const auto turned = [&](const btQuaternion& to, auto make) {
+        return make(in(a, to), in(b, to));
+    };
+    const auto six = [&](const btTransform& of_a, const btTransform& of_b) {
+        auto all = std::make_unique<btGeneric6DofConstraint>(a, b, of_a, of_b, true);
+        for (int i = 0; i < 6; ++i) all->setLimit(i, 0, 0);
+        return all;
+    };
+    const auto slider = [&](const btTransform& of_a, const btTransform& of_b) {
+        auto bar = std::make_unique<btSliderConstraint>(a, b, of_a, of_b, true);
+        bar->setLowerLinLimit(0);
+        bar->setUpperLinLimit(0);
+        return bar;
+    };
+    const auto hinge = [&](const btTransform& of_a, const btTransform& of_b) {
+        auto pin = std::make_unique<btHingeConstraint>(a, b, of_a, of_b);
+        pin->setLimit(0, 0);
+        return pin;
+    };
+    switch (kind) {
+        case Holds::universal: {
+            btVector3 pivot = place, z(0, 0, 1), y(0, 1, 0);
+            return std::make_unique<btUniversalConstraint>(a, b, pivot, z, y);
+        }
+        case Holds::six:
+            return turned(btQuaternion::getIdentity(), six);
+        case Holds::slider_along:
+            return turned(x_to_z, slider);
+        case Holds::slider_about:
+            return turned(x_to_y, slider);
+        case Holds::hinge:
+            break;
+    }
+    return turned(z_to_y, hinge);
+}
+
+TEST_CASE("Frames: what hangs on a joint of Bullet's that is exactly where it holds does not fall",
+          "[frame]") {
+    const Holds kind = GENERATE(Holds::universal, Holds::six, Holds::slider_along,
+                                Holds::slider_about, Holds::hinge);
+    constexpr double g = 10, mass = 10, of_arm = 2, span = 1;
+    const double beside = kind == Holds::universal ? 0 : 0.25;
+    for (const double frame : all_frames) {
+        CAPTURE(int(kind), frame);
+        Rig rig;
+        rig.engine.setGravity({0, 0, btScalar(-g)});
+        btRigidBody& arm = rig.body(of_arm, {1, 1, 1}, {btScalar(span / 2), 0, 0});
+        btRigidBody& hung =
+            rig.body(mass, {1, 1, 1},
+                     {btScalar(span + beside), 0, btScalar(kind == Holds::universal ? -0.5 : 0)});
+        rig.guides.push_back(that_holds(kind, arm, hung, {btScalar(span), 0, 0}));
+        rig.engine.addConstraint(rig.guides.back().get(), true);
+        const double moment = g * (of_arm * span / 2 + mass * (span + beside));
+        const btTransform root = along({0, 1, 0});
+        Hinge hinge(arm, arm.getCenterOfMassTransform().inverse() * root, law(2 * moment));
+        rig.world->add(hinge);
+        rig.run(1, frame);
+        CHECK(hinge.absorbed_energy() == 0);
+        CHECK(double(hung.getLinearVelocity().length()) < (rough ? 1e-4 : 1e-9));
+    }
+}
+
 TEST_CASE("Frames: a vehicle brakes once in all parts of a frame", "[frame]") {
     constexpr double mass = 1000, speed = 20, brake = 15, frame = 1.0 / 60; // [kg] [m/s] [N s] [s]
     Rig rig;

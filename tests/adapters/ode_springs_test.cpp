@@ -81,6 +81,73 @@ void add_spring(Rig& rig, dBodyID a, dBodyID b, double rest, double stiffness, d
     dJointSetSliderParam(rig.spring, dParamStopCFM, dReal(1 / (frame * stiffness)));
 }
 
+/// The same of bodies that turn about z, where all of them are.
+struct Rotors : Rig {
+    using Hinge = ode::PlasticHinge<Law>;
+    std::unique_ptr<Hinge> hinge;
+
+    Rotors() = default;
+    ~Rotors() { hinge.reset(); }
+    dxBody& body(double inertia, double /*x*/) {
+        dxBody& made = Rig::body(1, 0);
+        const auto of = dReal(inertia);
+        dMass about;
+        dMassSetParameters(&about, 1, 0, 0, 0, of, of, of, 0, 0, 0);
+        dBodySetMass(&made, &about);
+        return made;
+    }
+    void hold(dxBody& body, double strength) {
+        hinge = std::make_unique<Hinge>(id, &body, nullptr, ode::HingeFrame{.axis = {0, 0, 1}},
+                                        Law(Perfect<double>({.strength = strength})));
+        hinge->add_to(*world);
+    }
+    [[nodiscard]] double absorbed() const { return hinge->absorbed_energy(); }
+};
+
+enum class Drive { universal, universal_second, wheel, angular };
+
+/// A motor about z, and what else holds its two bodies together.
+void drive(Drive kind, Rotors& rig, dBodyID a, dBodyID b, double speed, double moment) {
+    const auto v = dReal(speed), most = dReal(moment);
+    switch (kind) {
+        case Drive::universal:
+        case Drive::universal_second: {
+            const dJointID joint = dJointCreateUniversal(rig.id, nullptr);
+            const bool first = kind == Drive::universal;
+            dJointAttach(joint, a, b);
+            dJointSetUniversalAnchor(joint, 0, 0, 0);
+            dJointSetUniversalAxis1(joint, first ? 0 : 1, 0, first ? 1 : 0);
+            dJointSetUniversalAxis2(joint, first ? 1 : 0, 0, first ? 0 : 1);
+            dJointSetUniversalParam(joint, first ? dParamVel1 : dParamVel2, v);
+            dJointSetUniversalParam(joint, first ? dParamFMax1 : dParamFMax2, most);
+            break;
+        }
+        case Drive::wheel: {
+            const dJointID joint = dJointCreateHinge2(rig.id, nullptr);
+            const dReal steers[] = {1, 0, 0}, turns[] = {0, 0, 1};
+            dJointAttach(joint, a, b);
+            dJointSetHinge2Anchor(joint, 0, 0, 0);
+            dJointSetHinge2Axes(joint, steers, turns);
+            dJointSetHinge2Param(joint, dParamLoStop, 0);
+            dJointSetHinge2Param(joint, dParamHiStop, 0);
+            dJointSetHinge2Param(joint, dParamVel2, v);
+            dJointSetHinge2Param(joint, dParamFMax2, most);
+            break;
+        }
+        case Drive::angular: {
+            const dJointID ball = dJointCreateBall(rig.id, nullptr),
+                           motor = dJointCreateAMotor(rig.id, nullptr);
+            dJointAttach(ball, a, b);
+            dJointSetBallAnchor(ball, 0, 0, 0);
+            dJointAttach(motor, a, b);
+            dJointSetAMotorNumAxes(motor, 1);
+            dJointSetAMotorAxis(motor, 0, 1, 0, 0, 1);
+            dJointSetAMotorParam(motor, dParamVel, v);
+            dJointSetAMotorParam(motor, dParamFMax, most);
+        }
+    }
+}
+
 } // namespace
 
 TEST_CASE("A spring of ODE's swings a mass against a weak slider", "[frame]") {
@@ -106,4 +173,15 @@ TEST_CASE("A motor of ODE's that has its speed within a frame pushed no less til
         dJointSetSliderParam(motor, dParamVel, dReal(speed));
         dJointSetSliderParam(motor, dParamFMax, dReal(force));
     });
+}
+
+TEST_CASE("A motor of ODE's that turns has its speed within a frame as one that slides",
+          "[frame]") {
+    const Drive kind =
+        GENERATE(Drive::universal, Drive::universal_second, Drive::wheel, Drive::angular);
+    CAPTURE(int(kind));
+    test::drive_apart<Rotors>(
+        0.01, [kind](Rotors& rig, dxBody& a, dxBody& b, double speed, double moment) {
+            drive(kind, rig, &a, &b, speed, moment);
+        });
 }

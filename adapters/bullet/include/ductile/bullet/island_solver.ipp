@@ -11,6 +11,7 @@
 
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/island_solver.hpp"
+#include "ductile/bullet/island_solver_held.ipp"   // IWYU pragma: keep
 #include "ductile/bullet/island_solver_turned.ipp" // IWYU pragma: keep
 #include "ductile/bullet/soft_contacts.hpp"
 
@@ -132,8 +133,10 @@ DUCTILE_INLINE void IslandSolver::convertJoints(btTypedConstraint** constraints,
             others_.push_back(constraints[i]);
         }
     }
-    const detail::PinsInWorld pins(others_, ahead_);
+    const detail::PlainFrames frames(others_, ahead_);
     look_ahead(info);
+    detail::HeldAxes held;
+    for (btTypedConstraint* constraint : others_) held.take(*constraint);
     btSequentialImpulseConstraintSolver::convertJoints(others_.data(), int(others_.size()), info);
 }
 

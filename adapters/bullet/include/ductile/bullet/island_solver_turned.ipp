@@ -7,12 +7,14 @@
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpring2Constraint.h>
 #include <BulletDynamics/ConstraintSolver/btGeneric6DofSpringConstraint.h>
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
+#include <BulletDynamics/ConstraintSolver/btSliderConstraint.h>
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
+#include "ductile/bullet/island_solver_held.ipp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
@@ -43,26 +45,38 @@ class BodyAhead {
 };
 
 /// While this lives rows of hinges' pins go along the axes of the world, not along their arms,
-/// which turn: the same three rows.
-class PinsInWorld {
+/// which turn: the same three rows, in parts of frames. Those of sliders that go by the frame of B
+/// act on the arms that they have: with its offset of frames Bullet takes the way along the axis
+/// for the opposite one, and they drive what they should hold.
+class PlainFrames {
   public:
-    PinsInWorld(const std::vector<btTypedConstraint*>& constraints, bool all) {
+    PlainFrames(const std::vector<btTypedConstraint*>& constraints, bool part) {
         for (btTypedConstraint* constraint : constraints) {
-            if (!all || constraint->getConstraintType() != HINGE_CONSTRAINT_TYPE) continue;
-            auto* hinge = static_cast<btHingeConstraint*>(constraint);
-            if (!hinge->getUseFrameOffset()) continue;
-            hinges_.push_back(hinge);
-            hinge->setUseFrameOffset(false);
+            if (part && constraint->getConstraintType() == HINGE_CONSTRAINT_TYPE) {
+                take(static_cast<btHingeConstraint&>(*constraint), hinges_);
+            } else if (constraint->getConstraintType() == SLIDER_CONSTRAINT_TYPE) {
+                auto& slider = static_cast<btSliderConstraint&>(*constraint);
+                if (!slider.getUseLinearReferenceFrameA()) take(slider, sliders_);
+            }
         }
     }
-    ~PinsInWorld() {
+    ~PlainFrames() {
         for (btHingeConstraint* hinge : hinges_) hinge->setUseFrameOffset(true);
+        for (btSliderConstraint* slider : sliders_) slider->setUseFrameOffset(true);
     }
-    PinsInWorld(const PinsInWorld&) = delete;
-    PinsInWorld& operator=(const PinsInWorld&) = delete;
+    PlainFrames(const PlainFrames&) = delete;
+    PlainFrames& operator=(const PlainFrames&) = delete;
 
   private:
+    template <class Constraint>
+    static void take(Constraint& constraint, std::vector<Constraint*>& taken) {
+        if (!constraint.getUseFrameOffset()) return;
+        taken.push_back(&constraint);
+        constraint.setUseFrameOffset(false);
+    }
+
     std::vector<btHingeConstraint*> hinges_;
+    std::vector<btSliderConstraint*> sliders_;
 };
 
 [[nodiscard]] DUCTILE_INLINE Vector6<double> twist(const btVector3& linear,
@@ -136,6 +150,8 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
         const btScalar half = info.m_timeStep / 2;
         btRigidBody &of_a = constraint->getRigidBodyA(), &of_b = constraint->getRigidBodyB();
         const detail::BodyAhead a(of_a, half), b(of_b, half);
+        detail::HeldAxes held;
+        held.take(*constraint);
         const bool led = detail::is_led(of_a) || detail::is_led(of_b);
         if (constraint->isEnabled() && !led) constraint->getInfo1(&size);
         count_at_end_.push_back(size.m_numConstraintRows);

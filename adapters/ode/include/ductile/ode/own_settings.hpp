@@ -55,7 +55,7 @@ class OwnSettings {
                 const dJointID joint = dBodyGetJoint(body, i);
                 const dBodyID first = dJointGetBody(joint, 0);
                 if ((first != body && first != nullptr) || ours.made.has(joint)) continue;
-                if (!blow && !ours.ruled.has(joint)) note_motor(joint);
+                if (!blow && !ours.ruled.has(joint)) note_motors(joint);
                 rule(joint, part);
             }
         }
@@ -65,19 +65,19 @@ class OwnSettings {
         for (const Usual& usual : usual_) usual.set(usual.joint, usual.name, usual.value);
         usual_.clear();
     }
-    /// What the springs, and the motors of hinges and sliders whose feedback tells, did in a part
-    /// of `h` [s], as bodies leave it.
+    /// What the springs, and the motors whose feedback tells, did in a part of `h` [s], as bodies
+    /// leave it.
     [[nodiscard]] OwnForces forces(double h) const {
         OwnForces forces;
-        for (const auto& [joint, strength, mass, speed] : motors_) {
-            const dJointFeedback* feedback = dJointGetFeedback(joint);
+        for (const Motor& motor : motors_) {
+            const dJointFeedback* feedback = dJointGetFeedback(motor.joint);
             if (feedback == nullptr) continue;
-            const AttachedBodies bodies = attached_bodies(joint);
-            const OwnAxes axes = OwnAxes::of(joint, bodies);
-            const Vector3<double> all = to_core(feedback->f1), own = axes.force(all),
+            const OwnAxes axes = OwnAxes::of(motor.joint, attached_bodies(motor.joint));
+            const Vector3<double> all = to_core(feedback->f1),
                                   moment = axes.moment(all, to_core(feedback->t1));
-            forces.add_motor(strength, mass, std::sqrt(dot(own, own) + dot(moment, moment)), speed,
-                             h);
+            const double force =
+                motor.turns ? dot(moment, motor.along) : dot(axes.force(all), motor.along);
+            forces.add_motor(motor.strength, motor.mass, force, motor.speed, h);
         }
         for (const Spring& spring : springs_) {
             const double end = stopped_axes(spring.joint).axes[spring.axis].rate;
@@ -107,6 +107,8 @@ class OwnSettings {
 
     struct Motor {
         dJointID joint;
+        Vector3<double> along; ///< world, unit
+        bool turns;
         double strength, mass, speed; ///< the last as the part began, less the motor's
     };
 
@@ -144,16 +146,46 @@ class OwnSettings {
             soften(dParamStopERP + group, dParamStopCFM + group);
         }
     }
-    void note_motor(dJointID joint) {
-        const dJointType type = dJointGetType(joint);
-        if (type != dJointTypeHinge && type != dJointTypeSlider) return;
-        const JointCalls calls = joint_calls(type);
-        const auto strength = double(calls.get(joint, dParamFMax));
-        if (!(strength > 0)) return;
-        const StoppedAxis axis = stopped_axes(joint).axes[0];
-        if (!(axis.yields > 0)) return;
+    /// Of several about one joint each is told from the others where their axes are at right
+    /// angles.
+    void note_motors(dJointID joint) {
+        const bool reversed = attached_bodies(joint).reversed;
+        switch (dJointGetType(joint)) {
+            case dJointTypeHinge:
+                return note_motor(joint, 0, told(joint, dJointGetHingeAxis));
+            case dJointTypeSlider:
+                return note_motor(joint, 0, told(joint, dJointGetSliderAxis), false);
+            case dJointTypeUniversal:
+                note_motor(joint, reversed ? 1 : 0, told(joint, dJointGetUniversalAxis1));
+                return note_motor(joint, reversed ? 0 : 1, told(joint, dJointGetUniversalAxis2));
+            case dJointTypeHinge2:
+                note_motor(joint, 0, told(joint, dJointGetHinge2Axis1));
+                return note_motor(joint, 1, told(joint, dJointGetHinge2Axis2));
+            case dJointTypeAMotor:
+                for (int i = 0; i < dJointGetAMotorNumAxes(joint); ++i) {
+                    dVector3 axis;
+                    dJointGetAMotorAxis(joint, i, axis);
+                    note_motor(joint, i, to_core(axis));
+                }
+                return;
+            default:
+                return;
+        }
+    }
+    void note_motor(dJointID joint, int number, const Vector3<double>& along, bool turns = true) {
+        const JointCalls calls = joint_calls(dJointGetType(joint));
+        const auto get = [&](int name) {
+            return double(calls.get(joint, name + dParamGroup * number));
+        };
+        const double strength = get(dParamFMax), yields = detail::yields_along(joint, along, turns);
+        if (!(strength > 0) || !(yields > 0)) return;
+        const auto [a, b, reversed] = attached_bodies(joint);
+        // a slider that is attached as (null, body) counts its way the other way round
+        const double way = !turns && reversed ? -1 : 1;
+        const Vector3<double> apart = turns ? difference(angular_velocity(a), angular_velocity(b))
+                                            : difference(linear_velocity(a), linear_velocity(b));
         motors_.push_back(
-            {joint, strength, 1 / axis.yields, axis.rate - double(calls.get(joint, dParamVel))});
+            {joint, along, turns, strength, 1 / yields, way * dot(apart, along) - get(dParamVel)});
     }
     /// One that a frame could follow, which it is now.
     bool is_spring(dJointID joint, int group, const Part& part) {
