@@ -192,8 +192,9 @@ requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 void CoupledJoint<Surface, Law, Criterion>::flow(Step& step, Taken& taken, const Reaction& reaction,
                                                  Scalar dt) noexcept {
     const Scalar work = taken.flow, strength = first_strength_ * grown_;
-    const bool spent = share_ < carries_nothing<Scalar> &&
-                       uses_up(std::max(taken.asked / strength, way_of(reaction, dt)), left_);
+    // whose force was not found it has passed where its bodies did
+    const Scalar asked = taken.asked != 0 ? taken.asked / strength : way_of(reaction, dt);
+    const bool spent = share_ < carries_nothing<Scalar> && uses_up(asked, left_);
     if (!(work > 0)) {
         step.other_work += work;
         step.direction.setZero();
