@@ -178,6 +178,47 @@ TEST_CASE("Frames: a strength that changes on the way to a break takes what it s
     }
 }
 
+TEST_CASE("Frames: axes that share a strength that changes on the way to a break take it all",
+          "[frame]") {
+    // stretched and bent at once, 1 kg with a radius of 0.1 m; a travel of one has the work R
+    using Surface = Scaled<RectangleAxialBending<double>>;
+    constexpr double strength = 50, way = 0.04, moment = 5, inertia = 0.01;
+    const auto thrown = [&](double frame, auto law, auto criterion, double work, bool rigid) {
+        Rig rig;
+        const auto body = rig.body(1, V3::Constant(inertia), V3::Zero());
+        CoupledParameters<double, 2> rows;
+        if (!rigid) rows.stiffness = {strength / 4e-4, moment / 4e-3};
+        const Surface surface(RectangleAxialBending<double>(), {.capacity = {strength, moment}});
+        auto& joint = rig.some_of(body, nullptr, V3::Zero(), Eigen::Matrix3d::Identity(),
+                                  CoupledJoint(surface, law, criterion, rows),
+                                  std::array{JointAxis::axial, JointAxis::bending_x});
+        const double energy = 2.5 * work;
+        const double speed = std::sqrt(energy), spin = speed / std::sqrt(inertia);
+        WorldRig::set_velocity(body, {0, 0, speed});
+        WorldRig::set_spin(body, {spin, 0, 0});
+        rig.run(0.2, frame);
+        CHECK(joint.broken());
+        CHECK(joint.absorbed_energy() == Approx(work).epsilon(2e-3));
+        CHECK(rig.world().run().believed());
+        if (!rigid) return;
+        const double v = WorldRig::velocity(body).z(), w = WorldRig::spin(body).x();
+        CHECK((v * v + inertia * w * w) / 2 == Approx(energy - work).epsilon(5e-3));
+    };
+    for (const double frame : all_frames) {
+        for (const bool rigid : {true, false}) {
+            CAPTURE(frame, rigid);
+            const Perfect<double> perfect({.strength = strength});
+            const SofteningDamage<double> fades({.onset = way / 2, .failure = way});
+            thrown(frame, perfect, fades, 0.75 * strength * way, rigid);
+            const Softening<double> softens({.strength = strength, .exhaustion = way});
+            const SofteningDamage<double> fades_too({.onset = 0, .failure = way});
+            thrown(frame, softens, fades_too, strength * way / 3, rigid);
+            const Linear<double> hardens({.strength = strength, .hardening = 2 * strength / way});
+            thrown(frame, hardens, fades_too, 5 * strength * way / 6, rigid);
+        }
+    }
+}
+
 TEST_CASE("Frames: a break whose way had not the strength foretold is done again", "[frame]") {
     // whole until half of the way, then it fades: the middle of the way knows nothing of that
     constexpr double mass = 1, strength = 50, speed = 20, onset = 0.16, failure = 0.235;

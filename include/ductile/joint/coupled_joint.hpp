@@ -227,11 +227,11 @@ class CoupledJoint {
         left_ = travel_to_break(criterion_, state_.criterion, ahead, Scalar(0),
                                 [&](Scalar way) noexcept { return mean_strength_of(way); });
         left_ = std::min(left_, travel_to_nothing(law_, state_.plastic_travel));
-        grown_ = flows ? mean_strength_of(std::min(ahead, left_)) / first_strength_ : now.by;
         if (flows && lives_.limited()) { // along the normal a travel of one has the work R
             const Scalar life = lives_.of(first_strength_ * surface_.normal(predicted));
             left_ = std::min(left_, travel_left(Scalar(1), life, state_.life));
         }
+        grown_ = flows ? mean_strength_of(std::min(ahead, left_)) / first_strength_ : now.by;
         share_ = unspent_share(left_, least);
         cap_ = cap();
         const bool capped = cap_ <= grown_ * share_;
@@ -314,44 +314,11 @@ class CoupledJoint {
     void snap(Step& step, Taken& taken, const Reaction& reaction, Scalar time, Scalar dt) noexcept;
 
     /// Uses up life for the work of flow of all rows together.
-    void flow(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept {
-        const Scalar work = taken.flow, strength = first_strength_ * grown_;
-        const bool spent =
-            share_ < carries_nothing<Scalar> && uses_up(taken.asked / strength, left_);
-        if (!(work > 0)) {
-            step.other_work += work;
-            step.direction.setZero();
-            state_.broken = spent;
-            if (spent) end_after(step, taken, reaction, Scalar(0), dt);
-            return;
-        }
-        Scalar travel = work / strength;
-        // of the travel whose work is booked: a spring's is where the step ends
-        const Scalar slipped = -numeric::dot(taken.force, step.direction);
-        const bool differs = reaction.on_surface && slipped > 0;
-        const Scalar booked = differs ? std::min(work / slipped, Scalar(2)) : Scalar(1);
-        // what stopped within the step had its strength for a share of it, and flowed in that alone
-        const Scalar flowed = taken.at_bound.any()
-                                  ? Scalar(1)
-                                  : std::min(surface_.value(taken.force) / reach(), Scalar(1));
-        const Scalar life = lives_.of(step.direction) * share_ * booked * flowed;
-        const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
-        const bool last = spent || uses_up(travel, left);
-        if (last) travel = std::min(travel, left);
-        step.plastic_work = strength * travel;
-        step.misfit = std::abs(mean_strength_of(travel) - strength) * travel;
-        state_.life = std::min(state_.life + life * (step.plastic_work / work), Scalar(1));
-        state_.plastic_travel += travel;
-        const Scalar force = cap_ < std::numeric_limits<Scalar>::infinity() // below it: see brittle
-                                 ? surface_.value(reaction.force) * first_strength_
-                                 : strength;
-        criterion_.update(state_.criterion,
-                          {travel, state_.plastic_travel, force, step.plastic_work, dt});
-        state_.broken =
-            last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
-        const Scalar rest = work - step.plastic_work;
-        (state_.broken ? step.release : step.other_work) += rest;
-        if (state_.broken) end_after(step, taken, reaction, travel, dt);
+    void flow(Step& step, Taken& taken, const Reaction& reaction, Scalar dt) noexcept;
+    /// Equivalent travel of what its rows moved, whatever force they had.
+    [[nodiscard]] Scalar way_of(const Reaction& reaction, Scalar dt) const noexcept {
+        const Vector moved = (start_ + reaction.velocity) * (dt / 2);
+        return numeric::dot(surface_.support(moved), moved) / first_strength_;
     }
 
     /// Of the work of springs that reached the surface within the step: what they lacked of it

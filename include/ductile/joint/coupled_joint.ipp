@@ -189,6 +189,63 @@ auto CoupledJoint<Surface, Law, Criterion>::commit(const Reaction& reaction, Sca
 
 template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
 requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
+void CoupledJoint<Surface, Law, Criterion>::flow(Step& step, Taken& taken, const Reaction& reaction,
+                                                 Scalar dt) noexcept {
+    const Scalar work = taken.flow, strength = first_strength_ * grown_;
+    // whose force was not found it has passed where its bodies did
+    const Scalar asked = taken.asked != 0 ? taken.asked / strength : way_of(reaction, dt);
+    const bool spent = share_ < carries_nothing<Scalar> && uses_up(asked, left_);
+    if (!(work > 0)) {
+        step.other_work += work;
+        step.direction.setZero();
+        state_.broken = spent;
+        if (spent) end_after(step, taken, reaction, Scalar(0), dt);
+        return;
+    }
+    Scalar travel = work / strength;
+    const Scalar foretold = std::min(travel, left_);
+    step.misfit = std::abs(mean_strength_of(foretold) - strength) * foretold;
+    if (step.misfit > leftover_share<Scalar> * work) {
+        const auto took = [this](Scalar way) noexcept { return mean_strength_of(way) * way; };
+        const auto at = [this](Scalar way) noexcept {
+            return law_.value(state_.plastic_travel + way) *
+                   criterion_.strength_factor(state_.criterion, way);
+        };
+        travel = travel_of_work(work, travel, left_, took, at);
+    }
+    // of the travel whose work is booked: a spring's is where the step ends
+    const Scalar slipped = -numeric::dot(taken.force, step.direction);
+    const bool differs = reaction.on_surface && slipped > 0;
+    const Scalar booked = differs ? std::min(work / slipped, Scalar(2)) : Scalar(1);
+    // what stopped within the step had its strength for a share of it, and flowed in that alone
+    const Scalar flowed = taken.at_bound.any()
+                              ? Scalar(1)
+                              : std::min(surface_.value(taken.force) / reach(), Scalar(1));
+    const Scalar as_far = travel * strength / work; // as its work says
+    const Scalar life = lives_.of(step.direction) * share_ * booked * flowed * as_far;
+    const Scalar left = std::min(left_, travel_left(travel, life, state_.life));
+    const bool last = spent || uses_up(travel, left);
+    step.plastic_work = work;
+    if (last) {
+        travel = std::min(travel, left);
+        step.plastic_work = std::min(work, mean_strength_of(travel) * travel);
+    }
+    state_.life = std::min(state_.life + life * (step.plastic_work / work), Scalar(1));
+    state_.plastic_travel += travel;
+    const Scalar force = cap_ < std::numeric_limits<Scalar>::infinity() // below it: see brittle
+                             ? surface_.value(reaction.force) * first_strength_
+                             : strength;
+    criterion_.update(state_.criterion,
+                      {travel, state_.plastic_travel, force, step.plastic_work, dt});
+    state_.broken =
+        last || criterion_.broken(state_.criterion) || faded(law_, state_.plastic_travel);
+    const Scalar rest = work - step.plastic_work;
+    (state_.broken ? step.release : step.other_work) += rest;
+    if (state_.broken) end_after(step, taken, reaction, travel, dt);
+}
+
+template <YieldSurface Surface, StrengthLaw Law, FractureCriterion Criterion>
+requires std::same_as<typename Surface::Scalar, typename Law::Scalar>
 auto CoupledJoint<Surface, Law, Criterion>::missed_onset(const Reaction& reaction,
                                                          Scalar dt) const noexcept -> Scalar {
     if (!ahead_ || all_rigid_ || cap_ < grown_) return 0;

@@ -18,10 +18,12 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <utility>
 
 #include "ductile/fracture/fracture.hpp"
 #include "ductile/law/law.hpp"
+#include "ductile/law/root.hpp"
 #include "ductile/vocabulary/leftover.hpp"
 
 namespace ductile {
@@ -70,6 +72,23 @@ template <FractureCriterion Criterion, class Mean>
         if (!(way > 0) || way == before) return left;
     }
     return way;
+}
+
+/// Travel that takes `work` > 0 [J]: `took(way)` [J] is what the first `way` takes, `at(way)` the
+/// strength after it. From `first` > 0 on; no more than `left`, and twice `first` where nothing
+/// ends it [m | rad].
+template <std::floating_point S, class Took, class At>
+[[nodiscard]] S travel_of_work(S work, S first, S left, Took&& took, At&& at) noexcept {
+    S most = first;
+    if (took(first) < work) {
+        most = left < std::numeric_limits<S>::infinity() ? left : 2 * first;
+        if (!(took(most) > work)) return most;
+    }
+    const S enough = leftover_share<S> * work;
+    return newton_root(S(0), most, std::min(first, most), [&](S way) noexcept {
+        const S lacking = work - took(way);
+        return ValueAndSlope<S>{std::abs(lacking) <= enough ? S(0) : lacking, -at(way)};
+    });
 }
 
 /// Travel of a step that starts at `speed`, predicted from below, so that a step that can break

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <limits>
 
 #include "ductile/fracture/energy_limit.hpp"
 #include "ductile/fracture/softening_damage.hpp"
@@ -55,6 +56,23 @@ TEST_CASE("what is left of an energy is the way that takes it, at a strength tha
     }
     // what is beyond the step is told from all of the step
     CHECK(travel_to_break(limit, {}, way / 2, 1.0, mean) == Approx(8 / mean(way / 2)));
+}
+
+TEST_CASE("the way that takes a work is told from that at the strength foretold",
+          "[joint][break]") {
+    // R = 10 + 30 p, and 10 - 30 p until nothing is left of it
+    for (const double slope : {30.0, -30.0}) {
+        const double left = slope < 0 ? -10 / slope : std::numeric_limits<double>::infinity();
+        const auto took = [&](double way) { return 10 * way + slope * way * way / 2; };
+        const auto at = [&](double way) { return 10 + slope * way; };
+        for (const double first : {0.05, 0.1, 0.15}) {
+            CHECK(travel_of_work(took(0.1), first, left, took, at) == Approx(0.1).epsilon(1e-8));
+        }
+    }
+    // more than there is ends it
+    const auto took = [](double way) { return 10 * way; };
+    const auto at = [](double) { return 10.0; };
+    CHECK(travel_of_work(2.0, 0.05, 0.1, took, at) == 0.1);
 }
 
 TEST_CASE("the mean of a strength that damage takes is that of the way", "[joint][break]") {
