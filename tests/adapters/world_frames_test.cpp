@@ -307,6 +307,20 @@ TEST_CASE("Frames: a force at a place goes along with it", "[frame]") {
     }
 }
 
+TEST_CASE("Frames: a force at a place that is no number is refused, and nothing of it stays",
+          "[frame]") {
+    Rig rig;
+    const auto rod = rig.box(30, V3(0.6, 0.04, 0.04), V3(0.6, 0, 0));
+    const V3 none(0, std::numeric_limits<double>::quiet_NaN(), 0), far(0, unlimited, 0);
+    CHECK(message_of([&] {
+              rig.push(rod, none, V3::Zero());
+          }).find("World.apply_force.force = nan") != std::string::npos);
+    CHECK(message_of([&] { rig.push(rod, V3(1, 0, 0), far); }).find("World.apply_force.at = inf") !=
+          std::string::npos);
+    rig.run(1.0 / 30, 1.0 / 60);
+    CHECK(WorldRig::velocity(rod).norm() == 0);
+}
+
 TEST_CASE("Frames: an elastic row keeps its energy at any stiffness and frame", "[frame]") {
     constexpr double mass = 10, speed = 2, strength = 1e7; // never yields
     for (const double stiffness : {4e3, 4e4, 4e5, 4e6, 4e7}) {
