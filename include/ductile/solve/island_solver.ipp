@@ -44,7 +44,7 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
     double off = report.solved ? 0 : report.residual;
     if (std::isnan(report.residual)) off = std::numeric_limits<double>::infinity();
     if (off <= std::min(share, unsolved_speed)) off = 0;
-    if (report.gives > std::max(share, unsolved_speed)) off = std::max(off, report.gives);
+    if (report.gives > unsolved_speed) off = std::max(off, report.gives);
     island.unsolved = off;
     return report;
 }
@@ -176,9 +176,11 @@ DUCTILE_INLINE void GeneralSolver::certify(IslandReport& report) {
     report.residual = certificate(system_);
     const double along = detail::adds_up(system_.island()); // what turns moves by as much again
     report.gives = system_.given() * along * along;
-    // where next to nothing is asked for, round-off is more than a share of it
-    report.solved = report.residual <= std::max({solved_residual * report.scale,
-                                                 system_.round_off(4), detail::nothing});
+    // where next to nothing is asked for, round-off is more than a share of it; what a light body
+    // is asked for is no measure of what is much
+    report.solved =
+        report.residual <= std::max({std::min(solved_residual * report.scale, unsolved_speed),
+                                     system_.round_off(4), detail::nothing});
 }
 
 /// Of the answer, the start and nothing the one that leaves the least energy.

@@ -614,6 +614,30 @@ TEST_CASE("A long beam near its collapse load stands, or is said not to be solve
     }
 }
 
+TEST_CASE("A cantilever of thousands of joints bears its load, or is said not to be solved",
+          "[solve]") {
+    // its last rod is light, and by the load alone would turn by 1e5 rad/s
+    constexpr double length = 10, total = 50, force = 250, dt = 1.0 / 60;
+    for (const int rods : {100, 400, 800, 1700, 2000, 3000}) {
+        const double rod = length / rods, mass = total / rods;
+        const double inertia = mass * rod * rod / 12;
+        Island island;
+        for (int i = 0; i < rods; ++i) {
+            island.bodies.push_back(body(mass, rod / std::sqrt(12.0)));
+            const int first = add_joint(island, i, i - 1, {-rod / 2, 0, 0}, {rod / 2, 0, 0});
+            if (i + 1 < rods) continue;
+            island.rows[std::size_t(first + 1)].target =
+                dt * force * (1 / mass - rod * rod / (4 * inertia));
+            island.rows[std::size_t(first + 5)].target = dt * force * rod / (2 * inertia);
+        }
+        static_cast<void>(IslandSolver().solve(island));
+        const double borne = std::abs(island.rows[5].impulse) / (dt * force * length);
+        CAPTURE(rods, borne, island.unsolved);
+        CHECK((std::abs(borne - 1) < 0.01 || island.unsolved > 0));
+        CHECK((rods > 800 || island.unsolved == 0));
+    }
+}
+
 TEST_CASE("Ten thousand joints that flow are solved, or said not to be, and gain no energy",
           "[solve]") {
     Island island;
