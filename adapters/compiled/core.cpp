@@ -6,6 +6,7 @@
 #include <ductile/joint/usual_joints.hpp>
 #include <ductile/numeric/block_ldlt.hpp>
 #include <ductile/numeric/block_ldlt.ipp>
+#include <ductile/solve/forest_solver.ipp>
 #include <ductile/solve/interior_point.ipp>
 #include <ductile/solve/island.ipp>
 #include <ductile/solve/island_solver.ipp>

@@ -80,6 +80,10 @@ class Cholesky {
         return x;
     }
 
+    /// Entry of L below its diagonal, and of D⁻¹.
+    [[nodiscard]] S below(int i, int j) const noexcept { return l_(i, j); }
+    [[nodiscard]] S inverse_pivot(int i) const noexcept { return inverse_d_[i]; }
+
     /// C = L √D, with zeros above its diagonal.
     [[nodiscard]] Matrix lower() const noexcept {
         Matrix result = Matrix::Zero();

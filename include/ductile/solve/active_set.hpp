@@ -194,8 +194,10 @@ class ActiveSet {
                 continue;
             }
             if (!factored || (curved && !(worst < slow * before))) {
-                set_tangents(*system_);
-                static_cast<void>(set_right_sides(*system_));
+                if (step > 0) { // else they are those of now
+                    set_tangents(*system_);
+                    static_cast<void>(set_right_sides(*system_));
+                }
                 if (!system_->factor()) return false;
                 factored = true;
             }

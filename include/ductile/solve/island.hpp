@@ -91,6 +91,11 @@ struct IslandRow {
     Side side = Side::free; ///< start and answer; not read in a block
 };
 
+/// A row of no block that can only push, while it opens: it asks for nothing.
+[[nodiscard]] inline bool opens(const IslandRow& row) noexcept {
+    return row.target < 0 && row.lower == 0;
+}
+
 enum class BlockKind : unsigned char { ellipsoid, contact, surface };
 enum class BlockState : unsigned char {
     inside,  ///< holds

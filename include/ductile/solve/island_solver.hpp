@@ -35,6 +35,7 @@
 
 #include "ductile/solve/active_set.hpp"
 #include "ductile/solve/certificate.hpp"
+#include "ductile/solve/forest_solver.hpp"
 #include "ductile/solve/interior_point.hpp"
 #include "ductile/solve/island.hpp"
 #include "ductile/solve/island_report.hpp"
@@ -80,6 +81,7 @@ class IslandSolver {
   private:
     [[nodiscard]] IslandReport answer(Island& island);
 
+    std::unique_ptr<ForestSolver> forest_;
     std::unique_ptr<GeneralSolver> general_; ///< 4.5 kB that no single joint needs
 };
 

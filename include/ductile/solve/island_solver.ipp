@@ -52,6 +52,10 @@ DUCTILE_INLINE IslandReport IslandSolver::solve(Island& island) {
 DUCTILE_INLINE IslandReport IslandSolver::answer(Island& island) {
     IslandReport report;
     if (solve_one_pair(island, report)) return report;
+    if (ForestSolver::serves(island)) {
+        if (forest_ == nullptr) forest_ = std::make_unique<ForestSolver>();
+        if (forest_->solve(island, report)) return report;
+    }
     if (general_ == nullptr) general_ = std::make_unique<GeneralSolver>();
     return general_->solve(island);
 }

@@ -55,10 +55,10 @@ DUCTILE_INLINE void IslandSystem::open(Island& island) {
         row.metric = row.own + row.compliance;
         row.share = row.own > 0 ? row.own / row.metric : 0;
         // what can only push asks for nothing while it opens: a gap over a short step is no speed
-        const bool opens =
-            given.target < 0 &&
-            (contact ? island.blocks[std::size_t(block_of_[i])].first == int(i) : given.lower == 0);
-        const double size = (opens ? 0 : std::abs(given.target) * row.share) +
+        const bool nothing =
+            contact ? given.target < 0 && island.blocks[std::size_t(block_of_[i])].first == int(i)
+                    : opens(given);
+        const double size = (nothing ? 0 : std::abs(given.target) * row.share) +
                             0 * row.metric; // NaN and infinity come through
         if (row.own == 0) continue;
         if (!(size <= scale_) && !std::isnan(scale_)) scale_ = size;
