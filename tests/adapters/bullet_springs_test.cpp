@@ -16,6 +16,7 @@ namespace {
 using namespace ductile;
 using Law = OneAxisJoint<Perfect<double>>;
 using Slider = bullet::PlasticSlider<Law>;
+using Hinge = bullet::PlasticHinge<Law>;
 
 constexpr double accuracy = sizeof(btScalar) == sizeof(float) ? 0.03 : 0.01;
 
@@ -23,12 +24,14 @@ struct Rig : test::BulletEngine {
     std::vector<std::unique_ptr<btTypedConstraint>> own;
     std::unique_ptr<Slider> slider;
     std::unique_ptr<bullet::World> world;
+    btRigidBody* loaded = nullptr;
+    double force = 0;
 
     Rig() : BulletEngine({0, 0, 0}) {
         shapes.push_back(std::make_unique<btSphereShape>(btScalar(0.1)));
         world = std::make_unique<bullet::World>(engine, bullet::WorldParameters{.warn = {}});
     }
-    ~Rig() {
+    virtual ~Rig() {
         if (slider != nullptr) world->remove(*slider);
         world.reset();
         for (auto& constraint : own) engine.removeConstraint(constraint.get());
@@ -54,13 +57,42 @@ struct Rig : test::BulletEngine {
         body.setLinearVelocity({btScalar(speed), 0, 0});
     }
     static void check() {}
+    void load(btRigidBody& body, double pull) {
+        loaded = &body;
+        force = pull;
+    }
+    virtual void apply_load() const { loaded->applyCentralForce({btScalar(force), 0, 0}); }
     void add(std::unique_ptr<btTypedConstraint> constraint) {
         engine.addConstraint(constraint.get(), true);
         own.push_back(std::move(constraint));
     }
     void run(double duration, double frame) {
-        while (world->time() < duration - 1e-9) world->step(frame);
+        while (world->time() < duration - 1e-9) {
+            if (loaded != nullptr) apply_load();
+            world->step(frame);
+        }
     }
+};
+
+/// The same of bodies that turn about z, where all of them are.
+struct Rotors : Rig {
+    std::unique_ptr<Hinge> hinge;
+
+    ~Rotors() override { world->remove(*hinge); }
+    btRigidBody& body(double inertia, double /*x*/) {
+        btRigidBody& made = Rig::body(1, 0);
+        const auto of = btScalar(inertia);
+        made.setMassProps(1, {of, of, of});
+        made.updateInertiaTensor();
+        return made;
+    }
+    void hold(btRigidBody& body, double strength) {
+        hinge = std::make_unique<Hinge>(body, btTransform::getIdentity(),
+                                        Law(Perfect<double>({.strength = strength})));
+        world->add(*hinge);
+    }
+    [[nodiscard]] double absorbed() const { return hinge->absorbed_energy(); }
+    void apply_load() const override { loaded->applyTorque({0, 0, btScalar(force)}); }
 };
 
 [[nodiscard]] btTransform at(double x) {
@@ -108,22 +140,77 @@ TEST_CASE("A spring of Bullet's that a rigid slider holds is met at its peak", "
         });
 }
 
-TEMPLATE_TEST_CASE("A motor of Bullet's that has its speed within a frame pushed no less till then",
-                   "[frame]", btGeneric6DofSpring2Constraint, btGeneric6DofConstraint) {
+namespace {
+
+enum class Kind { six, springs, slider };
+
+/// A motor that drives `b` away from `a`, or towards it where `speed` < 0, and a stop where they
+/// are, if there is to be one.
+void drive(Kind kind, Rig& rig, btRigidBody& a, btRigidBody& b, double speed, double force,
+           bool stops) {
+    const auto v = btScalar(speed), most = btScalar(force);
+    constexpr btScalar far_off = 10;
+    if (kind == Kind::slider) {
+        auto slider = std::make_unique<btSliderConstraint>(a, b, at(0.5), at(-0.5), true);
+        slider->setLowerLinLimit(stops ? 0 : 1);
+        slider->setUpperLinLimit(stops ? far_off : -1);
+        slider->setPoweredLinMotor(true);
+        slider->setTargetLinMotorVelocity(v);
+        slider->setMaxLinMotorForce(most);
+        rig.add(std::move(slider));
+    } else if (kind == Kind::springs) {
+        auto axes = six<btGeneric6DofSpring2Constraint>(a, b, 0.5, -0.5, true);
+        if (stops) axes->setLimit(0, 0, far_off);
+        axes->enableMotor(0, true);
+        axes->setTargetVelocity(0, -v);
+        axes->setMaxMotorForce(0, most);
+        rig.add(std::move(axes));
+    } else {
+        auto axes = six<btGeneric6DofConstraint>(a, b, 0.5, -0.5, true);
+        if (stops) axes->setLimit(0, 0, far_off);
+        auto* motor = axes->getTranslationalLimitMotor();
+        motor->m_enableMotor[0] = true;
+        motor->m_targetVelocity[0] = -v;
+        motor->m_maxMotorForce[0] = most;
+        rig.add(std::move(axes));
+    }
+}
+/// The same about z; of a hinge Bullet bounds what it may do in a frame.
+void turn(Rotors& rig, btRigidBody& a, btRigidBody& b, double speed, double impulse) {
+    auto hinge = std::make_unique<btHingeConstraint>(a, b, at(0), at(0));
+    hinge->setLimit(btScalar(-2.5), 0); // of A against B
+    hinge->enableAngularMotor(true, btScalar(-speed), btScalar(impulse));
+    rig.add(std::move(hinge));
+}
+
+} // namespace
+
+TEST_CASE("A motor of Bullet's that has its speed within a frame pushed no less till then",
+          "[frame]") {
+    const Kind kind = GENERATE(Kind::six, Kind::springs, Kind::slider);
+    const bool at_a_stop = GENERATE(false, true); // that it leaves
+    CAPTURE(int(kind), at_a_stop);
     test::drive_apart<Rig>(
-        accuracy, [](Rig& rig, btRigidBody& a, btRigidBody& b, double speed, double force) {
-            auto axes = six<TestType>(a, b, 0.5, -0.5, true);
-            if constexpr (std::is_same_v<TestType, btGeneric6DofSpring2Constraint>) {
-                auto* with_springs = axes.get();
-                with_springs->enableMotor(0, true);
-                with_springs->setTargetVelocity(0, btScalar(-speed));
-                with_springs->setMaxMotorForce(0, btScalar(force));
-            } else {
-                auto* motor = axes->getTranslationalLimitMotor();
-                motor->m_enableMotor[0] = true;
-                motor->m_targetVelocity[0] = btScalar(-speed);
-                motor->m_maxMotorForce[0] = btScalar(force);
-            }
-            rig.add(std::move(axes));
-        });
+        accuracy, [=](Rig& rig, btRigidBody& a, btRigidBody& b, double speed, double force,
+                      double /*frame*/) { drive(kind, rig, a, b, speed, force, at_a_stop); });
+}
+
+TEST_CASE("A hinge motor of Bullet's leaves its stop as if that were not there", "[frame]") {
+    test::drive_apart<Rotors>(
+        accuracy, [](Rotors& rig, btRigidBody& a, btRigidBody& b, double speed, double moment,
+                     double frame) { turn(rig, a, b, speed, moment * frame); });
+}
+
+TEST_CASE("A motor of Bullet's that is at its stop goes on to push", "[frame]") {
+    const Kind kind = GENERATE(Kind::six, Kind::springs, Kind::slider);
+    CAPTURE(int(kind));
+    test::press_against_a_stop<Rig>(
+        accuracy, [kind](Rig& rig, btRigidBody& a, btRigidBody& b, double speed, double force,
+                         double /*frame*/) { drive(kind, rig, a, b, -speed, force, true); });
+}
+
+TEST_CASE("A hinge motor of Bullet's that is at its stop goes on to push", "[frame]") {
+    test::press_against_a_stop<Rotors>(
+        accuracy, [](Rotors& rig, btRigidBody& a, btRigidBody& b, double speed, double moment,
+                     double frame) { turn(rig, a, b, -speed, moment * frame); });
 }

@@ -119,6 +119,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_rows();
     void turn_rows();
     void load_springs();
+    void load_motors();
     void read_own();
     [[nodiscard]] Vector6<double> began(int body) const;
     [[nodiscard]] Vector6<double> pushed(int body) const;
@@ -155,6 +156,9 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     std::vector<detail::OwnSpring> springs_;     ///< of one of them
     std::vector<detail::SpringRow> spring_rows_; ///< of all
     std::vector<detail::SoftRow> soft_rows_;
+    std::vector<EndRow> unstopped_;    ///< of constraints with a motor at its stop, without that
+    std::vector<int> unstopped_count_; ///< rows of each of the others, 0: it has none
+    std::vector<std::pair<std::size_t, std::size_t>> motor_rows_; ///< its stop's of Bullet, its own
     OwnForces own_;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };

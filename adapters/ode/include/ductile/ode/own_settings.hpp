@@ -70,6 +70,7 @@ class OwnSettings {
     [[nodiscard]] OwnForces forces(double h) const {
         OwnForces forces;
         for (const Motor& motor : motors_) {
+            if (motor.stopped != nothing && !left_stop(motor)) continue;
             const dJointFeedback* feedback = dJointGetFeedback(motor.joint);
             if (feedback == nullptr) continue;
             const OwnAxes axes = OwnAxes::of(motor.joint, attached_bodies(motor.joint));
@@ -110,7 +111,16 @@ class OwnSettings {
         Vector3<double> along; ///< world, unit
         bool turns;
         double strength, mass, speed; ///< the last as the part began, less the motor's
+        std::size_t stopped;          ///< of the joint's axes; nothing: it is at no stop
+        double meant;                 ///< the motor's
     };
+    static constexpr std::size_t nothing = std::size_t(-1);
+
+    /// Where it does not, the joint's force is the stop's, too.
+    [[nodiscard]] static bool left_stop(const Motor& motor) {
+        const double rate = stopped_axes(motor.joint).axes[motor.stopped].rate;
+        return std::abs(rate - motor.meant) < std::abs(rate);
+    }
 
     void set(dJointID joint, int name, double value) {
         const JointCalls calls = joint_calls(dJointGetType(joint));
@@ -184,8 +194,16 @@ class OwnSettings {
         const double way = !turns && reversed ? -1 : 1;
         const Vector3<double> apart = turns ? difference(angular_velocity(a), angular_velocity(b))
                                             : difference(linear_velocity(a), linear_velocity(b));
-        motors_.push_back(
-            {joint, along, turns, strength, 1 / yields, way * dot(apart, along) - get(dParamVel)});
+        const StoppedAxes axes = stopped_axes(joint);
+        std::size_t stopped = nothing;
+        for (std::size_t i = 0; i < axes.count; ++i) {
+            const StoppedAxis& axis = axes.axes[i];
+            const bool at_it = axis.at <= axis.least || axis.at >= axis.most;
+            if (axis.group == dParamGroup * number && axis.stops() && at_it) stopped = i;
+        }
+        const double speed = get(dParamVel);
+        motors_.push_back({joint, along, turns, strength, 1 / yields,
+                           way * dot(apart, along) - speed, stopped, speed});
     }
     /// One that a frame could follow, which it is now.
     bool is_spring(dJointID joint, int group, const Part& part) {
