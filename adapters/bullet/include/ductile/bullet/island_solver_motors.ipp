@@ -32,30 +32,6 @@ namespace detail {
     return double(value);
 }
 
-/// What `constraint` states of its bodies where they are, of `count` rows.
-DUCTILE_INLINE void state_rows(btTypedConstraint& constraint, int count,
-                               const btContactSolverInfo& info, std::vector<EndRow>& rows) {
-    const std::size_t first = rows.size();
-    rows.resize(first + std::size_t(count));
-    if (count == 0) return;
-    EndRow& row = rows[first];
-    btTypedConstraint::btConstraintInfo2 to{};
-    to.fps = 1 / info.m_timeStep;
-    to.erp = info.m_erp;
-    to.m_J1linearAxis = row.move_a;
-    to.m_J1angularAxis = row.turn_a;
-    to.m_J2linearAxis = row.move_b;
-    to.m_J2angularAxis = row.turn_b;
-    to.rowskip = int(sizeof(EndRow) / sizeof(btScalar));
-    to.m_constraintError = &row.error;
-    to.cfm = &row.cfm;
-    to.m_lowerLimit = &row.lower;
-    to.m_upperLimit = &row.upper;
-    to.m_numIterations = info.m_numIterations;
-    to.m_damping = info.m_damping;
-    constraint.getInfo2(&to);
-}
-
 /// While this lives such axes have their stops alone.
 class StoppedMotors {
   public:
@@ -68,7 +44,7 @@ class StoppedMotors {
     StoppedMotors& operator=(const StoppedMotors&) = delete;
 
     /// Its rows as if it had no stops go to `rows`, if there is such an axis.
-    void take(btTypedConstraint& constraint, std::vector<EndRow>& rows) {
+    void take(btTypedConstraint& constraint, std::vector<StatedRow>& rows) {
         if (!constraint.isEnabled()) return;
         axes_.clear();
         btTypedConstraint::btConstraintInfo1 size{};
@@ -165,7 +141,7 @@ DUCTILE_INLINE void IslandSolver::load_motors() {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
         const bool same = count == unstopped_count_[i];
         for (int k = 0; same && k < count; ++k) {
-            const EndRow& motor = unstopped_[of_this + std::size_t(k)];
+            const StatedRow& motor = unstopped_[of_this + std::size_t(k)];
             const std::size_t place = first + std::size_t(k);
             const solve::IslandRow& stop = island_.rows[first_read_ + place];
             const double impulse = detail::limit(motor.upper);

@@ -156,7 +156,7 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
         const bool led = detail::is_led(of_a) || detail::is_led(of_b);
         if (constraint->isEnabled() && !led) constraint->getInfo1(&size);
         count_at_end_.push_back(size.m_numConstraintRows);
-        detail::state_rows(*constraint, size.m_numConstraintRows, info, at_end_);
+        state_rows(*constraint, size.m_numConstraintRows, info, at_end_);
     }
 }
 
@@ -256,7 +256,7 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
         const bool same = count == count_at_end_[i]; // else a stop began or ended, or it is led
         for (int k = 0; same && k < count; ++k) {
-            const EndRow& end = at_end_[then + std::size_t(k)];
+            const StatedRow& end = at_end_[then + std::size_t(k)];
             const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[int(now) + k];
             solve::IslandRow& turned = island_.rows[first_read_ + now + std::size_t(k)];
             if (!std::isinf(turned.lower) || !std::isinf(turned.upper)) continue;
