@@ -182,6 +182,20 @@ TEST_CASE("A spring of ODE's that a rigid slider holds is met at its peak", "[fr
     });
 }
 
+TEST_CASE("A suspension of ODE's that a rigid slider holds is met at its peak", "[frame]") {
+    test::meet_at_the_peak<Rig>([](Rig& rig, dxBody& a, dxBody& b, double stiffness, double frame) {
+        const dJointID wheel = dJointCreateHinge2(rig.id, nullptr);
+        const dReal springs[] = {1, 0, 0}, turns[] = {0, 0, 1};
+        dJointAttach(wheel, &a, &b);
+        dJointSetHinge2Anchor(wheel, dReal(0.5), 0, 0);
+        dJointSetHinge2Axes(wheel, springs, turns);
+        dJointSetHinge2Param(wheel, dParamLoStop, 0);
+        dJointSetHinge2Param(wheel, dParamHiStop, 0);
+        dJointSetHinge2Param(wheel, dParamSuspensionERP, 1);
+        dJointSetHinge2Param(wheel, dParamSuspensionCFM, dReal(1 / (frame * stiffness)));
+    });
+}
+
 TEST_CASE("A motor of ODE's that has its speed within a frame pushed no less till then",
           "[frame]") {
     const bool at_a_stop = GENERATE(false, true); // that it leaves

@@ -8,7 +8,8 @@
 //
 // Two stops at one place that are soft are a spring and a damper, k = erp/(frame cfm), d = (1 -
 // erp)/cfm. Set anew for each part they ask for the mean of its forces (law_row): ODE's row is u' +
-// cfm f = -erp (at - stop)/h.
+// cfm f = -erp (at - stop)/h. So is the suspension of a hinge-2, of which a part sets ERP and CFM:
+// its row is u' + cfm f = -erp x/h, with its strain x.
 //
 // Not thread-safe.
 #pragma once
@@ -81,7 +82,9 @@ class OwnSettings {
             forces.add_motor(motor.strength, motor.mass, force, motor.speed, h);
         }
         for (const Spring& spring : springs_) {
-            const double end = stopped_axes(spring.joint).axes[spring.axis].rate;
+            const double end = spring.axis == suspension
+                                   ? suspended(spring.joint).rate
+                                   : stopped_axes(spring.joint).axes[spring.axis].rate;
             const double force = (spring.law.target - end) / (spring.law.compliance * h);
             forces.add_spring(spring.stiffness, spring.mass, force, spring.start, end, h);
         }
@@ -99,9 +102,10 @@ class OwnSettings {
         int name;
         dReal value;
     };
+    static constexpr std::size_t suspension = std::size_t(-1);
     struct Spring {
         dJointID joint;
-        std::size_t axis;
+        std::size_t axis;              ///< of its stops, or its suspension
         double stiffness, mass, start; ///< of the row; its velocity as the part began
         LawRow law;
     };
@@ -147,7 +151,9 @@ class OwnSettings {
             const Softness own = usual(dParamERP, dParamCFM);
             lend(dParamERP, dParamCFM, {part_erp(own.erp, h), own.compliance}, blow);
         }
-        if (calls.suspension) soften(dParamSuspensionERP, dParamSuspensionCFM);
+        if (calls.suspension && !is_suspension(joint, part)) {
+            soften(dParamSuspensionERP, dParamSuspensionCFM);
+        }
         for (int axis = 0; axis < calls.stops; ++axis) {
             const int group = dParamGroup * axis;
             const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
@@ -235,6 +241,44 @@ class OwnSettings {
             return true;
         }
         return false;
+    }
+
+    struct Suspended {
+        double strain, rate, yields; ///< [m] [m/s] [1/kg]
+    };
+    /// As the suspension of a hinge-2 is.
+    [[nodiscard]] static Suspended suspended(dJointID joint) {
+        const Vector3<double> along = told(joint, dJointGetHinge2Axis1),
+                              of_a = told(joint, dJointGetHinge2Anchor),
+                              of_b = told(joint, dJointGetHinge2Anchor2);
+        const Vector3<double> moves = difference(velocity_at(dJointGetBody(joint, 0), of_a),
+                                                 velocity_at(dJointGetBody(joint, 1), of_b));
+        return {dot(difference(of_a, of_b), along), dot(moves, along),
+                detail::yields_along(joint, along, false)};
+    }
+    /// One that a frame could follow, which it is now. ODE asks for ERP times its strain.
+    bool is_suspension(dJointID joint, const Part& part) {
+        constexpr double stiff = 1e4, nothing = 1e-12; // (ω frame)², [m]
+        const auto [h, frame, blow] = part;
+        const JointCalls calls = joint_calls(dJointGetType(joint));
+        const auto erp = double(calls.get(joint, dParamSuspensionERP));
+        const auto cfm = double(calls.get(joint, dParamSuspensionCFM));
+        if (!(erp > 0 && erp <= 1 && cfm > 0)) return false;
+        const auto [strain, rate, yields] = suspended(joint);
+        const double stiffness = erp / (frame * cfm), damping = (1 - erp) / cfm;
+        if (!(yields > 0) || stiffness * frame * frame * yields > stiff) return false;
+        if (blow) {                            // in which it gives nothing
+            constexpr double gives_way = 1e12; // [s/kg]
+            set(joint, dParamSuspensionERP, 0);
+            set(joint, dParamSuspensionCFM, gives_way);
+            return true;
+        }
+        const LawRow law = law_row(stiffness, damping, 1 / yields, strain, rate, h);
+        if (!(std::abs(strain) > nothing) && law.target != 0) return false;
+        set(joint, dParamSuspensionERP, strain == 0 ? 0 : -law.target * h / strain);
+        set(joint, dParamSuspensionCFM, law.compliance * h);
+        springs_.push_back({joint, suspension, stiffness, 1 / yields, rate, law});
+        return true;
     }
 
     std::vector<Usual> usual_;
