@@ -252,7 +252,7 @@ DUCTILE_INLINE bool strikes_by_rows(btConeTwistConstraint& cone, double energy) 
         const btScalar opens =
             row.turn_a.dot(a.getAngularVelocity()) + row.turn_b.dot(b.getAngularVelocity());
         const double closes = double((up ? -opens : opens) / row.turn_a.length());
-        strikes = strikes || (closes > 0 && comes_with(cone, {.number = 3}, closes, energy));
+        strikes = strikes || (closes > 0 && comes_with(cone, {3, 0, 0, 0}, closes, energy));
     }
     return strikes;
 }

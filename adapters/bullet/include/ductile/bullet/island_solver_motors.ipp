@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/island_solver_held.ipp"
+#include "ductile/bullet/stated_rows.hpp"
 
 namespace ductile::bullet {
 

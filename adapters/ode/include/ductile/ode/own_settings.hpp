@@ -71,7 +71,7 @@ class OwnSettings {
     [[nodiscard]] OwnForces forces(double h) const {
         OwnForces forces;
         for (const Motor& motor : motors_) {
-            if (motor.stopped != nothing && !left_stop(motor)) continue;
+            if (motor.stopped != no_axis && !left_stop(motor)) continue;
             const dJointFeedback* feedback = dJointGetFeedback(motor.joint);
             if (feedback == nullptr) continue;
             const OwnAxes axes = OwnAxes::of(motor.joint, attached_bodies(motor.joint));
@@ -115,10 +115,10 @@ class OwnSettings {
         Vector3<double> along; ///< world, unit
         bool turns;
         double strength, mass, speed; ///< the last as the part began, less the motor's
-        std::size_t stopped;          ///< of the joint's axes; nothing: it is at no stop
+        std::size_t stopped;          ///< of the joint's axes; no_axis: it is at no stop
         double meant;                 ///< the motor's
     };
-    static constexpr std::size_t nothing = std::size_t(-1);
+    static constexpr std::size_t no_axis = std::size_t(-1);
 
     /// Where it does not, the joint's force is the stop's, too.
     [[nodiscard]] static bool left_stop(const Motor& motor) {
@@ -201,7 +201,7 @@ class OwnSettings {
         const Vector3<double> apart = turns ? difference(angular_velocity(a), angular_velocity(b))
                                             : difference(linear_velocity(a), linear_velocity(b));
         const StoppedAxes axes = stopped_axes(joint);
-        std::size_t stopped = nothing;
+        std::size_t stopped = no_axis;
         for (std::size_t i = 0; i < axes.count; ++i) {
             const StoppedAxis& axis = axes.axes[i];
             const bool at_it = axis.at <= axis.least || axis.at >= axis.most;
