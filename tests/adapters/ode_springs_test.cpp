@@ -24,6 +24,8 @@ struct Rig {
     std::unique_ptr<Slider> slider;
     dJointID spring = nullptr;
     double rest = 0; ///< of the spring [m]
+    dBodyID loaded = nullptr;
+    double force = 0;
 
     Rig() = default;
     ~Rig() {
@@ -51,6 +53,10 @@ struct Rig {
     }
     [[nodiscard]] double absorbed() const { return slider->absorbed_energy(); }
     static void push(dxBody& body, double speed) { dBodySetLinearVel(&body, dReal(speed), 0, 0); }
+    void load(dxBody& body, double pull) {
+        loaded = &body;
+        force = pull;
+    }
     void check() const {
         CHECK(dJointGetSliderParam(spring, dParamLoStop) == rest);
         CHECK(dJointGetSliderParam(spring, dParamStopERP) == 1);
@@ -65,6 +71,7 @@ struct Rig {
     void run(double duration, double frame) {
         double time = 0;
         while (time < duration - 1e-9) {
+            if (loaded != nullptr) dBodyAddForce(loaded, dReal(force), 0, 0);
             world->step(frame);
             time += frame;
         }
@@ -79,6 +86,15 @@ void add_spring(Rig& rig, dBodyID a, dBodyID b, double rest, double stiffness, d
     dJointSetSliderParam(rig.spring, dParamHiStop, dReal(rest));
     dJointSetSliderParam(rig.spring, dParamStopERP, 1);
     dJointSetSliderParam(rig.spring, dParamStopCFM, dReal(1 / (frame * stiffness)));
+}
+
+/// A motor that drives `b` away from `a`, or towards it where `speed` < 0, and a stop where they
+/// are, if there is to be one.
+void drive(Rig& rig, dxBody& a, dxBody& b, double speed, double force, bool stops) {
+    const dJointID motor = rig.own(&b, &a);
+    if (stops) dJointSetSliderParam(motor, dParamLoStop, 0);
+    dJointSetSliderParam(motor, dParamVel, dReal(speed));
+    dJointSetSliderParam(motor, dParamFMax, dReal(force));
 }
 
 /// The same of bodies that turn about z, where all of them are.
@@ -166,13 +182,34 @@ TEST_CASE("A spring of ODE's that a rigid slider holds is met at its peak", "[fr
     });
 }
 
+TEST_CASE("A suspension of ODE's that a rigid slider holds is met at its peak", "[frame]") {
+    test::meet_at_the_peak<Rig>([](Rig& rig, dxBody& a, dxBody& b, double stiffness, double frame) {
+        const dJointID wheel = dJointCreateHinge2(rig.id, nullptr);
+        const dReal springs[] = {1, 0, 0}, turns[] = {0, 0, 1};
+        dJointAttach(wheel, &a, &b);
+        dJointSetHinge2Anchor(wheel, dReal(0.5), 0, 0);
+        dJointSetHinge2Axes(wheel, springs, turns);
+        dJointSetHinge2Param(wheel, dParamLoStop, 0);
+        dJointSetHinge2Param(wheel, dParamHiStop, 0);
+        dJointSetHinge2Param(wheel, dParamSuspensionERP, 1);
+        dJointSetHinge2Param(wheel, dParamSuspensionCFM, dReal(1 / (frame * stiffness)));
+    });
+}
+
 TEST_CASE("A motor of ODE's that has its speed within a frame pushed no less till then",
           "[frame]") {
-    test::drive_apart<Rig>(0.01, [](Rig& rig, dxBody& a, dxBody& b, double speed, double force) {
-        const dJointID motor = rig.own(&a, &b);
-        dJointSetSliderParam(motor, dParamVel, dReal(speed));
-        dJointSetSliderParam(motor, dParamFMax, dReal(force));
-    });
+    const bool at_a_stop = GENERATE(false, true); // that it leaves
+    CAPTURE(at_a_stop);
+    test::drive_apart<Rig>(
+        0.01, [at_a_stop](Rig& rig, dxBody& a, dxBody& b, double speed, double force,
+                          double /*frame*/) { drive(rig, a, b, speed, force, at_a_stop); });
+}
+
+TEST_CASE("A motor of ODE's that is at its stop goes on to push", "[frame]") {
+    test::press_against_a_stop<Rig>(
+        0.01, [](Rig& rig, dxBody& a, dxBody& b, double speed, double force, double /*frame*/) {
+            drive(rig, a, b, -speed, force, true);
+        });
 }
 
 TEST_CASE("A motor of ODE's that turns has its speed within a frame as one that slides",
@@ -181,7 +218,6 @@ TEST_CASE("A motor of ODE's that turns has its speed within a frame as one that 
         GENERATE(Drive::universal, Drive::universal_second, Drive::wheel, Drive::angular);
     CAPTURE(int(kind));
     test::drive_apart<Rotors>(
-        0.01, [kind](Rotors& rig, dxBody& a, dxBody& b, double speed, double moment) {
-            drive(kind, rig, &a, &b, speed, moment);
-        });
+        0.01, [kind](Rotors& rig, dxBody& a, dxBody& b, double speed, double moment,
+                     double /*frame*/) { drive(kind, rig, &a, &b, speed, moment); });
 }

@@ -4,7 +4,7 @@
 //
 // `Rig`: a world with `body(mass, x)`, that meets nothing; `hold(body, strength)`, by a plastic
 // slider to the static world along x, of which `absorbed()` tells; `push(body, speed)`;
-// `run(duration, frame)`; `check()` of what is the user's.
+// `load(body, force)`, from now on; `run(duration, frame)`; `check()` of what is the user's.
 #pragma once
 
 #include <algorithm>
@@ -70,7 +70,7 @@ void meet_at_the_peak(const Join& join) {
     }
 }
 
-/// `join(rig, a, b, speed, force)`: a motor that drives bodies apart.
+/// `join(rig, a, b, speed, force, frame)`: a motor that drives bodies apart.
 template <class Rig, class Join>
 void drive_apart(double accuracy, const Join& join) {
     // F drives two masses apart until they have the speed v, against R < F on one of them:
@@ -85,11 +85,30 @@ void drive_apart(double accuracy, const Join& join) {
             Rig rig;
             auto &a = rig.body(m_1, 0), &b = rig.body(m_2, 1);
             rig.hold(a, strength);
-            join(rig, a, b, speed, force);
+            join(rig, a, b, speed, force, frame);
             rig.run(0.2, frame);
             CHECK(rig.absorbed() == Approx(work).epsilon(accuracy));
             CHECK(rig.world->run().believed());
         }
+    }
+}
+
+/// `join(rig, a, b, speed, force, frame)`: a motor that presses bodies against a stop between them.
+template <class Rig, class Join>
+void press_against_a_stop(double accuracy, const Join& join) {
+    // less than F pulls one of them away: both go on as one, W = R (L - R)/(m₁ + m₂) t²/2
+    constexpr double m_1 = 5, m_2 = 2, strength = 40, force = 100, load = 60, duration = 0.2;
+    const double work = strength * (load - strength) / (m_1 + m_2) * duration * duration / 2;
+    for (const double frame : some_frames) {
+        CAPTURE(frame);
+        Rig rig;
+        auto &a = rig.body(m_1, 0), &b = rig.body(m_2, 1);
+        rig.hold(a, strength);
+        rig.load(b, load);
+        join(rig, a, b, 3.0, force, frame);
+        rig.run(duration, frame);
+        CHECK(rig.absorbed() == Approx(work).epsilon(accuracy));
+        CHECK(rig.world->run().believed());
     }
 }
 

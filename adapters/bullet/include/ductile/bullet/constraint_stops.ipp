@@ -13,6 +13,7 @@
 
 #include "ductile/bullet/constraint_stops.hpp"
 #include "ductile/bullet/moving_bodies.hpp"
+#include "ductile/bullet/stated_rows.hpp"
 #include "ductile/frame/part_settings.hpp"
 
 namespace ductile::bullet {
@@ -230,6 +231,34 @@ DUCTILE_INLINE double time_to_stop(btTypedConstraint& constraint, double h, doub
     return past_it * first < h ? past_it * first : never;
 }
 
+namespace detail {
+
+/// Whether a blow by its stops would take more than `energy` [J]. Bullet stops a cone about axes
+/// that do not turn with what they bound: at both stops at once these go on, however often they are
+/// struck.
+DUCTILE_INLINE bool strikes_by_rows(btConeTwistConstraint& cone, double energy) {
+    PartStops stops;
+    stops.take(cone);
+    stops.set(blow_length, blow_length, 0);
+    btTypedConstraint::btConstraintInfo1 size{};
+    cone.getInfo1(&size);
+    std::vector<StatedRow> rows;
+    state_rows(cone, size.m_numConstraintRows, btContactSolverInfo(), rows);
+    const btRigidBody &a = cone.getRigidBodyA(), &b = cone.getRigidBodyB();
+    bool strikes = false;
+    for (const StatedRow& row : rows) {
+        const bool up = row.lower == 0, down = row.upper == 0;
+        if (up == down) continue;
+        const btScalar opens =
+            row.turn_a.dot(a.getAngularVelocity()) + row.turn_b.dot(b.getAngularVelocity());
+        const double closes = double((up ? -opens : opens) / row.turn_a.length());
+        strikes = strikes || (closes > 0 && comes_with(cone, {3, 0, 0, 0}, closes, energy));
+    }
+    return strikes;
+}
+
+} // namespace detail
+
 DUCTILE_INLINE bool strikes_stop(btTypedConstraint& constraint, double energy) {
     if (!constraint.isEnabled()) return false;
     const btRigidBody &a = constraint.getRigidBodyA(), &b = constraint.getRigidBodyB();
@@ -252,7 +281,8 @@ DUCTILE_INLINE bool strikes_stop(btTypedConstraint& constraint, double energy) {
         const double closes = (axis.gap(upper) - then.axes[i / 2].gap(upper)) / double(little);
         if (axis.gap(upper) <= detail::at_stop && closes > 0 &&
             detail::comes_with(constraint, axis, closes, energy)) {
-            return true;
+            return constraint.getConstraintType() != CONETWIST_CONSTRAINT_TYPE ||
+                   detail::strikes_by_rows(static_cast<btConeTwistConstraint&>(constraint), energy);
         }
     }
     return false;

@@ -24,6 +24,7 @@
 #include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/island_batches.hpp"
 #include "ductile/bullet/island_solver.hpp"
+#include "ductile/bullet/softened_springs.hpp"
 #include "ductile/bullet/touching_islands.hpp"
 #include "ductile/vocabulary/linkage.hpp"
 
@@ -64,6 +65,12 @@ class FrontSolver final : public btConstraintSolver {
 
     /// Islands of these are solved at once, too; null: there are none. Not while it solves.
     void set_direct(const DirectBodies* direct) noexcept { direct_ = direct; }
+    /// The same of islands with springs (softened_springs.hpp).
+    void set_springs(bool springs) noexcept { springs_ = springs; }
+    /// The first one that came softened to a plastic joint in a part.
+    [[nodiscard]] const std::optional<SoftenedSprings::Found>& softened() const noexcept {
+        return softened_.found();
+    }
 
     // ---- Bullet's side
 
@@ -90,6 +97,7 @@ class FrontSolver final : public btConstraintSolver {
         IslandSolver solver;
         bool used = true;
     };
+    void note_springs(btTypedConstraint** constraints, int count, double h);
     void solve_plastic(IslandParts& island, IslandSolver& solver, const btContactSolverInfo& info,
                        btIDebugDraw* drawer, btDispatcher* dispatcher);
     btScalar solve_usual(btCollisionObject** bodies, int body_count,
@@ -111,9 +119,11 @@ class FrontSolver final : public btConstraintSolver {
     double frame_ = 0; ///< [s]
     const HeldContacts* held_ = nullptr;
     const DirectBodies* direct_ = nullptr;
+    bool springs_ = false;
     std::shared_ptr<FrontSolver*> self_ = std::make_shared<FrontSolver*>(this);
     std::mutex mutex_; ///< of what follows
     OwnForces own_;
+    SoftenedSprings softened_;
     std::vector<std::unique_ptr<Room>> idle_;
     std::unordered_map<const void*, std::shared_ptr<Kept>> kept_;
 };
@@ -138,6 +148,10 @@ class FrontHold {
     }
     [[nodiscard]] const OwnForces& own() const { return (**front_.lock()).own(); }
     void set_direct(const DirectBodies* direct) const { (**front_.lock()).set_direct(direct); }
+    void set_springs(bool springs) const { (**front_.lock()).set_springs(springs); }
+    [[nodiscard]] const std::optional<SoftenedSprings::Found>& softened() const {
+        return (**front_.lock()).softened();
+    }
 
   private:
     btDiscreteDynamicsWorld& world_;

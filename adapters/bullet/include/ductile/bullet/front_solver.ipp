@@ -24,6 +24,13 @@ namespace detail {
     return constraint->isEnabled() && as_plastic(*constraint) != nullptr;
 }
 
+[[nodiscard]] DUCTILE_INLINE bool is_plastic_or_sprung(btTypedConstraint* constraint) {
+    return is_plastic(constraint) || has_springs(*constraint);
+}
+[[nodiscard]] DUCTILE_INLINE bool has_plastic(const IslandParts& island) {
+    return std::any_of(island.constraints.begin(), island.constraints.end(), is_plastic);
+}
+
 /// Of Bullet's joints and contacts it has none: it leaves nothing of itself in its solver.
 [[nodiscard]] DUCTILE_INLINE bool is_one_joint(const IslandParts& island) {
     return island.manifolds.empty() && island.constraints.size() == 1 &&
@@ -226,11 +233,20 @@ DUCTILE_INLINE void FrontSolver::solve_plastic(IslandParts& island, IslandSolver
                       int(island.constraints.size()), with_joints, drawer, dispatcher);
 }
 
+/// Of those that the user's solver gets.
+DUCTILE_INLINE void FrontSolver::note_springs(btTypedConstraint** constraints, int count,
+                                              double h) {
+    if (kind_ != TickKind::part) return;
+    const std::lock_guard lock(mutex_);
+    for (int i = 0; i < count; ++i) softened_.leave(*constraints[i], h);
+}
+
 DUCTILE_INLINE btScalar FrontSolver::solve_usual(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
     int manifold_count, btTypedConstraint** constraints, int constraint_count,
     const btContactSolverInfo& info, btIDebugDraw* drawer, btDispatcher* dispatcher) {
     const bool one_direction = (info.m_solverMode & SOLVER_USE_2_FRICTION_DIRECTIONS) == 0;
+    note_springs(constraints, constraint_count, double(info.m_timeStep));
     if (one_direction) detail::forget_second_direction(manifolds, manifold_count);
     return usual_.solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
                              constraint_count, info, drawer, dispatcher);
@@ -253,15 +269,15 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
     };
     static const DirectBodies none;
     const DirectBodies& direct = direct_ != nullptr ? *direct_ : none;
-    if (std::none_of(constraints, constraints + constraint_count, detail::is_plastic) &&
-        !direct.any) {
+    const auto is_chosen = springs_ ? detail::is_plastic_or_sprung : detail::is_plastic;
+    if (std::none_of(constraints, constraints + constraint_count, is_chosen) && !direct.any) {
         rule_contacts();
         return solve_usual(bodies, body_count, manifolds, manifold_count, constraints,
                            constraint_count, info, drawer, dispatcher);
     }
     std::unique_ptr<Room> room = borrow();
     room->islands.find(bodies, body_count, manifolds, manifold_count, constraints, constraint_count,
-                       detail::is_plastic, direct);
+                       is_chosen, direct);
     for (IslandParts& island : room->islands.chosen()) {
         if (kind_ == TickKind::step) break;
         for (btPersistentManifold* manifold : island.manifolds) see_corners(*manifold);
@@ -274,8 +290,10 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
         }
         const std::shared_ptr<Kept> kept = solver_of(island);
         solve_plastic(island, kept->solver, info, drawer, dispatcher);
+        if (!detail::has_plastic(island)) continue;
         const std::lock_guard lock(mutex_);
         own_.join(kept->solver.own());
+        for (btTypedConstraint* constraint : island.constraints) softened_.meet(*constraint);
     }
     IslandParts& others = room->islands.others();
     btScalar residual = 0;

@@ -35,6 +35,7 @@
 
 #include "ductile/bullet/held_contacts.hpp"
 #include "ductile/bullet/plastic_constraint.hpp"
+#include "ductile/bullet/stated_rows.hpp"
 #include "ductile/frame/part_engine.hpp"
 #include "ductile/frame/part_settings.hpp"
 #include "ductile/frame/soft_contact.hpp"
@@ -42,12 +43,6 @@
 #include "ductile/vocabulary/linkage.hpp"
 
 namespace ductile::bullet {
-
-/// What a constraint of Bullet's states in getInfo2.
-struct EndRow {
-    btVector3 move_a{0, 0, 0}, turn_a{0, 0, 0}, move_b{0, 0, 0}, turn_b{0, 0, 0};
-    btScalar error = 0, cfm = 0, lower = -SIMD_INFINITY, upper = SIMD_INFINITY;
-};
 
 namespace detail {
 /// A spring of Bullet's, by its constraint's row.
@@ -119,6 +114,7 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     void load_rows();
     void turn_rows();
     void load_springs();
+    void load_motors();
     void read_own();
     [[nodiscard]] Vector6<double> began(int body) const;
     [[nodiscard]] Vector6<double> pushed(int body) const;
@@ -150,11 +146,14 @@ class IslandSolver final : public btSequentialImpulseConstraintSolver {
     double frame_ = 0; ///< [s]
     double half_ = 0;  ///< of the tick [s]
     bool pushes_apart_ = true;
-    std::vector<EndRow> at_end_;                 ///< of the others' rows, constraint by constraint
+    std::vector<StatedRow> at_end_;              ///< of the others' rows, constraint by constraint
     std::vector<int> count_at_end_;              ///< rows of each
     std::vector<detail::OwnSpring> springs_;     ///< of one of them
     std::vector<detail::SpringRow> spring_rows_; ///< of all
     std::vector<detail::SoftRow> soft_rows_;
+    std::vector<StatedRow> unstopped_; ///< of constraints with a motor at its stop, without that
+    std::vector<int> unstopped_count_; ///< rows of each of the others, 0: it has none
+    std::vector<std::pair<std::size_t, std::size_t>> motor_rows_; ///< its stop's of Bullet, its own
     OwnForces own_;
     std::vector<std::pair<const void*, double>> turned_; ///< of a contact point, sorted [m/s]
 };

@@ -12,22 +12,11 @@
 #include "ductile/bullet/convert.hpp"
 #include "ductile/bullet/island_solver.hpp"
 #include "ductile/bullet/island_solver_held.ipp"   // IWYU pragma: keep
+#include "ductile/bullet/island_solver_motors.ipp" // IWYU pragma: keep
 #include "ductile/bullet/island_solver_turned.ipp" // IWYU pragma: keep
 #include "ductile/bullet/soft_contacts.hpp"
 
 namespace ductile::bullet {
-
-namespace detail {
-
-[[nodiscard]] DUCTILE_INLINE double limit(btScalar value) noexcept {
-    constexpr double unlimited = 1e9;
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    if (double(value) >= unlimited) return infinity;
-    if (double(value) <= -unlimited) return -infinity;
-    return double(value);
-}
-
-} // namespace detail
 
 DUCTILE_INLINE btScalar IslandSolver::solveGroup(
     btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
@@ -137,6 +126,14 @@ DUCTILE_INLINE void IslandSolver::convertJoints(btTypedConstraint** constraints,
     look_ahead(info);
     detail::HeldAxes held;
     for (btTypedConstraint* constraint : others_) held.take(*constraint);
+    unstopped_.clear();
+    unstopped_count_.clear();
+    detail::StoppedMotors motors(info);
+    for (btTypedConstraint* constraint : others_) {
+        const std::size_t before = unstopped_.size();
+        motors.take(*constraint, unstopped_);
+        unstopped_count_.push_back(int(unstopped_.size() - before));
+    }
     btSequentialImpulseConstraintSolver::convertJoints(others_.data(), int(others_.size()), info);
 }
 
@@ -153,6 +150,7 @@ DUCTILE_INLINE btScalar IslandSolver::solveGroupCacheFriendlyIterations(
     load_rows();
     find_turned(manifolds, manifold_count, double(info.m_timeStep));
     load_contacts();
+    load_motors();
     solve_island([this](btRigidBody& body) { return seat(body); });
     read_own();
     store();
@@ -357,6 +355,10 @@ DUCTILE_INLINE void IslandSolver::soften(const SoftContact& soft, const btSolver
 DUCTILE_INLINE void IslandSolver::store() {
     for (std::size_t i = 0; i < read_.size(); ++i) {
         read_[i]->m_appliedImpulse = btScalar(island_.rows[first_read_ + i].impulse);
+    }
+    for (const auto& [place, row] : motor_rows_) {
+        m_tmpSolverNonContactConstraintPool[int(place)].m_appliedImpulse +=
+            btScalar(island_.rows[row].impulse);
     }
     for (int i = 0; i < m_tmpSolverBodyPool.size(); ++i) {
         const int number = number_[std::size_t(i)];

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "ductile/bullet/island_solver_held.ipp"
+#include "ductile/bullet/island_solver_motors.ipp"
 #include "ductile/bullet/moving_bodies.hpp"
 
 namespace ductile::bullet {
@@ -155,25 +156,7 @@ DUCTILE_INLINE void IslandSolver::look_ahead(const btContactSolverInfo& info) {
         const bool led = detail::is_led(of_a) || detail::is_led(of_b);
         if (constraint->isEnabled() && !led) constraint->getInfo1(&size);
         count_at_end_.push_back(size.m_numConstraintRows);
-        if (size.m_numConstraintRows == 0) continue;
-        const std::size_t first = at_end_.size();
-        at_end_.resize(first + std::size_t(size.m_numConstraintRows));
-        EndRow& row = at_end_[first];
-        btTypedConstraint::btConstraintInfo2 rows{};
-        rows.fps = 1 / info.m_timeStep;
-        rows.erp = info.m_erp;
-        rows.m_J1linearAxis = row.move_a;
-        rows.m_J1angularAxis = row.turn_a;
-        rows.m_J2linearAxis = row.move_b;
-        rows.m_J2angularAxis = row.turn_b;
-        rows.rowskip = int(sizeof(EndRow) / sizeof(btScalar));
-        rows.m_constraintError = &row.error;
-        rows.cfm = &row.cfm;
-        rows.m_lowerLimit = &row.lower;
-        rows.m_upperLimit = &row.upper;
-        rows.m_numIterations = info.m_numIterations;
-        rows.m_damping = info.m_damping;
-        constraint->getInfo2(&rows);
+        state_rows(*constraint, size.m_numConstraintRows, info, at_end_);
     }
 }
 
@@ -253,14 +236,17 @@ DUCTILE_INLINE void IslandSolver::read_own() {
         const double end = row.target - row.compliance * row.impulse + soft.added;
         soft.law.tell(own_, row.impulse / h, soft.start, end, h);
     }
-    for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
-        const solve::IslandRow& motor = island_.rows[first_read_ + std::size_t(i)];
+    const auto tell = [&](int place, const solve::IslandRow& motor) {
         const double strength = motor.upper / h;
-        if (std::isinf(strength) || !(strength > 0) || motor.lower != -motor.upper) continue;
-        const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[i];
+        if (std::isinf(strength) || !(strength > 0) || motor.lower != -motor.upper) return;
+        const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[place];
         own_.add_motor(strength, double(row.m_jacDiagABInv), motor.impulse / h,
                        motor.target + pushed(row), h);
+    };
+    for (int i = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i) {
+        tell(i, island_.rows[first_read_ + std::size_t(i)]);
     }
+    for (const auto& [place, row] : motor_rows_) tell(int(place), island_.rows[row]);
 }
 
 /// Has those of them that hold both ways be right at the end of the part.
@@ -270,7 +256,7 @@ DUCTILE_INLINE void IslandSolver::turn_rows() {
         const int count = m_tmpConstraintSizesPool[int(i)].m_numConstraintRows;
         const bool same = count == count_at_end_[i]; // else a stop began or ended, or it is led
         for (int k = 0; same && k < count; ++k) {
-            const EndRow& end = at_end_[then + std::size_t(k)];
+            const StatedRow& end = at_end_[then + std::size_t(k)];
             const btSolverConstraint& row = m_tmpSolverNonContactConstraintPool[int(now) + k];
             solve::IslandRow& turned = island_.rows[first_read_ + now + std::size_t(k)];
             if (!std::isinf(turned.lower) || !std::isinf(turned.upper)) continue;

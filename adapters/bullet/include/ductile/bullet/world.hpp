@@ -71,6 +71,10 @@ struct WorldParameters {
     /// springs for each second after that [-], >= 0 (joint/swing.hpp). 0 where a structure is
     /// driven to vibrate, of which this would take for a minute.
     double rest_damping = ductile::rest_damping<double>;
+    /// Whether in frames islands with springs of btGeneric6DofSpring2Constraint are solved at once,
+    /// too, and have all of their stiffness, where Bullet limits it by the length of a frame
+    /// (softened_springs.hpp). Else one that comes to a plastic joint so is said, once.
+    bool springs = false;
     Warn warn = warn_on_stderr; ///< a line of the worst joint; empty: nothing is said
 };
 
@@ -125,6 +129,7 @@ class World final : public SteppedWorld {
     /// From the first one on.
     [[nodiscard]] Members& members();
     void step_with_members(double dt);
+    void tell_of_springs();
     void tell_of_members();
     void tell_idle(bool after);
     void start_frames(double tolerance, int budget);
@@ -144,7 +149,7 @@ class World final : public SteppedWorld {
     btDiscreteDynamicsWorld& world_;
     std::unique_ptr<FrontHold> front_; ///< not in a world of multibodies
     std::unique_ptr<EnergyMeter> meter_;
-    bool tells_ledger_ = false;
+    bool tells_ledger_ = false, told_of_springs_ = false;
     std::unique_ptr<Divisibles> members_;
     std::vector<std::pair<const void*, bool>> idle_; ///< of members, from the next step on
     std::unique_ptr<WorldSnapshot> snapshot_;        ///< of a step, while there are members

@@ -3,6 +3,7 @@
 // Bodies of world.hpp.
 #pragma once
 
+#include <sstream>
 #include <stdexcept>
 
 #include "ductile/bullet/energy_meter.hpp"
@@ -52,7 +53,9 @@ DUCTILE_INLINE World::World(btDiscreteDynamicsWorld& world, WorldParameters para
     const double tolerance =
         parameters.tolerance.value_or(can_put_back() ? FrameParameters{}.tolerance : 0.0);
     if (parameters.ledger || tolerance != 0) meter_ = std::make_unique<EnergyMeter>(world_);
-    if (tolerance != 0) start_frames(tolerance, parameters.budget);
+    if (tolerance == 0) return;
+    start_frames(tolerance, parameters.budget);
+    front_->set_springs(parameters.springs);
 }
 
 /// WorldSnapshot knows rigid bodies alone.
@@ -100,6 +103,21 @@ DUCTILE_INLINE void World::end_frame() {
     }
     members_->drop_forces();
     tell_of_members();
+    tell_of_springs();
+}
+DUCTILE_INLINE void World::tell_of_springs() {
+    if (told_of_springs_ || !front_->softened()) return;
+    told_of_springs_ = true;
+    const auto& [body, other, share] = *front_->softened();
+    std::ostringstream line;
+    line.precision(2);
+    line << "ductile: a spring between body " << body << " and ";
+    other < 0 ? line << "the static world" : line << "body " << other;
+    line
+        << " came to a plastic joint with " << 100 * share
+        << " % of its stiffness, to which Bullet limits it in frames of this length; let the World "
+           "solve such springs, too (springs)";
+    supervisor().say(line.str());
 }
 
 DUCTILE_INLINE World::~World() {

@@ -167,12 +167,12 @@ DUCTILE_INLINE OwnJoint::Row OwnJoint::midway() const {
     return {.arm_a = half, .arm_b = scaled(-1, half)};
 }
 
-/// A motor at its stop is a given force, as in ODE.
+/// A motor at its stop is a given force, as in ODE; in a part of a frame it has a row of its own,
+/// as that force would drive it beyond its speed.
 DUCTILE_INLINE void OwnJoint::add_axis(const Step& step, const Axis& axis) {
     constexpr double unlimited = std::numeric_limits<double>::infinity();
     const auto get = [&](int name) { return parameter(name, axis.number); };
-    const double least = get(dParamLoStop), most = get(dParamHiStop), strength = get(dParamFMax),
-                 speed = get(dParamVel);
+    const double least = get(dParamLoStop), most = get(dParamHiStop), speed = get(dParamVel);
     const double turn = axis.turns ? std::numbers::pi : unlimited;
     const bool stops = axis.stops && least <= most && (least > -unlimited || most < unlimited) &&
                        (least >= -turn || most <= turn);
@@ -180,19 +180,19 @@ DUCTILE_INLINE void OwnJoint::add_axis(const Step& step, const Axis& axis) {
     Row row = midway();
     row.along = axis.along;
     row.turns = axis.turns;
-    if (strength > 0 && !low && !high) {
-        solve::IslandRow& motor = pull(step, row, speed, get(dParamCFM));
+    double strength = get(dParamFMax);
+    if ((low && speed > 0) || (high && speed < 0)) strength *= get(dParamFudgeFactor);
+    const bool stopped = low || high;
+    if (strength > 0 && !(stopped && least == most)) {
+        solve::IslandRow& motor = pull(step, row, speed, stopped ? 0 : get(dParamCFM));
         motor.upper = strength * step.dt;
         motor.lower = -motor.upper;
-        return;
+        if (stopped && !step.ahead) {
+            const bool up = speed > 0 || (speed == 0 && high);
+            motor.lower = motor.upper = motor.impulse = up ? motor.upper : motor.lower;
+        }
     }
-    if (!low && !high) return;
-    if (strength > 0 && least < most) {
-        double force = speed > 0 || (speed == 0 && high) ? strength : -strength;
-        if ((low && speed > 0) || (high && speed < 0)) force *= get(dParamFudgeFactor);
-        solve::IslandRow& given = pull(step, row, 0, 0);
-        given.lower = given.upper = given.impulse = force * step.dt;
-    }
+    if (!stopped) return;
     const double beyond = axis.at - (low ? least : most);
     double target = -get(dParamStopERP) / step.dt * beyond;
     const Vector3<double> apart =

@@ -8,7 +8,8 @@
 //
 // Two stops at one place that are soft are a spring and a damper, k = erp/(frame cfm), d = (1 -
 // erp)/cfm. Set anew for each part they ask for the mean of its forces (law_row): ODE's row is u' +
-// cfm f = -erp (at - stop)/h.
+// cfm f = -erp (at - stop)/h. So is the suspension of a hinge-2, of which a part sets ERP and CFM:
+// its row is u' + cfm f = -erp x/h, with its strain x.
 //
 // Not thread-safe.
 #pragma once
@@ -70,6 +71,7 @@ class OwnSettings {
     [[nodiscard]] OwnForces forces(double h) const {
         OwnForces forces;
         for (const Motor& motor : motors_) {
+            if (motor.stopped != no_axis && !left_stop(motor)) continue;
             const dJointFeedback* feedback = dJointGetFeedback(motor.joint);
             if (feedback == nullptr) continue;
             const OwnAxes axes = OwnAxes::of(motor.joint, attached_bodies(motor.joint));
@@ -80,7 +82,9 @@ class OwnSettings {
             forces.add_motor(motor.strength, motor.mass, force, motor.speed, h);
         }
         for (const Spring& spring : springs_) {
-            const double end = stopped_axes(spring.joint).axes[spring.axis].rate;
+            const double end = spring.axis == suspension
+                                   ? suspended(spring.joint).rate
+                                   : stopped_axes(spring.joint).axes[spring.axis].rate;
             const double force = (spring.law.target - end) / (spring.law.compliance * h);
             forces.add_spring(spring.stiffness, spring.mass, force, spring.start, end, h);
         }
@@ -98,9 +102,10 @@ class OwnSettings {
         int name;
         dReal value;
     };
+    static constexpr std::size_t suspension = std::size_t(-1);
     struct Spring {
         dJointID joint;
-        std::size_t axis;
+        std::size_t axis;              ///< of its stops, or its suspension
         double stiffness, mass, start; ///< of the row; its velocity as the part began
         LawRow law;
     };
@@ -110,7 +115,16 @@ class OwnSettings {
         Vector3<double> along; ///< world, unit
         bool turns;
         double strength, mass, speed; ///< the last as the part began, less the motor's
+        std::size_t stopped;          ///< of the joint's axes; no_axis: it is at no stop
+        double meant;                 ///< the motor's
     };
+    static constexpr std::size_t no_axis = std::size_t(-1);
+
+    /// Where it does not, the joint's force is the stop's, too.
+    [[nodiscard]] static bool left_stop(const Motor& motor) {
+        const double rate = stopped_axes(motor.joint).axes[motor.stopped].rate;
+        return std::abs(rate - motor.meant) < std::abs(rate);
+    }
 
     void set(dJointID joint, int name, double value) {
         const JointCalls calls = joint_calls(dJointGetType(joint));
@@ -137,7 +151,9 @@ class OwnSettings {
             const Softness own = usual(dParamERP, dParamCFM);
             lend(dParamERP, dParamCFM, {part_erp(own.erp, h), own.compliance}, blow);
         }
-        if (calls.suspension) soften(dParamSuspensionERP, dParamSuspensionCFM);
+        if (calls.suspension && !is_suspension(joint, part)) {
+            soften(dParamSuspensionERP, dParamSuspensionCFM);
+        }
         for (int axis = 0; axis < calls.stops; ++axis) {
             const int group = dParamGroup * axis;
             const bool stops = std::isfinite(calls.get(joint, dParamLoStop + group)) ||
@@ -184,8 +200,16 @@ class OwnSettings {
         const double way = !turns && reversed ? -1 : 1;
         const Vector3<double> apart = turns ? difference(angular_velocity(a), angular_velocity(b))
                                             : difference(linear_velocity(a), linear_velocity(b));
-        motors_.push_back(
-            {joint, along, turns, strength, 1 / yields, way * dot(apart, along) - get(dParamVel)});
+        const StoppedAxes axes = stopped_axes(joint);
+        std::size_t stopped = no_axis;
+        for (std::size_t i = 0; i < axes.count; ++i) {
+            const StoppedAxis& axis = axes.axes[i];
+            const bool at_it = axis.at <= axis.least || axis.at >= axis.most;
+            if (axis.group == dParamGroup * number && axis.stops() && at_it) stopped = i;
+        }
+        const double speed = get(dParamVel);
+        motors_.push_back({joint, along, turns, strength, 1 / yields,
+                           way * dot(apart, along) - speed, stopped, speed});
     }
     /// One that a frame could follow, which it is now.
     bool is_spring(dJointID joint, int group, const Part& part) {
@@ -217,6 +241,44 @@ class OwnSettings {
             return true;
         }
         return false;
+    }
+
+    struct Suspended {
+        double strain, rate, yields; ///< [m] [m/s] [1/kg]
+    };
+    /// As the suspension of a hinge-2 is.
+    [[nodiscard]] static Suspended suspended(dJointID joint) {
+        const Vector3<double> along = told(joint, dJointGetHinge2Axis1),
+                              of_a = told(joint, dJointGetHinge2Anchor),
+                              of_b = told(joint, dJointGetHinge2Anchor2);
+        const Vector3<double> moves = difference(velocity_at(dJointGetBody(joint, 0), of_a),
+                                                 velocity_at(dJointGetBody(joint, 1), of_b));
+        return {dot(difference(of_a, of_b), along), dot(moves, along),
+                detail::yields_along(joint, along, false)};
+    }
+    /// One that a frame could follow, which it is now. ODE asks for ERP times its strain.
+    bool is_suspension(dJointID joint, const Part& part) {
+        constexpr double stiff = 1e4, nothing = 1e-12; // (ω frame)², [m]
+        const auto [h, frame, blow] = part;
+        const JointCalls calls = joint_calls(dJointGetType(joint));
+        const auto erp = double(calls.get(joint, dParamSuspensionERP));
+        const auto cfm = double(calls.get(joint, dParamSuspensionCFM));
+        if (!(erp > 0 && erp <= 1 && cfm > 0)) return false;
+        const auto [strain, rate, yields] = suspended(joint);
+        const double stiffness = erp / (frame * cfm), damping = (1 - erp) / cfm;
+        if (!(yields > 0) || stiffness * frame * frame * yields > stiff) return false;
+        if (blow) {                            // in which it gives nothing
+            constexpr double gives_way = 1e12; // [s/kg]
+            set(joint, dParamSuspensionERP, 0);
+            set(joint, dParamSuspensionCFM, gives_way);
+            return true;
+        }
+        const LawRow law = law_row(stiffness, damping, 1 / yields, strain, rate, h);
+        if (!(std::abs(strain) > nothing) && law.target != 0) return false;
+        set(joint, dParamSuspensionERP, strain == 0 ? 0 : -law.target * h / strain);
+        set(joint, dParamSuspensionCFM, law.compliance * h);
+        springs_.push_back({joint, suspension, stiffness, 1 / yields, rate, law});
+        return true;
     }
 
     std::vector<Usual> usual_;
