@@ -38,7 +38,6 @@ namespace ductile::solve {
 namespace detail {
 
 inline constexpr double exactness = 1e-12;  ///< of the largest velocity: a row is solved
-inline constexpr double sliding = 1e-10;    ///< the same beside contacts that slide
 inline constexpr double sufficient = 1e-7;  ///< the same where round-off allows no more
 inline constexpr double acceptance = 1e-11; ///< of the largest velocity: a row is on the right side
 inline constexpr double settled = 1e-7;     ///< of the largest velocity: a slip has settled
@@ -158,13 +157,9 @@ class ActiveSet {
     [[nodiscard]] bool solve_free_rows(bool factored) {
         constexpr double slow = 0.1, stalled = 0.5;
         const std::vector<IslandBlock>& blocks = system_->island().blocks;
-        bool curved = false;
-        slides_ = false;
-        for (std::size_t k = 0; k < blocks.size(); ++k) {
-            if (blocks[k].state != BlockState::surface) continue;
-            curved = true;
-            slides_ = slides_ || system_->blocks()[k].coulomb;
-        }
+        const bool curved = std::any_of(blocks.begin(), blocks.end(), [](const IslandBlock& block) {
+            return block.state == BlockState::surface;
+        });
         if (!factored) set_tangents(*system_);
         Stay stay = Stay::all;
         double worst = 0, before = std::numeric_limits<double>::infinity();
@@ -241,12 +236,10 @@ class ActiveSet {
     }
     /// Where a row is solved, and where it is on the right side [m/s | rad/s].
     [[nodiscard]] double exact() const noexcept {
-        const double share = slides_ ? detail::sliding : detail::exactness;
-        return std::max(system_->round_off(4), share * system_->scale());
+        return std::max(system_->round_off(4), detail::exactness * system_->scale());
     }
     [[nodiscard]] double accepted() const noexcept {
-        const double share = slides_ ? 2 * detail::sliding : detail::acceptance;
-        return std::max(system_->round_off(40), share * system_->scale());
+        return std::max(system_->round_off(40), detail::acceptance * system_->scale());
     }
     [[nodiscard]] int change_over() {
         Island& island = system_->island();
@@ -307,7 +300,6 @@ class ActiveSet {
     int slow_ = 0;                            ///< steps since
     bool hardens_ = false;                    ///< rigid rows are to give nothing
     bool cautious_ = false;                   ///< rows that are most wrong go first
-    bool slides_ = false;                     ///< a contact, by Coulomb's law itself
     bool near_ = false;                       ///< blocks leave their surface by and by
     int wrong_rows_ = 0;                      ///< that belong to no block
 };

@@ -27,8 +27,24 @@ namespace detail {
 [[nodiscard]] DUCTILE_INLINE bool is_plastic_or_sprung(btTypedConstraint* constraint) {
     return is_plastic(constraint) || has_springs(*constraint);
 }
-[[nodiscard]] DUCTILE_INLINE bool has_plastic(const IslandParts& island) {
-    return std::any_of(island.constraints.begin(), island.constraints.end(), is_plastic);
+/// By a joint, or a member that is whole, which may stand still; else it has springs alone.
+[[nodiscard]] DUCTILE_INLINE bool has_plastic(const IslandParts& island,
+                                              const DirectBodies& direct) {
+    const auto touches = [&direct](const btCollisionObject& a, const btCollisionObject& b) {
+        return direct.has(a) || direct.has(b);
+    };
+    const auto any = [](const auto& of, const auto& is) {
+        return std::any_of(of.begin(), of.end(), is);
+    };
+    return any(island.bodies, [&](const btCollisionObject* body) { return direct.has(*body); }) ||
+           any(island.manifolds,
+               [&](const btPersistentManifold* manifold) {
+                   return touches(*manifold->getBody0(), *manifold->getBody1());
+               }) ||
+           any(island.constraints, [&](btTypedConstraint* constraint) {
+               return is_plastic(constraint) ||
+                      touches(constraint->getRigidBodyA(), constraint->getRigidBodyB());
+           });
 }
 
 /// Of Bullet's joints and contacts it has none: it leaves nothing of itself in its solver.
@@ -290,7 +306,7 @@ DUCTILE_INLINE btScalar FrontSolver::solveGroup(btCollisionObject** bodies, int 
         }
         const std::shared_ptr<Kept> kept = solver_of(island);
         solve_plastic(island, kept->solver, info, drawer, dispatcher);
-        if (!detail::has_plastic(island)) continue;
+        if (springs_ && !detail::has_plastic(island, direct)) continue;
         const std::lock_guard lock(mutex_);
         own_.join(kept->solver.own());
         for (btTypedConstraint* constraint : island.constraints) softened_.meet(*constraint);
