@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "adapters/ode_engine.hpp"
@@ -320,6 +322,71 @@ TEST_CASE("Locality: contacts of a world that stands are made once a frame", "[f
     for (int i = 0; i < 20; ++i) site.step();
     CHECK(site.work() > 1);
     CHECK(site.world->run().blows > 0);
+}
+
+TEST_CASE("Locality: a world that sleeps solves nothing until something is awake", "[frame]") {
+    enum Deed { nothing, throws, pushes, wakes_as_contacts_are_made, brings, lifts };
+    // work, what hands brought in, and solves of ten frames asleep
+    const auto run = [](Deed deed, bool beside_one_awake) {
+        Site site;
+        const dBodyID lower = site.box(50, {0.5, 0.5, 0.5}, {0, 0.5, 0});
+        const dBodyID upper = site.box(50, {0.5, 0.5, 0.5}, {0, 1.5, 0});
+        site.hinge(upper, lower, {0, 1, 0}, 100);
+        for (const dBodyID body : {lower, upper}) dBodySetAutoDisableFlag(body, 1);
+        if (beside_one_awake) dBodySetGravityMode(site.ball(1, 0.1, {50, 50, 0}, {0, 0, 0}), 0);
+        for (int i = 0; i < 40; ++i) site.step();
+        REQUIRE(dBodyIsEnabled(upper) == 0);
+        const std::size_t before = site.world->run().parts;
+        const int looks = site.looks;
+        for (int i = 0; i < 10; ++i) site.step();
+        const std::size_t solves = site.world->run().parts - before;
+        CHECK(site.looks == looks + 10);
+        switch (deed) {
+            case throws:
+                dBodyEnable(upper);
+                dBodySetAngularVel(upper, 0, 0, -3);
+                dBodySetLinearVel(upper, dReal(1.5), 0, 0);
+                break;
+            case pushes:
+                for (int i = 0; i < 6; ++i) {
+                    site.world->apply_force(upper, {400, 0, 0}, {0, 2, 0});
+                    site.step();
+                }
+                break;
+            case wakes_as_contacts_are_made:
+                site.world->on_contacts({.space = site.engine.space, .group = site.engine.contacts},
+                                        [&site, upper, done = false]() mutable {
+                                            if (!std::exchange(done, true)) dBodyEnable(upper);
+                                            dSpaceCollide(site.engine.space, &site, &Site::near);
+                                        });
+                break;
+            case brings:
+                site.ball(40, 0.2, {-1.2, 1.9, 0}, {5, 0, 0});
+                break;
+            case lifts:
+                dBodySetPosition(lower, 0, 1, 0);
+                break;
+            case nothing:
+                break;
+        }
+        const std::size_t until_then = site.world->run().parts;
+        for (int i = 0; i < 20; ++i) site.step();
+        const bool awake = deed != nothing && deed != lifts;
+        CHECK((awake || beside_one_awake) == (site.world->run().parts > until_then));
+        CHECK(site.gained < 1e-6);
+        CHECK(site.world->run().believed());
+        return std::tuple(site.work(), site.world->ledger().supplied(), solves);
+    };
+    for (const Deed deed : {nothing, throws, pushes, wakes_as_contacts_are_made, brings, lifts}) {
+        CAPTURE(int(deed));
+        const auto [work, supplied, solves] = run(deed, false);
+        const auto [beside, brought, solved] = run(deed, true);
+        CHECK(solves == 0);
+        CHECK(solved == 10);
+        CHECK((work > 1) == (deed == throws || deed == pushes || deed == brings));
+        CHECK(work == Approx(beside).epsilon(1e-9));
+        CHECK(supplied == Approx(brought).epsilon(1e-9));
+    }
 }
 
 TEST_CASE("Locality: what hands do to a world that stands is resolved", "[frame]") {

@@ -76,6 +76,8 @@ class FrameControl {
     /// @throws std::invalid_argument where the length is not finite or not positive, before
     /// anything was done; what the engine throws.
     const FrameReport& frame(PartEngine& engine, double length);
+    /// One in which nothing is awake, and nothing is solved.
+    void sleep();
 
     [[nodiscard]] const FrameParameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const FrameReport& last() const noexcept { return report_; }

@@ -61,6 +61,12 @@ DUCTILE_INLINE const FrameReport& FrameControl::frame(PartEngine& engine, double
     return report_;
 }
 
+DUCTILE_INLINE void FrameControl::sleep() {
+    report_ = {};
+    last_work_ = 0;
+    run_.add(report_, work_);
+}
+
 /// As long as the last part suggests, not past the first stop of a row.
 DUCTILE_INLINE double FrameControl::first_length(double left) noexcept {
     starts_ = false;

@@ -49,6 +49,7 @@ DUCTILE_INLINE void EnergyMeter::see_changes() {
     const HeldEnergy<double> now = held();
     ledger_.supply(now.total() - last_.total());
     last_ = now;
+    ledger_.update(last_);
 }
 
 DUCTILE_INLINE void EnergyMeter::before_step(bool watches) {

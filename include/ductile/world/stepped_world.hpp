@@ -84,6 +84,9 @@ class SteppedWorld : private JointKeeper {
     /// A frame of `length` [s] begins, with the bodies and the forces on them as they are. Asked
     /// for where start_in_frames was called.
     [[nodiscard]] DUCTILE_INLINE virtual PartEngine& begin_frame(double /*length*/);
+    /// True where nothing was awake in the last frame, and nothing is: the engine then went through
+    /// this one of `length` [s], in which nothing is solved.
+    [[nodiscard]] virtual bool sleep_through(double /*length*/) { return false; }
     virtual void end_frame() {}
     /// True where a body of this address is known to be in the engine's world; null is not.
     [[nodiscard]] virtual bool has_body(const void* body) const = 0;

@@ -67,8 +67,14 @@ DUCTILE_INLINE void SteppedWorld::go(double dt, double end) {
 }
 DUCTILE_INLINE void SteppedWorld::do_frame(double length, double end) {
     require_possible(length);
-    frames_->frame(begin_frame(length), length);
-    end_frame();
+    if (sleep_through(length)) {
+        frames_->sleep();
+        supervisor_.look(end);
+        look_at_structures();
+    } else {
+        frames_->frame(begin_frame(length), length);
+        end_frame();
+    }
     frames_->count_unreliable(supervisor_.watch().unreliable());
     supervisor_.set_time(end);
     if (const Ledger<double>* kept = kept_ledger()) {

@@ -73,7 +73,9 @@ struct ContactClosing {
     /// Overlap at which it is closed [m].
     [[nodiscard]] double depth() const;
     /// It comes nearer, and not as what is closed may.
-    [[nodiscard]] bool closes() const { return speed > 2 * sinks && yields() > 0; }
+    [[nodiscard]] bool closes() const {
+        return speed > 2 * sinks && (can_move(bodies.a) || can_move(bodies.b));
+    }
     /// It leaves at least as fast as it would rebound, so that it is open although it overlaps:
     /// where another blow sends it back it is struck anew.
     [[nodiscard]] bool rebounds(const NamedContact& named) const;

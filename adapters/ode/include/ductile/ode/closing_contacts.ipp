@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <stdexcept>
@@ -158,10 +159,14 @@ DUCTILE_INLINE std::optional<SoftContact> ContactClosing::softness(const NamedCo
     const dWorldID world = dBodyGetWorld(bodies.a);
     const auto has = [&surface](int flag) { return (surface.mode & flag) != 0; };
     const auto erp = double(has(dContactSoftERP) ? surface.soft_erp : dWorldGetERP(world));
-    const double cfm = named.cfm(world), of_a = detail::yield_at(bodies.a, seen.arm_a, seen.normal),
-                 of_b = detail::yield_at(bodies.b, seen.arm_b, seen.normal);
-    if (!(cfm > 0 && of_a + of_b > 0)) return {};
-    SoftContact soft = SoftContact::of({erp, cfm}, of_a, of_b, frame);
+    const double cfm = named.cfm(world);
+    if (!(cfm > 0) || (!can_move(bodies.a) && !can_move(bodies.b))) return {};
+    // what is hard for bodies that do not turn, which yield less, is
+    const auto yields = [](dBodyID body) { return can_move(body) ? 1 / mass(body) : 0; };
+    const Softness usual{erp, cfm};
+    if (SoftContact::of(usual, yields(bodies.a), yields(bodies.b), frame).is_hard(frame)) return {};
+    SoftContact soft = SoftContact::of(usual, detail::yield_at(bodies.a, seen.arm_a, seen.normal),
+                                       detail::yield_at(bodies.b, seen.arm_b, seen.normal), frame);
     if (soft.is_hard(frame)) return {};
     const double bounce =
         has(dContactBounce) && surface.bounce_vel >= 0 && speed > double(surface.bounce_vel)
@@ -178,8 +183,7 @@ DUCTILE_INLINE std::optional<SoftContact> ContactClosing::softness(const NamedCo
 DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedContact> contacts,
                                                         std::span<PlasticConstraint* const> joints,
                                                         std::span<const dBodyID> members) {
-    AddressBook named;
-    for (const NamedContact& contact : contacts) named.enter(contact.joint);
+    std::ptrdiff_t found = 0; // contacts
     island_.clear();
     numbers_.clear();
     const auto add = [&](dBodyID body) {
@@ -200,14 +204,22 @@ DUCTILE_INLINE void ClosingContactsFinder::find_islands(std::span<const NamedCon
             // what members hold hangs together with them while it is cut off, too
             const bool may_be_cut = at < members.size() && !touches;
             if (dJointIsEnabled(joint) == 0 && !may_be_cut) continue;
-            if (touches && !named.has(joint)) {
-                throw std::logic_error(
-                    "World.step: a contact of a body with plastic joints was not named: in a world "
-                    "with a tolerance all are made and named (add_contact) by what on_contacts was "
-                    "given");
-            }
-            for (const int side : {0, 1}) add(dJointGetBody(joint, side));
+            const dBodyID first = dJointGetBody(joint, 0), second = dJointGetBody(joint, 1);
+            // from one of its two bodies
+            if (touches && (body == first || (!can_move(first) && !is_plastic(first)))) ++found;
+            add(first);
+            add(second);
         }
+    }
+    const auto of_them = [this](const NamedContact& contact) {
+        return dJointIsEnabled(contact.joint) != 0 &&
+               (is_plastic(dJointGetBody(contact.joint, 0)) ||
+                is_plastic(dJointGetBody(contact.joint, 1)));
+    };
+    if (found != std::count_if(contacts.begin(), contacts.end(), of_them)) {
+        throw std::logic_error(
+            "World.step: a contact of a body with plastic joints was not named: in a world with a "
+            "tolerance all are made and named (add_contact) by what on_contacts was given");
     }
 }
 
@@ -252,7 +264,7 @@ DUCTILE_INLINE void ClosingContactsFinder::look_at_stops() {
     for (dBodyID body : island_) {
         for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
             const dJointID joint = dBodyGetJoint(body, i);
-            if (dJointIsEnabled(joint) == 0) continue;
+            if (dJointGetType(joint) == dJointTypeContact || dJointIsEnabled(joint) == 0) continue;
             for (const StoppedAxis& axis : stopped_axes(joint)) {
                 if (!axis.stops()) continue;
                 any_stops_ = true;

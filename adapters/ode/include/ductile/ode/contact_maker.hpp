@@ -25,6 +25,7 @@
 #include <utility>
 #include <vector>
 
+#include "ductile/ode/contact_rows.hpp"
 #include "ductile/ode/convert.hpp"
 #include "ductile/vocabulary/check.hpp"
 
@@ -116,6 +117,17 @@ class ContactMaker {
     /// There are none.
     void clear() const { dJointGroupEmpty(parameters_.group); }
     [[nodiscard]] const ContactParameters& parameters() const noexcept { return parameters_; }
+    /// Its joint is made once more, as its surface says now.
+    void renew(NamedContact& named) const {
+        const dJointID old = named.joint;
+        const dBodyID a = dJointGetBody(old, 0), b = dJointGetBody(old, 1);
+        const dWorldID world = dBodyGetWorld(a != nullptr ? a : b);
+        named.joint = dJointCreateContact(world, parameters_.group, &named.contact);
+        dJointAttach(named.joint, a, b);
+        dJointSetFeedback(named.joint, dJointGetFeedback(old));
+        dJointDisable(old);
+        named.stale = false;
+    }
     /// All geoms of the space that are no spaces, in their order.
     [[nodiscard]] std::vector<dGeomID> geoms() const {
         std::vector<dGeomID> geoms;

@@ -28,6 +28,7 @@ struct NamedContact {
     dContact contact;
     Vector3<double> force = Vector3<double>::Zero(); ///< on A, to begin the solve with [N]
     bool by_law = false; ///< its normal asks for surface.motionN, whatever it overlaps
+    bool stale = false;  ///< its joint was made of another surface
 
     /// Whether it is no more than a normal and sliding friction.
     [[nodiscard]] bool slides_only() const { return (contact.surface.mode & dContactRolling) == 0; }

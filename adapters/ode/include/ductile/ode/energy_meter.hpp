@@ -100,8 +100,10 @@ class EnergyMeter final : public ductile::EnergyMeter {
             entry.position = to_core(dBodyGetPosition(body));
             entry.velocity = linear_velocity(body);
             entry.spin = angular_velocity(body);
-            entry.mass = mass(body);
-            entry.inertia = inertia(body);
+            dMass m;
+            dBodyGetMass(body, &m);
+            entry.mass = double(m.mass);
+            entry.inertia = sandwiched(matrix_to_core(dBodyGetRotation(body)), matrix_to_core(m.I));
             if (dBodyGetGravityMode(body) != 0) entry.weight = scaled(entry.mass, gravity);
             entry.force = to_core(dBodyGetForce(body));
             entry.torque = to_core(dBodyGetTorque(body));

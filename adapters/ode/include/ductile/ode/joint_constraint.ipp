@@ -163,10 +163,12 @@ DUCTILE_INLINE void JointConstraint::prepare(double dt) {
 
 /// In a part of a frame begin_frame has looked.
 DUCTILE_INLINE std::array<BodyState<double>, 2> JointConstraint::at_start(double dt) {
-    // a part asks for masses as well, to know what is driven
-    const bool masses = ahead_ || link_.reads_mass();
-    const auto now = [masses](dBodyID body) {
-        return masses ? body_state(body) : body_motion(body);
+    const auto now = [this](dBodyID body) {
+        if (link_.reads_mass()) return body_state(body);
+        BodyState<double> motion = body_motion(body);
+        // a part asks what is driven
+        if (ahead_ && can_move(body)) motion.inverse_mass = 1 / mass(body);
+        return motion;
     };
     const std::array<BodyState<double>, 2> bodies{driven_.at_start(0, a_, now(a_), dt),
                                                   driven_.at_start(1, b_, now(b_), dt)};

@@ -54,6 +54,7 @@ class OwnSettings {
         for (dBodyID body : bodies) {
             for (int i = 0, count = dBodyGetNumJoints(body); i < count; ++i) {
                 const dJointID joint = dBodyGetJoint(body, i);
+                if (dJointGetType(joint) == dJointTypeContact) continue;
                 const dBodyID first = dJointGetBody(joint, 0);
                 if ((first != body && first != nullptr) || ours.made.has(joint)) continue;
                 if (!blow && !ours.ruled.has(joint)) note_motors(joint);

@@ -149,6 +149,7 @@ class World final : public SteppedWorld {
     DUCTILE_INLINE void require_possible(double dt) override;
     DUCTILE_INLINE void do_step(double dt) override;
     [[nodiscard]] DUCTILE_INLINE PartEngine& begin_frame(double length) override;
+    [[nodiscard]] DUCTILE_INLINE bool sleep_through(double length) override;
     DUCTILE_INLINE void end_frame() override;
     [[nodiscard]] DUCTILE_INLINE bool has_body(const void* body) const override;
     [[nodiscard]] DUCTILE_INLINE const Ledger<double>* kept_ledger() const noexcept override;

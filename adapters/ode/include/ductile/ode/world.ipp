@@ -288,6 +288,9 @@ DUCTILE_INLINE void World::solve(double dt) {
     islands_->before_step(contacts_, dt, !frames,
                           frames ? members_->touched() : std::vector<dBodyID>{},
                           members_->held_by());
+    for (NamedContact& named : contacts_) {
+        if (named.stale && dJointIsEnabled(named.joint) != 0) maker_->renew(named);
+    }
     step_engine(dt);
     islands_->after_step();
     members_->after_solve();
@@ -314,6 +317,19 @@ DUCTILE_INLINE PartEngine& World::begin_frame(double length) {
     }
     parts_->begin(length);
     return *parts_;
+}
+DUCTILE_INLINE bool World::sleep_through(double length) {
+    if (!parts_->sleeps()) return false;
+    if (maker_) {
+        contacts_.clear();
+        maker_->make(bodies_);
+        contacts_.clear();
+        if (!parts_->sleeps()) return false; // who makes them woke a body
+    }
+    step_engine(length);
+    if (maker_) maker_->clear();
+    meter_->see_changes();
+    return true;
 }
 DUCTILE_INLINE void World::end_frame() {
     parts_->end();

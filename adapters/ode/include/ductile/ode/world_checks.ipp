@@ -103,11 +103,16 @@ DUCTILE_INLINE void World::require_all_bodies() {
                     "World.step: there are contacts before the step: in a world with a tolerance "
                     "they are made by what on_contacts was given");
             }
-            for (const int side : {0, 1}) require_known(dJointGetBody(joint, side));
+            for (const int side : {0, 1}) {
+                if (const dBodyID other = dJointGetBody(joint, side); other != body) {
+                    require_known(other);
+                }
+            }
         }
     }
+    // where one of its bodies is known, the other one was looked at
     for (const PlasticConstraint* joint : plastic_) {
-        for (const int side : {0, 1}) require_known(dJointGetBody(joint->id(), side));
+        require_known(attached_bodies(joint->id()).a);
     }
     if (!maker_) return;
     for (dGeomID geom : maker_->geoms()) {

@@ -88,7 +88,15 @@ class WorldParts final : public PartEngine {
     void came(dBodyID body);
 
     /// A plastic joint came or went.
-    void joints_changed() noexcept { standing_.forget_joints(); }
+    void joints_changed() noexcept {
+        standing_.forget_joints();
+        slept_ = false;
+    }
+    /// Whether nothing is awake, nor was in the last frame.
+    [[nodiscard]] bool sleeps() const {
+        return slept_ && std::all_of(of_.bodies.begin(), of_.bodies.end(),
+                                     [](dBodyID body) { return dBodyIsEnabled(body) == 0; });
+    }
 
     [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;
     DUCTILE_INLINE void save() override;
@@ -173,8 +181,6 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
-    /// Its joint is made once more, as its surface says now.
-    void make_anew(NamedContact& named);
     /// A contact that gives way, for a part of `h` [s].
     void soften(NamedContact& named, const ContactClosing& it, const SoftContact& soft, double h);
     void tell_of_soft(double h);
@@ -225,6 +231,7 @@ class WorldParts final : public PartEngine {
     OwnSettings own_settings_;
     HeldForces forces_;
     std::vector<dBodyID> asleep_; ///< when the frame began, with forces on them
+    bool slept_ = false;          ///< all did, from the last frame's begin to its end
     std::vector<Damped> damped_;
     RestingIslands resting_;
     StandingWorld standing_;

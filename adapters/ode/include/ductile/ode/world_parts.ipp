@@ -150,6 +150,7 @@ DUCTILE_INLINE void WorldParts::end() {
     // ODE keeps what was applied to a body that sleeps
     std::erase_if(asleep_, [](dBodyID body) { return dBodyIsEnabled(body) != 0; });
     forces_.apply_to(asleep_);
+    slept_ = asleep_.size() == of_.bodies.size(); // as they were when it began
     of_.contacts.clear();
     if (of_.maker) of_.maker->clear();
     thrown_.leave(of_.bodies);

@@ -30,6 +30,7 @@ DUCTILE_INLINE bool WorldParts::go_local() {
 }
 
 DUCTILE_INLINE void WorldParts::came(dBodyID body) {
+    slept_ = false;
     if (local_) scope_.take_in({&body, 1});
 }
 

@@ -69,17 +69,11 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
             surface.motionN += dReal((plastic ? turned(it, h) : 0) - closing);
-            if (plastic) hold_turning(named, it, h);
+            if (plastic && !still_) hold_turning(named, it, h);
         }
-        make_anew(named);
+        named.stale = true;
+        if (!plastic) of_.maker->renew(named); // others' islands may not be ODE's to solve
     }
-}
-DUCTILE_INLINE void WorldParts::make_anew(NamedContact& named) {
-    const dJointID old = named.joint;
-    named.joint = dJointCreateContact(of_.world, of_.maker->parameters().group, &named.contact);
-    dJointAttach(named.joint, dJointGetBody(old, 0), dJointGetBody(old, 1));
-    dJointSetFeedback(named.joint, dJointGetFeedback(old));
-    dJointDisable(old);
 }
 
 /// No more of it pushes than what ODE would correct in a frame.
@@ -100,7 +94,7 @@ DUCTILE_INLINE void WorldParts::soften(NamedContact& named, const ContactClosing
     surface.soft_cfm = dReal(law.compliance * h);
     surface.motionN = dReal(law.target + turned + motion);
     hold_turning(named, it, h);
-    make_anew(named);
+    named.stale = true;
     soft_.push_back({soft, named.joint, it, start, turned + motion});
 }
 /// As the bodies leave a part of `h` [s].
