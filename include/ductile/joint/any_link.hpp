@@ -109,6 +109,9 @@ class AnyLink {
     /// much more the rigid force rows ask for from now on, in the order of JointAxis, so that they
     /// are right for these velocities [m/s]; zero: the answer stands. Once a step.
     Vector3<S> turn_at_end(const BodyState<S>& a, const BodyState<S>& b, S dt) noexcept;
+    /// False where that is zero for bodies that leave with these spins [rad/s].
+    [[nodiscard]] bool may_turn_at_end(const Vector3<S>& spin_a, const Vector3<S>& spin_b,
+                                       S dt) const noexcept;
 
     /// Books the step that `prepare` opened, with the bodies as they are after it; same `dt` [s].
     /// `wrench` is what all six rows put on body A, about the joint as `prepare` saw it. Input
@@ -362,6 +365,8 @@ class AnyLink {
         S rigid_residual, unseen_turn, island_unsolved;
         bool rigid_unsolved;
     };
+
+    static constexpr S noticed_turn = S(0.1); ///< of the residual that is allowed
 
     OnDemand<Kept> kept_;
     Vector6<S> start_ = Vector6<S>::Zero(), end_ = Vector6<S>::Zero(); ///< u, u'

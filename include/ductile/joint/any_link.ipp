@@ -78,8 +78,16 @@ const typename AnyLink<S>::Limits& AnyLink<S>::prepare(const BodyState<S>& a, co
 }
 
 template <std::floating_point S>
+bool AnyLink<S>::may_turn_at_end(const Vector3<S>& spin_a, const Vector3<S>& spin_b,
+                                 S dt) const noexcept {
+    constexpr S nothing = S(1e-9); // [rad]
+    const S spin = std::max(dot(spin_a, spin_a), dot(spin_b, spin_b));
+    return !(spin * dt * dt <= nothing * nothing) ||
+           norm(asked_) > noticed_turn * allowed_.absolute_residual;
+}
+
+template <std::floating_point S>
 Vector3<S> AnyLink<S>::turn_at_end(const BodyState<S>& a, const BodyState<S>& b, S dt) noexcept {
-    constexpr S noticed = S(0.1);
     const Vector3<S> none = Vector3<S>::Zero();
     const S spin = std::sqrt(std::max(dot(a.spin, a.spin), dot(b.spin, b.spin)));
     if (!ahead_ || !sound_ || broken() || !(spin * dt <= small_turn<S> / 2)) return none;
@@ -89,7 +97,7 @@ Vector3<S> AnyLink<S>::turn_at_end(const BodyState<S>& a, const BodyState<S>& b,
     for (int i = 0; i < 3; ++i) {
         if (plastic_[std::size_t(i)]) change[i] = 0;
     }
-    if (!(norm(change) > noticed * allowed_.absolute_residual)) return none;
+    if (!(norm(change) > noticed_turn * allowed_.absolute_residual)) return none;
     for (std::size_t i = 0; i < 3; ++i) limits_[i].bias += change[Eigen::Index(i)];
     return change;
 }

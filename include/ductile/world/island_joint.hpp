@@ -43,10 +43,27 @@ int add_rows(solve::Island& island, AnyLink<double>& link, const IslandSeat& a, 
 [[nodiscard]] BodyState<double> leaving(const solve::Island& island, const IslandSeat& seat,
                                         BodyState<double> body);
 
+/// The spin with which it does [rad/s].
+[[nodiscard]] inline Vector3<double> leaving_spin(const solve::Island& island,
+                                                  const IslandSeat& seat) {
+    if (seat.number == solve::immovable) return seat.spin;
+    return sum(seat.spin, angular(island.bodies[std::size_t(seat.number)].velocity));
+}
+
 /// The island is solved: its rigid rows are asked for what fits bodies that leave a part of `dt`
 /// [s] so (AnyLink::turn_at_end). True where that is something else: it has to be solved again.
 [[nodiscard]] bool turn_rows(solve::Island& island, AnyLink<double>& link, int first,
                              const BodyState<double>& a, const BodyState<double>& b, double dt);
+
+/// The same of bodies that began the part as `motion` says of each.
+template <class Body, class Motion>
+[[nodiscard]] bool turn_rows(solve::Island& island, AnyLink<double>& link, int first,
+                             const IslandSeat& a, const Body& body_a, const IslandSeat& b,
+                             const Body& body_b, const Motion& motion, double dt) {
+    if (!link.may_turn_at_end(leaving_spin(island, a), leaving_spin(island, b), dt)) return false;
+    return turn_rows(island, link, first, leaving(island, a, motion(body_a)),
+                     leaving(island, b, motion(body_b)), dt);
+}
 
 /// Adds six rows that give `impulse` to A at the joint where it is `pose`, and the opposite to B.
 void add_given_rows(solve::Island& island, const IslandSeat& a, const IslandSeat& b,

@@ -92,8 +92,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 DUCTILE_INLINE bool JointConstraint::turn_rows(solve::Island& island, const IslandSeat& a,
                                                const IslandSeat& b) {
     if (first_row_ == no_rows || !ahead_) return false; // a step as it is begins where rows are
-    return ductile::turn_rows(island, link_, first_row_, leaving(island, a, body_motion(m_rbA)),
-                              leaving(island, b, body_motion(m_rbB)), dt_);
+    return ductile::turn_rows(island, link_, first_row_, a, m_rbA, b, m_rbB, body_motion, dt_);
 }
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island) {

@@ -183,8 +183,7 @@ DUCTILE_INLINE void JointConstraint::open_rows(solve::Island& island, const Isla
 
 DUCTILE_INLINE bool JointConstraint::turn_rows(solve::Island& island, const IslandSeat& a,
                                                const IslandSeat& b, double dt) {
-    return ductile::turn_rows(island, link_, first_row_, leaving(island, a, body_motion(a_)),
-                              leaving(island, b, body_motion(b_)), dt);
+    return ductile::turn_rows(island, link_, first_row_, a, a_, b, b_, body_motion, dt);
 }
 
 DUCTILE_INLINE void JointConstraint::close_rows(const solve::Island& island, double dt) {
