@@ -41,6 +41,16 @@ struct ActionArray : btDiscreteDynamicsWorld {
     return !body.isStaticOrKinematicObject() && body.isActive() ? &body : nullptr;
 }
 
+/// Its velocities take it nowhere in `h` [s]. Bullet's tick begins with them.
+[[nodiscard]] inline bool stays(btRigidBody& body, btScalar h) {
+    constexpr btScalar nothing = btScalar(1e-16); // [m | rad]
+    const btVector3 &velocity = body.getLinearVelocity(), &spin = body.getAngularVelocity();
+    if (!(std::max(velocity.length2(), spin.length2()) * h * h < nothing * nothing)) return false;
+    body.setInterpolationLinearVelocity(velocity);
+    body.setInterpolationAngularVelocity(spin);
+    return true;
+}
+
 /// Whether the body, moved by its velocity for `time` [s] since it was at `from`, is elsewhere.
 [[nodiscard]] inline bool was_pushed(const btRigidBody& body, const btTransform& from,
                                      btScalar time) {
@@ -84,8 +94,9 @@ class HalfAhead final : public btActionInterface {
     HalfAhead& operator=(const HalfAhead&) = delete;
 
     /// Moves those of `bodies` that are awake half a step of `h` > 0 [s] ahead, for the coming
-    /// tick, which begins `time` [s] after the frame that `ways` are of.
-    void move(std::span<btRigidBody* const> bodies, btScalar h, DrivenWays& ways, btScalar time) {
+    /// tick, which begins `time` [s] after the frame that `ways` are of. True where one did move.
+    bool move(std::span<btRigidBody* const> bodies, btScalar h, DrivenWays& ways, btScalar time) {
+        bool any = !ways.empty();
         ways.place(time, h / 2, time + h);
         ways_ = &ways;
         end_ = time + h;
@@ -95,10 +106,14 @@ class HalfAhead final : public btActionInterface {
             if (body == nullptr) continue;
             Middle& middle = middles_[i];
             middle.body = body;
-            middle.transform = detail::moved(*body, body->getCenterOfMassTransform(), h / 2);
+            middle.transform = body->getCenterOfMassTransform();
+            if (detail::stays(*body, h)) continue;
+            middle.transform = detail::moved(*body, middle.transform, h / 2);
             body->setCenterOfMassTransform(middle.transform);
+            any = true;
         }
         moved_ = true;
+        return any;
     }
     /// The rest of the way, in the tick; the same bodies.
     void finish(std::span<btRigidBody* const> bodies, btScalar h) {
@@ -106,7 +121,7 @@ class HalfAhead final : public btActionInterface {
         ways_->place(end_, 0, end_);
         for (std::size_t i = 0; i < bodies.size(); ++i) {
             btRigidBody* body = detail::awake_body(*bodies[i]);
-            if (body == nullptr) continue;
+            if (body == nullptr || detail::stays(*body, h)) continue;
             const btTransform& here = body->getCenterOfMassTransform();
             const bool known = i < middles_.size() && middles_[i].body == body;
             const btScalar hit =

@@ -206,13 +206,14 @@ DUCTILE_INLINE void WorldParts::tick(double h, bool ahead) {
         if (at_risk_) {
             held_.see(manifolds(), half_, [this](const auto& body) { return concerns(body); });
         }
-        half_ahead_.move(bodies_of(world_, scope()), btScalar(h), ways_, btScalar(time_));
+        const bool moved =
+            half_ahead_.move(bodies_of(world_, scope()), btScalar(h), ways_, btScalar(time_));
         held_.let_go(manifolds(), half_ + h / 2,
                      [this](const auto& body) { return concerns(body); });
         time_ += h;
         forces_.follow(is_meant); // to where their places are now
         members_->apply_forces();
-        if (metered) meter_.bodies_ahead();
+        if (metered && (moved || !members_->empty())) meter_.bodies_ahead();
         keep_spins(h);
     }
     members_->before_solve();

@@ -22,6 +22,8 @@
 #include <span>
 #include <vector>
 
+#include "ductile/ode/convert.hpp"
+
 namespace ductile::ode {
 
 class HalfAhead {
@@ -58,15 +60,16 @@ class HalfAhead {
         std::array<dReal, 3> place;
         std::array<dReal, 4> turn; ///< quaternion
     };
-    /// False where it is there to the last bit.
+    /// False where it is there already.
     static bool put(const Middle& from, double time) {
-        constexpr double nothing = 1e-18; // [rad]
+        constexpr double nothing = 1e-16; // [m | rad]
         const dReal* velocity = dBodyGetLinearVel(from.body);
         const dReal* spin = dBodyGetAngularVel(from.body);
-        const double rate = std::hypot(double(spin[0]), double(spin[1]), double(spin[2]));
+        const double rate = norm(to_core(spin));
         const double half = rate * time / 2;
+        if (!(std::max(norm(to_core(velocity)) * time, half) > nothing)) return false;
         std::array<dReal, 4> turn = from.turn;
-        if (half > nothing) {
+        if (half > 0) {
             const double share = std::sin(half) / rate;
             const dQuaternion by{dReal(std::cos(half)), dReal(share * double(spin[0])),
                                  dReal(share * double(spin[1])), dReal(share * double(spin[2]))};
