@@ -69,7 +69,7 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             if ((surface.mode & dContactMotionN) == 0) surface.motionN = 0;
             surface.mode |= dContactMotionN;
             surface.motionN += dReal((plastic ? turned(it, h) : 0) - closing);
-            if (plastic && !still_) hold_turning(named, it, h);
+            if (plastic) hold_turning(named, it, h);
         }
         named.stale = true;
         if (!plastic) of_.maker->renew(named); // others' islands may not be ODE's to solve
