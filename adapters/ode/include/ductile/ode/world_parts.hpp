@@ -173,6 +173,7 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
+    [[nodiscard]] bool is_thrown_out(double depth, double h) const;
     /// Its joint is made once more, as its surface says now.
     void make_anew(NamedContact& named);
     /// A contact that gives way, for a part of `h` [s].
