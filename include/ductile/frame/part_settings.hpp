@@ -4,7 +4,8 @@
 //
 //   ERP         what a part removes of the error of rigid rows: the world's share, or less where
 //               the part is short, h/5 ms; a blow none. A share of each part would throw joints
-//               about, as parts may be as short as 0.1 µs.
+//               about, as parts may be as short as 0.1 µs. Plastic joints that are far off are
+//               closed more slowly (joint/any_link.ipp).
 //   overlap     its share of what the frame would remove, but no more than that, and no faster than
 //               a frame of 1/60 s does. Bodies have mass: pushed apart in 5 ms, 24 crates that lay
 //               1.4 mm deep in their beams got 1.7 kJ, and a gate whose halves lay 0.1 m deep as

@@ -345,6 +345,9 @@ class AnyLink {
     virtual void keep_joint() = 0;
     virtual void put_joint_back() noexcept = 0;
 
+    /// Of force and of moment rows that are so far from rest: removal_rate.
+    [[nodiscard]] std::array<S, 2> removal_rates(const Vector6<S>& strain, const BodyState<S>& a,
+                                                 const BodyState<S>& b, S rate) const noexcept;
     /// The velocities with which a step of `dt` [s] starts would strain a row noticeably, and
     /// neither the joint nor its last step gave them to its bodies.
     [[nodiscard]] bool is_kicked(S dt) const noexcept;

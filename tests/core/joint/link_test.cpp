@@ -343,6 +343,31 @@ TEST_CASE("a rigid row that the engine left unsolved makes the link unreliable",
     CHECK(link.last().outcome == Outcome::elastic);
 }
 
+TEST_CASE("a part closes what rigid rows are far off by so slowly that it throws nothing",
+          "[joint][link]") {
+    // arms of 0.5 m; a short part's 200/s would throw what is 10 cm off by 20 m/s
+    constexpr double rate = 200, dt = 1e-4;
+    const auto speed = [&](double off, double angle, double spin, bool ahead) {
+        Body a = body(1, 0.1), b = body(1, 0.1, V3(0, 1, 0));
+        Link link(hinge(40), {JointAxis::torsion}, {V3(0, 0.5, 0), M3::Identity()},
+                  {V3(0, -0.5, 0), M3::Identity()});
+        link.start(a, b);
+        a.position[0] = off;
+        a.orientation = turned(angle, V3(1, 0, 0));
+        a.spin = V3(spin, 0, 0);
+        link.teleport(a, b); // it is seen where it is
+        const auto& limits = link.prepare(a, b, dt, rate, ahead);
+        return -(angle != 0 ? limits[3].bias : limits[0].bias);
+    };
+    CHECK(speed(2e-4, 0, 0, true) == Approx(200 * 2e-4)); // as ever
+    CHECK(speed(0.1, 0, 0, false) == Approx(200 * 0.1));
+    CHECK(speed(0.1, 0, 0, true) == Approx(10 * 0.1));
+    CHECK(speed(0.1, 0, 200, true) == Approx(0.02 * 200 * 0.5)); // a 50th of what sweeps
+    CHECK(speed(0.1, 0, 3000, true) == Approx(200 * 0.1));
+    CHECK(speed(0, 5e-4, 0, true) == Approx(200 * 5e-4));
+    CHECK(speed(0, 0.1, 0, true) == Approx(10 * 0.1));
+}
+
 TEST_CASE("a turn that a link cannot follow is unreliable, and says how far it was",
           "[joint][link]") {
     const double dt = 1.0 / 60;

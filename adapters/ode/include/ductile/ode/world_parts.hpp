@@ -181,6 +181,7 @@ class WorldParts final : public PartEngine {
     void look(const WorldSnapshot* moved = nullptr, bool still = false);
     /// A contact's own ERP and compliance are those of the part.
     void rule_contacts(double h, bool blow);
+    [[nodiscard]] bool is_thrown_out(double depth, double h) const;
     /// A contact that gives way, for a part of `h` [s].
     void soften(NamedContact& named, const ContactClosing& it, const SoftContact& soft, double h);
     void tell_of_soft(double h);

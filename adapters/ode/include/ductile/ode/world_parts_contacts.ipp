@@ -51,7 +51,8 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         const double closing = blow ? 0 : closes(it, depth, h, plastic);
         const bool parted = std::any_of(parted_.begin(), parted_.end(),
                                         [&](const auto& pair) { return it.bodies.are_of(pair); });
-        if (!plastic && !own && !soft && !parted && !(closing > 0)) continue;
+        const bool others = !plastic && !own && !soft && !parted && !(closing > 0);
+        if (others && (blow || !is_thrown_out(depth, h))) continue;
         if ((surface.mode & dContactSoftERP) == 0) surface.soft_erp = dWorldGetERP(of_.world);
         surface.mode |= dContactSoftERP;
         if (soft && !blow) {
@@ -74,6 +75,14 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
         named.stale = true;
         if (!plastic) of_.maker->renew(named); // others' islands may not be ODE's to solve
     }
+}
+/// Of bodies that overlap by `depth` [m]: a part of `h` [s] would push them apart faster than the
+/// frame, as if that were 5 ms long.
+DUCTILE_INLINE bool WorldParts::is_thrown_out(double depth, double h) const {
+    constexpr double noticed = 0.05; // [m/s]
+    const auto usual = double(dWorldGetERP(of_.world));
+    const double more = part_erp(usual, h) - overlap_erp(usual, h, length_);
+    return h < length_ && (depth - closed_depth) * more > noticed * h;
 }
 
 /// No more of it pushes than what ODE would correct in a frame.
