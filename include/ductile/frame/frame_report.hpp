@@ -33,7 +33,7 @@ struct UnresolvedJoint {
 
 /// Of one frame.
 struct FrameReport {
-    int parts = 0;                       ///< that stand; 0: nothing was awake (ODE)
+    int parts = 0;                       ///< that stand
     int rejected = 0;                    ///< that were put back
     int blows = 0;                       ///< without length
     int jumps = 0;                       ///< parts whose error does not come from their length
