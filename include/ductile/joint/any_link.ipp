@@ -17,7 +17,7 @@ namespace detail {
 
 /// Beside the size of what is off [-].
 template <std::floating_point S>
-inline constexpr S small_error = S(1e-3);
+inline constexpr S small_error = S(1e-2);
 
 /// Of `rate` [1/s], that at which a part removes what rigid rows are `off` by [m | rad] so that it
 /// throws nothing: with a 50th of the `speed` [m/s | rad/s] at which their bodies sweep, a

@@ -359,13 +359,14 @@ TEST_CASE("a part closes what rigid rows are far off by so slowly that it throws
         const auto& limits = link.prepare(a, b, dt, rate, ahead);
         return -(angle != 0 ? limits[3].bias : limits[0].bias);
     };
-    CHECK(speed(2e-4, 0, 0, true) == Approx(200 * 2e-4)); // as ever
+    CHECK(speed(5e-3, 0, 0, true) == Approx(200 * 5e-3)); // as ever
     CHECK(speed(0.1, 0, 0, false) == Approx(200 * 0.1));
-    CHECK(speed(0.1, 0, 0, true) == Approx(10 * 0.1));
-    CHECK(speed(0.1, 0, 200, true) == Approx(0.02 * 200 * 0.5)); // a 50th of what sweeps
+    CHECK(speed(0.1, 0, 0, true) == Approx(200 * 0.01).epsilon(0.02)); // a hundredth of both arms
+    CHECK(speed(0.5, 0, 0, true) == Approx(10 * 0.5));
+    CHECK(speed(0.1, 0, 1000, true) == Approx(0.02 * 1000 * 0.5)); // a 50th of what sweeps
     CHECK(speed(0.1, 0, 3000, true) == Approx(200 * 0.1));
-    CHECK(speed(0, 5e-4, 0, true) == Approx(200 * 5e-4));
-    CHECK(speed(0, 0.1, 0, true) == Approx(10 * 0.1));
+    CHECK(speed(0, 5e-3, 0, true) == Approx(200 * 5e-3));
+    CHECK(speed(0, 0.1, 0, true) == Approx(200 * 0.01).epsilon(0.02));
 }
 
 TEST_CASE("a turn that a link cannot follow is unreliable, and says how far it was",

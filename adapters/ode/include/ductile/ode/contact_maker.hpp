@@ -118,10 +118,9 @@ class ContactMaker {
     void clear() const { dJointGroupEmpty(parameters_.group); }
     [[nodiscard]] const ContactParameters& parameters() const noexcept { return parameters_; }
     /// Its joint is made once more, as its surface says now.
-    void renew(NamedContact& named) const {
+    void renew(dWorldID world, NamedContact& named) const {
         const dJointID old = named.joint;
         const dBodyID a = dJointGetBody(old, 0), b = dJointGetBody(old, 1);
-        const dWorldID world = dBodyGetWorld(a != nullptr ? a : b);
         named.joint = dJointCreateContact(world, parameters_.group, &named.contact);
         dJointAttach(named.joint, a, b);
         dJointSetFeedback(named.joint, dJointGetFeedback(old));

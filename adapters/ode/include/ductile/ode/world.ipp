@@ -289,7 +289,7 @@ DUCTILE_INLINE void World::solve(double dt) {
                           frames ? members_->touched() : std::vector<dBodyID>{},
                           members_->held_by());
     for (NamedContact& named : contacts_) {
-        if (named.stale && dJointIsEnabled(named.joint) != 0) maker_->renew(named);
+        if (named.stale && dJointIsEnabled(named.joint) != 0) maker_->renew(world_, named);
     }
     step_engine(dt);
     islands_->after_step();

@@ -92,10 +92,11 @@ class WorldParts final : public PartEngine {
         standing_.forget_joints();
         slept_ = false;
     }
-    /// Whether nothing is awake, nor was in the last frame.
+    /// Whether nothing is awake, nor was in the last frame. Members may be loaded where they sleep.
     [[nodiscard]] bool sleeps() const {
-        return slept_ && std::all_of(of_.bodies.begin(), of_.bodies.end(),
-                                     [](dBodyID body) { return dBodyIsEnabled(body) == 0; });
+        return slept_ && of_.members->empty() &&
+               std::all_of(of_.bodies.begin(), of_.bodies.end(),
+                           [](dBodyID body) { return dBodyIsEnabled(body) == 0; });
     }
 
     [[nodiscard]] DUCTILE_INLINE bool may_be_put_back() override;

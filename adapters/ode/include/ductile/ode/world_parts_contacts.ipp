@@ -73,7 +73,8 @@ DUCTILE_INLINE void WorldParts::rule_contacts(double h, bool blow) {
             if (plastic) hold_turning(named, it, h);
         }
         named.stale = true;
-        if (!plastic) of_.maker->renew(named); // others' islands may not be ODE's to solve
+        if (!plastic)
+            of_.maker->renew(of_.world, named); // others' islands may not be ODE's to solve
     }
 }
 /// Of bodies that overlap by `depth` [m]: a part of `h` [s] would push them apart faster than the
