@@ -317,8 +317,7 @@ DUCTILE_INLINE bool OwnJoint::turn_rows(solve::Island& island, const IslandSeat&
                                         const IslandSeat& b, double dt) {
     constexpr double noticed = 1e-4; // [m/s]
     if (pinned_ == 0) return false;
-    const ContactBody of_a{.spin = leaving(island, a, {}).spin},
-        of_b{.spin = leaving(island, b, {}).spin};
+    const ContactBody of_a{.spin = leaving_spin(island, a)}, of_b{.spin = leaving_spin(island, b)};
     if (!(std::max(norm(of_a.spin), norm(of_b.spin)) * dt <= small_turn<double> / 2)) return false;
     const Row& pin = rows_.front();
     const Vector3<double> change =
